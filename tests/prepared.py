@@ -25,5 +25,5 @@ class Setup(NamedTuple):
 
 
 def prepared(problem: Problem) -> Setup:
-    session = Session(problem)
+    session = Session.of(problem)
     return Setup(session, choose_start(session))

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.assembly.home import (
         NamedModes as NamedModes,
-        Probe as Probe,
         is_cyclic as is_cyclic,
         is_home_assembled as is_home_assembled,
         name_modes as name_modes,
         nearest_to_home as nearest_to_home,
+        probe_of as probe_of,
         wrapped as wrapped,
     )
     from mechkin_cli.assembly.near import nothing_found as nothing_found
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         NEAR as NEAR,
         AssemblyStart as AssemblyStart,
         choose_start as choose_start,
+        continued_start as continued_start,
         distances_of as distances_of,
         is_unclear as is_unclear,
         mode_letter as mode_letter,
@@ -40,7 +41,7 @@ __getattr__, __dir__ = lazy_names(
         "fold": ["PlacesBefore", "at_unit_rate", "left_for", "unit_rates"],
         "home": [
             "NamedModes",
-            "Probe",
+            "probe_of",
             "is_cyclic",
             "is_home_assembled",
             "name_modes",
@@ -54,6 +55,7 @@ __getattr__, __dir__ = lazy_names(
             "MAY_BE_RIGID",
             "NEAR",
             "choose_start",
+            "continued_start",
             "distances_of",
             "is_unclear",
             "mode_letter",

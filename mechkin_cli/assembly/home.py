@@ -11,6 +11,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, home_inputs, home_state
 from mechkin_cli.search import Assemblies, with_assemblies
 
@@ -21,12 +22,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
+@remembered
 def is_home_assembled(session: Session) -> bool:
     """Whether the home drawing closes all loops as drawn."""
-    return session.once("home", lambda: _is_home_assembled(session))
-
-
-def _is_home_assembled(session: Session) -> bool:
     inputs = home_inputs(session.layout)[:, None]
     tests = (0.0, 0.0, tolerances.HOME_ASSEMBLED)
     home = home_state(session.layout)[:, None]
@@ -65,11 +63,6 @@ class Probe:
         self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
         self.readout = session.readout(coordinate_quantities(mechanism), self.points)
 
-    @classmethod
-    def of(cls, session: Session) -> Probe:
-        """The session's probe, made once."""
-        return session.once("probe", lambda: cls(session))
-
     def read(self, inputs: Floats, states: Floats) -> tuple[dict[str, Floats], Floats]:
         """Coordinates by name (SI) and the joint points of the moving links (points, 3,
         assemblies)."""
@@ -89,6 +82,12 @@ class Probe:
         extent = every.max(axis=0) - every.min(axis=0)
         x, y, z = (float(e) for e in extent)
         return sqrt(x * x + y * y + z * z) or 1.0
+
+
+@remembered
+def probe_of(session: Session) -> Probe:
+    """What reads the assemblies of a session."""
+    return Probe(session)
 
 
 # The assembly modes at the first row with their letters.
@@ -113,14 +112,10 @@ class NamedModes:
         return self.found.number
 
 
+@remembered
 def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> NamedModes:
     """The modes at the first row, `inputs` (inputs,) in kernel units; not `thorough`: most of them,
     and letters only if these are all for certain."""
-    key = ("modes", inputs.tobytes(), str(session.problem.assembly.near), thorough)
-    return session.once(key, lambda: _name_modes(session, inputs, thorough))
-
-
-def _name_modes(session: Session, inputs: Floats, thorough: bool) -> NamedModes:
     found = session.search(inputs, thorough=thorough)
     if is_home_assembled(session):
         home = follow_from_home(session, inputs)
@@ -128,7 +123,7 @@ def _name_modes(session: Session, inputs: Floats, thorough: bool) -> NamedModes:
             found = with_assemblies(
                 session.layout, session.plan, inputs, found, home.state[:, None]
             )
-    coordinates, points = Probe.of(session).read(inputs, found.states)
+    coordinates, points = probe_of(session).read(inputs, found.states)
     known = thorough or found.complete
     names = letters(session.problem.mechanism, coordinates, points) if known else {}
     return NamedModes(found, coordinates, points, names)

@@ -4,7 +4,7 @@ nearest to it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, sqrt
 from typing import TYPE_CHECKING
@@ -14,10 +14,10 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import (
     NamedModes,
-    Probe,
     is_cyclic,
     is_home_assembled,
     name_modes,
+    probe_of,
     ways_from_home,
     wrapped,
 )
@@ -28,16 +28,26 @@ from mechkin_cli.assembly.near import (
     newton_from,
     nothing_found,
 )
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError, Number
+from mechkin_cli.kernel._kernel import Stepper
 from mechkin_cli.mechanism import dimension_of, is_angle
-from mechkin_cli.plan import TrackEnd
+from mechkin_cli.memo import remembered
+from mechkin_cli.plan import Layout, TrackEnd
 from mechkin_cli.search import Assemblies, is_in_reach, pose_keys, same_poses, with_assemblies
-from mechkin_cli.session import input_numbers, input_text
+from mechkin_cli.session import (
+    Continued,
+    ContinuedFrom,
+    input_numbers,
+    input_text,
+    step_limits,
+)
+from mechkin_cli.structure import structure_of
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.session import Continued, Followed, Session
+    from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
 
 
@@ -47,7 +57,7 @@ if TYPE_CHECKING:
 def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnostic]:
     """A warning where an assembly (states,) lies far from what `near` names."""
     problem = session.problem
-    coordinates, _ = Probe.of(session).read(inputs, state[:, None])
+    coordinates, _ = probe_of(session).read(inputs, state[:, None])
     places = {name: float(coordinates[name][0]) for name in problem.assembly.near}
     far = []
     for name, target in problem.assembly.near.items():
@@ -84,7 +94,7 @@ def distances_of(
     session: Session, inputs: Floats, states: Floats
 ) -> tuple[list[float], list[float]]:
     """Of assemblies (states, number) from what `near` names, and from the drawing."""
-    coordinates, points = Probe.of(session).read(inputs, states)
+    coordinates, points = probe_of(session).read(inputs, states)
     return distances_near(session.problem, coordinates), distances_home(session, points)
 
 
@@ -117,7 +127,7 @@ def distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[
 
 def distances_home(session: Session, points: Floats) -> list[float]:
     """Root mean square over the moving links' joint points, in parts of the size."""
-    home = np.array([at.vector for at in Probe.of(session).points])[:, :, None]
+    home = np.array([at.vector for at in probe_of(session).points])[:, :, None]
     miss = (points - home) / session.problem.mechanism.box_diagonal()
     total = np.zeros(points.shape[2])
     for x, y, z in miss:
@@ -169,12 +179,64 @@ class AssemblyStart:
     condition: float | None = None
 
 
+@remembered
 def choose_start(session: Session) -> AssemblyStart:
-    """The assembly that the file means, found once; or the one that is continued."""
-    if session.continued is not None:
-        return _continued(session.continued)
-    key = ("start", str(session.problem.assembly))
-    return session.once(key, lambda: _judged(session, _choose_start(session)))
+    """The assembly that the file means, or the one that is continued."""
+    continued = continued_start(session)
+    if continued is not None:
+        return _continued(continued)
+    return _judged(session, _choose_start(session))
+
+
+@remembered
+def continued_start(session: Session) -> Continued | None:
+    """The first assembly of a session that continues another's; None where it is to be chosen:
+    nothing is continued, the base has no first assembly, or another structure."""
+    first = session.first
+    return brought(session, first) if isinstance(first, ContinuedFrom) else first
+
+
+def brought(session: Session, way: ContinuedFrom) -> Continued | None:
+    """The first assembly of the base brought to a session that was built anew, along the straight
+    line in the parameters: the sessions between are built one by one, and the steps are those of
+    every continuation (docs/numerics.md, Variants)."""
+    base = way.base
+    start = choose_start(base)
+    if start.state is None or structure_of(session.graph) != structure_of(base.graph):
+        return None
+    rows = session.problem.motion.rows
+    row = start.row if rows == base.problem.motion.rows else 0
+    first, last = base.inputs.values[:, start.row], session.inputs.values[:, row]
+    return Continued(_end_of_line(session, way, start.state, first, last), row)
+
+
+def _end_of_line(
+    session: Session, way: ContinuedFrom, state: Floats, first: Floats, last: Floats
+) -> Floats | None:
+    """States at the end of the line from inputs to inputs; None where the branch ends before."""
+    plans = {0.0: way.base.plan, 1.0: session.plan}
+    structure, unit = structure_of(session.graph), session.layout.length
+
+    def plan(place: float) -> Plan:
+        if place not in plans:
+            between = way.between(place)
+            if structure_of(between.graph) != structure:
+                raise MechkinError("another structure on the way")
+            problem = between.problem
+            laid = Layout(problem.laid_mechanism, between.graph, unit, problem.laws)
+            plans[place] = laid.build()
+        return plans[place]
+
+    def at(place: float) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
+        still = [0.0] * first.size
+        return (first + place * (last - first)).tolist(), still, still
+
+    limits = step_limits(tolerances.LONGEST_DIMENSION_STEP)
+    try:
+        node = Stepper.along(plan, at, True, limits).to_target(state.tolist())
+    except MechkinError:
+        return None  # what the file says does not hold somewhere on the way
+    return None if node is None else np.array(node.state)
 
 
 def _judged(session: Session, start: AssemblyStart) -> AssemblyStart:

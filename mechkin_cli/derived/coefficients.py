@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +29,7 @@ from mechkin_cli.mechanism import (
     base_quantity,
     effort_quantity,
 )
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS
 from mechkin_cli.units import FORCE, POWER
 
@@ -84,19 +84,17 @@ def _values(
     return [columns[name] / unit for name in names]
 
 
+@remembered
 def unloaded(session: Session, *, at_inputs: bool) -> Session:
     """The mechanism with its masses alone, its efforts where they act or at the inputs."""
-
-    def made() -> Session:
-        problem = session.problem
-        drives = None if at_inputs else problem.mechanism.drives
-        bare = replace(problem.mechanism, loads=(), gravity=ZERO, frictions=())
-        mechanism = replace(bare, drives=drives)
-        return session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
-
-    return session.once(("unloaded", at_inputs), made)
+    problem = session.problem
+    drives = None if at_inputs else problem.mechanism.drives
+    bare = replace(problem.mechanism, loads=(), gravity=ZERO, frictions=())
+    mechanism = replace(bare, drives=drives)
+    return session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
 
 
+@remembered
 def without_friction(session: Session, *, at_inputs: bool = False) -> Session | None:
     """The mechanism without the friction of its joints, which is linear in nothing, its efforts
     where they act or at the inputs; None where it has none."""
@@ -106,7 +104,7 @@ def without_friction(session: Session, *, at_inputs: bool = False) -> Session | 
     drives = None if at_inputs else mechanism.drives
     bare = replace(mechanism, frictions=(), drives=drives)
     smooth = replace(session.problem, mechanism=bare)
-    return session.once(("without friction", at_inputs), lambda: session.loaded(smooth))
+    return session.loaded(smooth)
 
 
 def _rounding(levels: Sequence[Floats]) -> Floats:
@@ -200,7 +198,7 @@ def load_powers_along(run: BasisQuantities, along: KernelInputs) -> list[tuple[L
     efforts that hold it alone."""
     found = []
     for load, number in _numbered(run):
-        session = run.session.once(("one load", number), partial(_with_load, run, number))
+        session = _with_load(run.session, number)
         still = run.inputs.at_rest() if number < 0 else None
         found.append((load, power_against(run, along, session, still)))
     return found
@@ -213,9 +211,10 @@ def _numbered(run: BasisQuantities) -> list[tuple[Load | str, int]]:
     return [*gravity, *((load, k) for k, load in enumerate(mechanism.loads))]
 
 
-def _with_load(run: BasisQuantities, number: int) -> Session:
+@remembered
+def _with_load(session: Session, number: int) -> Session:
     """The mechanism with one load alone; with gravity, its masses are at rest."""
-    problem = run.session.problem
+    problem = session.problem
     mechanism = replace(problem.mechanism, drives=None, frictions=())
     if number < 0:
         mechanism = replace(mechanism, loads=())
@@ -223,7 +222,7 @@ def _with_load(run: BasisQuantities, number: int) -> Session:
         links = {name: RigidLink(name) for name in mechanism.links}
         loads = (mechanism.loads[number],)
         mechanism = replace(mechanism, links=links, loads=loads, gravity=ZERO)
-    return run.session.loaded(replace(problem, mechanism=mechanism))
+    return session.loaded(replace(problem, mechanism=mechanism))
 
 
 def is_stored(load: Load | str) -> bool:

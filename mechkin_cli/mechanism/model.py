@@ -400,6 +400,11 @@ class Mechanism:
             found[joint.second].append(joint)
         return {name: tuple(joints) for name, joints in found.items()}
 
+    @cached_property
+    def legs(self) -> tuple[Leg, ...]:
+        """Its legs; no leg ends on another leg's links."""
+        return _find_legs(self)
+
     @property
     def loops(self) -> int:
         """Number of independent loops."""
@@ -525,12 +530,8 @@ def frame_on(joint: Joint, link: str) -> Frame:
 
 
 def find_legs(mechanism: Mechanism) -> tuple[Leg, ...]:
-    """The legs of a mechanism, looked for once; no leg ends on another leg's links."""
-    found: tuple[Leg, ...] | None = mechanism.__dict__.get("legs")
-    if found is None:
-        # a frozen mechanism keeps what follows from it, as its cached properties do
-        found = mechanism.__dict__["legs"] = _find_legs(mechanism)
-    return found
+    """The legs of a mechanism; no leg ends on another leg's links."""
+    return mechanism.legs
 
 
 def _find_legs(mechanism: Mechanism) -> tuple[Leg, ...]:

@@ -59,6 +59,7 @@ class Problem:
     follow: tuple[str, ...] | None = None
     responses: Mapping[str, ResponseProblem] = field(default_factory=dict)
     response: ResponseProblem | None = None
+    _known: Mapping[str, Wanted] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
     def driven(self) -> list[tuple[str, str]]:
@@ -106,9 +107,13 @@ class Problem:
     def moved(self, motion: MotionInputs) -> Problem:
         """The problem with another motion; those of a response have the same quantities."""
         other = replace(self, motion=motion)
-        if self.response is not None:
-            other.__dict__["_quantities"] = self._quantities
-        return other
+        return other if self.response is None else other.with_quantities_of(self)
+
+    def with_quantities_of(self, other: Problem) -> Problem:
+        """This problem, which has the quantities of another: links, joints and inputs of the same
+        names and kinds."""
+        object.__setattr__(self, "_known", other.quantities())
+        return self
 
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
@@ -123,6 +128,8 @@ class Problem:
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
+        if self._known is not None:
+            return self._known
         mechanism, motion = self.mechanism, self.motion
         if self.response is not None:
             efforts = self.response.efforts_of

@@ -103,7 +103,7 @@ class TurnsEnd:
 Stop = CrossingEnd | DeadCentreEnd | TurnsEnd
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ResponseProblem:
     """One of the file's responses.
 

@@ -222,7 +222,7 @@ class Body:
         self.size = mechanism.box_diagonal()
         self.opened = opened(mechanism)
         tree = Problem(self.opened.mechanism, MotionInputs((), 1), Assembly(), UnitSystem())
-        self.session = Session(tree, self.opened.graph)
+        self.session = Session.of(tree, self.opened.graph)
         self.layout = self.session.layout
         bodies = self.opened.mechanism.links
         poses = Poses(self.session, bodies, self.centre, self.size)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly import Probe, choose_start
+from mechkin_cli.assembly import choose_start, probe_of
 from mechkin_cli.mechanism import Frame, find_legs, is_unnamed
 from mechkin_cli.mobility.configurations import Body, Configuration, home, with_links_at
 from mechkin_cli.mobility.opened import Pose, Poses, quaternion_of, rank_of
@@ -37,7 +37,7 @@ def configuration_at(
     poses = Poses(session, body.links, body.centre, body.size)
     turns, places = poses.at(inputs[:, None], state[:, None])
     links = poses.named(turns[0], places[0])
-    coordinates, _ = Probe.of(session).read(inputs, state[:, None])
+    coordinates, _ = probe_of(session).read(inputs, state[:, None])
     seed = _seed(body, {name: float(value[0]) for name, value in coordinates.items()}, links)
     found = with_links_at(seed, links)
     return found if found.assembled else None

@@ -384,6 +384,7 @@ class Analysis(Reading, Summarized, Plotted):
         self.layouts = layouts
         self.result = result
         self.run = run
+        self._certificate: Certificate | None = None
         self.chosen_coefficients = coefficients
         self.chosen_balances = balances
         self.asked = asked
@@ -410,20 +411,22 @@ class Analysis(Reading, Summarized, Plotted):
         """Everything that the run has to say."""
         return (*self.result.diagnostics, *self._balanced[1], *self._unproven)
 
-    @cached_property
+    @property
     def certificate(self) -> Certificate:
         """Proofs of the rows of a sweep, made when they are asked for: `--certify`.
 
         Raises:
             UsageError: the rows are those of a response.
         """
-        from mechkin_cli.proofs import Certificate
+        if self._certificate is None:
+            from mechkin_cli.proofs import Certificate
 
-        return Certificate(self)
+            self._certificate = Certificate(self)
+        return self._certificate
 
     @property
     def _unproven(self) -> tuple[Diagnostic, ...]:
-        return self.certificate.diagnostics if "certificate" in self.__dict__ else ()
+        return () if self._certificate is None else self._certificate.diagnostics
 
     @property
     def complete(self) -> bool:

@@ -508,7 +508,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        return Session(self.problem, self.graph).reading(lambda: self.precise)
+        return Session.of(self.problem, self.graph).reading(lambda: self.precise)
 
     @cached_property
     def precise(self) -> Precise:

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.arguments import a_text, a_whole_number, texts
 from mechkin_cli.building import used_quantities
-from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
 from mechkin_cli.kernel.functions import check_threads, check_width
 from mechkin_cli.mechanism import find_legs, response_problem
+from mechkin_cli.memo import remembered
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.plan import needs_all_links
 from mechkin_cli.response import respond as run_response
@@ -105,14 +106,18 @@ def wanted_names(
     if not layouts and not asked:
         return []
     always, known = row_texts(run), session.problem.quantities()
-    key = ("read by", run, tuple(layout.name for layout in layouts))
-    used = session.once(key, lambda: used_quantities(layouts, known))
+    used = _read_by(session, tuple(layouts))
     names = [name for name in asked if name not in always]
     for name in names:
         if name not in known:
             hint = session.problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
     return [*used, *names]
+
+
+@remembered
+def _read_by(session: Session, layouts: tuple[TableLayout, ...]) -> list[str]:
+    return used_quantities(layouts, session.problem.quantities())
 
 
 def known_mode(analysis: Analysis) -> Analysis:
@@ -149,7 +154,7 @@ def run_sweep(
         session = _closed_at(problem, closed_at)
     if mode is not None:
         a_text("mode", mode, '"A"')
-        session = session.assembled(replace(problem.assembly, mode=mode))
+        session = session.in_mode(mode)
     layouts = chosen_tables(model.built, tables, SWEEP)
     balances = chosen(model.built.balances, tables)
     names = wanted_names(session, SWEEP, layouts, quantities)
@@ -179,7 +184,7 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
                 f"closed_at: there is no joint {name[:LONGEST_NAME]}; joints are {known}"
             )
     try:
-        return Session(problem, closed_at=closings)
+        return Session.of(problem, closed_at=closings)
     except UnsolvableGraph as error:
         why = f"closed_at {', '.join(closings) or 'nothing'}: {error.diagnostic.message}"
         cure = "leave out closed_at, or choose other closing joints"
@@ -195,12 +200,17 @@ def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
     problem = session.problem
     if not names or not (find_legs(problem.mechanism) or problem.held):
         return
-    from mechkin_cli.idle import spin_errors
-
-    for _, diagnostic in session.own("causes of spin", lambda: list(spin_errors(problem))):
+    for diagnostic in _causes_of_spin(session):
         known = problem.quantities()
         if needs_all_links(problem.mechanism, [known[name] for name in names]):
             raise UsageError(str(diagnostic))
+
+
+@remembered
+def _causes_of_spin(session: Session) -> list[Diagnostic]:
+    from mechkin_cli.idle import spin_errors
+
+    return [diagnostic for _, diagnostic in spin_errors(session.problem)]
 
 
 # `Model.respond`: one of the file's responses, by its name.
@@ -240,7 +250,7 @@ def session_at_start(model: Model, run: str) -> Session:
     `Model.session_of`."""
     graph = model.response_graph(run)
     first = response_problem(model.problem, model.problem.responses[run])
-    return Session(first, graph).reading(exactly_read(model.built, first, model._given))
+    return Session.of(first, graph).reading(exactly_read(model.built, first, model._given))
 
 
 def exactly_read(

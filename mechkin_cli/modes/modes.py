@@ -16,11 +16,11 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import (
     NamedModes,
-    Probe,
     choose_start,
     is_cyclic,
     name_modes,
     nothing_found,
+    probe_of,
     state_at_first_row,
     wrapped,
 )
@@ -231,7 +231,7 @@ def _result(
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
-    coordinates, _ = Probe.of(session).read(place, found.states)
+    coordinates, _ = probe_of(session).read(place, found.states)
     order = sorted(
         range(found.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )

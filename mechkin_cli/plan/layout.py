@@ -65,6 +65,7 @@ class Layout:
     graph: SolverGraph
     unit: float | None = None
     laws: Laws | None = None
+    drawn_about: Vector | None = None
 
     @cached_property
     def length(self) -> float:
@@ -75,7 +76,9 @@ class Layout:
 
     @cached_property
     def origin(self) -> Vector:
-        """The kernel's origin in m."""
+        """The kernel's origin in m: `drawn_about`, or the centre of a drawing that is far away."""
+        if self.drawn_about is not None:
+            return self.drawn_about
         points = [at.vector for _, at in self.mechanism.joint_points()]
         centre = scale(1.0 / len(points), _sum(points)) if points else ZERO
         near = tolerances.FAR_DRAWING * self.mechanism.box_diagonal()

@@ -125,7 +125,9 @@ class OutputPlan:
     Another `OutputPlan` on the same plan reads other quantities.
     """
 
-    def __init__(self, layout: Layout, plan: Plan | None, inputs: list[tuple[str, str]]) -> None:
+    def __init__(
+        self, layout: Layout, plan: Plan | None, inputs: Sequence[tuple[str, str]]
+    ) -> None:
         self.layout = layout
         self.plan = plan
         self.inputs = inputs

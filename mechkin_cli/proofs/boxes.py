@@ -13,6 +13,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.structure import equations_that_follow
 from mechkin_cli.tape import TraceLost
@@ -66,6 +67,12 @@ class Enclosed(NamedTuple):
         plan = session.plan.with_constants(middle)
         follows = bytes(equations_that_follow(session)) if session.is_redundant else None
         return cls(session, plan, plan.with_constants(radius), constants, True, follows)
+
+
+@remembered
+def enclosed_of(session: Session) -> Enclosed:
+    """The session's mechanism with its constants enclosed, as `Enclosed.of`."""
+    return Enclosed.of(session)
 
 
 class Boxes(NamedTuple):
@@ -155,14 +162,11 @@ def input_rounding(session: Session, values: Floats) -> Floats:
     the rows tell, since one near zero may be what two large ones leave."""
     largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
     rounding: Floats = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
-    return np.maximum(
-        rounding,
-        session.once(
-            ("off the text", session.inputs.values.tobytes()), lambda: _off_the_text(session)
-        ),
-    )
+    off: Floats = np.maximum(rounding, _off_the_text(session))
+    return off
 
 
+@remembered
 def _off_the_text(session: Session) -> Floats:
     """How far the inputs (inputs, 1) are from the text in some row, measured in double-double; zero
     where the text cannot be followed to them. Laws and expressions may cancel."""

@@ -12,8 +12,9 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS, LEDGER_KINDS, is_angle
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of
-from mechkin_cli.proofs.boxes import Enclosed, about_high, distance, input_rounding
+from mechkin_cli.proofs.boxes import Enclosed, about_high, distance, enclosed_of, input_rounding
 from mechkin_cli.proofs.modes import FULL_TURN
 from mechkin_cli.session import input_unit
 from mechkin_cli.tape import TraceLost
@@ -218,12 +219,15 @@ def _outputs(
     """The outputs with the numbers of the file's text, and all parts of these (constants, 3); as
     they are, and None, where the text cannot be followed to them."""
     try:
-        constants = session.once(
-            ("enclosed outputs", wanted), lambda: session.precise.enclosed_outputs(session, wanted)
-        )
+        constants = _enclosed_outputs(session, wanted)
     except (LookupError, ValueError, TraceLost):
         return outputs, None
     return outputs.with_constants(np.ascontiguousarray(constants[:, 0])), constants
+
+
+@remembered
+def _enclosed_outputs(session: Session, wanted: tuple[Wanted, ...]) -> Floats:
+    return session.precise.enclosed_outputs(session, wanted)
 
 
 # Quantities of proven rows, enclosed (docs/numerics.md, Intervals).
@@ -343,7 +347,7 @@ def inside_boxes(session: Session) -> Bools:
 
 def _enclosed(session: Session) -> tuple[Enclosed, Given]:
     """The mechanism and its inputs, of the text where it can be followed to them."""
-    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
+    enclosed = enclosed_of(session)
     return enclosed, Given.of(session) if enclosed.of_text else Given.of_doubles(session)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.plan import Demand
-from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, enclosed_of, prove_boxes
 from mechkin_cli.proofs.enclose import Positions, enclose_derivatives
 from mechkin_cli.proofs.modes import differences
 
@@ -67,7 +67,7 @@ def prove_fold(exchanged: Exchanged, inputs: Floats, off: Floats, state: Floats)
     if place is None:
         return None
     values, states = place
-    enclosed = Enclosed.of(session)
+    enclosed = enclosed_of(session)
     off = off[:, None].copy()
     off[exchanged.number] = 0.0
     node = Nodes(values, values, states, off, np.zeros((session.plan.columns, 1)))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes
+from mechkin_cli.proofs.boxes import Boxes, Nodes, enclosed_of, prove_boxes
 from mechkin_cli.verdict import Proof
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def prove_modes(session: Session, place: Floats, states: Floats) -> ModeProofs:
     """Proofs of assemblies (states, modes) at some inputs (inputs,) in kernel units."""
     count = states.shape[1]
     inputs = np.repeat(place[:, None], count, axis=1)
-    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
+    enclosed = enclosed_of(session)
     boxes = prove_boxes(enclosed, Nodes.of(session, inputs, inputs, states))
     proven = np.flatnonzero(boxes.proven)
     different = all(

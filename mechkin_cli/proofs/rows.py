@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes, prove_tubes
+from mechkin_cli.proofs.boxes import Enclosed, Nodes, enclosed_of, prove_boxes, prove_tubes
 from mechkin_cli.proofs.dead_centre import DeadCentreProof, bridge, prove_dead_centre
 from mechkin_cli.verdict import Proof
 
@@ -111,7 +111,7 @@ def certify(
     """
     inputs = session.inputs
     nodes = Nodes.of(session, inputs.values, inputs.reduced, states)
-    enclosed = session.once("enclosed", lambda: Enclosed.of(session))
+    enclosed = enclosed_of(session)
     boxes = prove_boxes(enclosed, nodes)
     proven = boxes.proven & solved
     boxes = boxes._replace(proven=proven)

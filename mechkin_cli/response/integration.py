@@ -21,6 +21,7 @@ from mechkin_cli.session import (
     Coordinate,
     Packing,
     Session,
+    Structure,
     held_values,
     input_unit,
 )
@@ -142,7 +143,7 @@ def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
     """The session of a problem whose inputs `free` are left to move: the same tree, so the same
     states; residual and condition in parts of the same size."""
     graph = charted(session.graph, set(free))
-    other = Session(
+    other = Session.of(
         session.problem,
         graph,
         driven=graph.driven,
@@ -154,16 +155,9 @@ def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
 
 def with_loads(session: Session, problem: Problem) -> Session:
     """The session of a free motion for a problem that differs in loads alone."""
-    other = Session(
-        problem,
-        session.graph,
-        driven=session.graph.driven,
-        closed_at=session.closed_at,
-        packing=session.packing,
-    )
     laid = Layout(problem.laid_mechanism, session.graph, session.layout.length, laws=problem.laws)
-    other.__dict__["layout"] = laid
-    return other if session.size is None else other.sized(session.size)
+    structure = Structure(laid, tuple(session.graph.driven), session.closed_at)
+    return Session(problem, structure, size=session.size, packing=session.packing)
 
 
 def integrate(

@@ -20,6 +20,7 @@ from mechkin_cli.mechanism import (
     read_for,
     response_problem,
 )
+from mechkin_cli.memo import remembered
 from mechkin_cli.response.endings import ending
 from mechkin_cli.response.integration import (
     MotionEnd,
@@ -33,6 +34,7 @@ from mechkin_cli.response.integration import (
 from mechkin_cli.response.result import ENERGIES, ResponseResult
 from mechkin_cli.response.start import Beginning, beginning
 from mechkin_cli.session import Chart, Packing, Session, input_unit, turn_count
+from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
     SweepRows,
     at_once,
@@ -43,7 +45,6 @@ from mechkin_cli.sweep import (
     unfounded_in_motion,
 )
 from mechkin_cli.units import TIME
-from mechkin_cli.variants import structure_of
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
@@ -215,18 +216,17 @@ def prepare(
         UnsolvableGraph: as `respond`.
     """
     if session is None:
-        session = Session(response_problem(problem, response))
-    key = ("prepared", str(session.problem.assembly))
-    found = session.once(key, lambda: _prepared(session, response))
+        session = Session.of(response_problem(problem, response))
+    found = _prepared(session, response)
     return replace(found, chosen=found.chosen.packed(packing), free=found.free.packed(packing))
 
 
+@remembered
 def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
     chosen, start = first_assembly(chosen)
     place = response.place
-    start.diagnostics[:] = [
-        told if told.place else told._replace(place=place) for told in start.diagnostics
-    ]
+    placed = [one if one.place else one._replace(place=place) for one in start.diagnostics]
+    start = replace(start, diagnostics=placed)
     free = free_session(chosen, response.independent)
     if start.state is None:
         return Prepared(response, chosen, start, free, None, None)

@@ -68,9 +68,11 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.session.session import (
         Continued as Continued,
+        ContinuedFrom as ContinuedFrom,
         Coordinate as Coordinate,
         Packing as Packing,
         Session as Session,
+        Structure as Structure,
     )
     from mechkin_cli.session.shifted import ShiftingPrecise as ShiftingPrecise
 
@@ -112,7 +114,7 @@ __getattr__, __dir__ = lazy_names(
         ],
         "kernel_run": ["Batch", "Chart", "RESIDUAL_TESTS", "RowPlaces", "assembly_size", "run"],
         "path": ["InputTie", "followers_of", "places_at", "places_of"],
-        "session": ["Continued", "Coordinate", "Packing", "Session"],
+        "session": ["Continued", "ContinuedFrom", "Structure", "Coordinate", "Packing", "Session"],
         "shifted": ["ShiftingPrecise"],
     },
 )

@@ -291,9 +291,10 @@ class Precise:
             problem = self.problem_of(session)
             own = session.layout
             graph = graph_of(problem.solved_mechanism, session.graph)
-            layout = Layout(problem.laid_mechanism, graph, own.length, problem.laws)
-            # a choice of the drawing, as the length unit
-            layout.__dict__["origin"] = own.origin
+            # unit of length and origin are choices of the drawing
+            layout = Layout(
+                problem.laid_mechanism, graph, own.length, problem.laws, drawn_about=own.origin
+            )
             self._layouts[id(session)] = (session, layout)
         return self._layouts[id(session)][1]
 

@@ -75,18 +75,7 @@ def exchange(session: Session, number: int, block: int, first: Floats) -> Exchan
         return None
     driven = max(scalars, key=lambda unknown: abs(float(first[unknown.column])))
     other = exchanged(graph, number, driven.at, driven.name)
-    found = Session(
-        session.problem,
-        other,
-        driven=other.driven,
-        closed_at=session.closed_at,
-        packing=session.packing,
-    )
-    found.text = session.text
-    own = session.layout
-    found.__dict__["layout"] = Layout(own.mechanism, other, own.length, laws=own.laws)
-    if session.size is not None:
-        found = found.sized(session.size)
+    found = session.exchanged(other)
     return Exchanged(found, number, driven, freed)
 
 
@@ -179,7 +168,7 @@ def _session(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Session 
     # no load says where links stand, and the laws of those that vary are the runs'
     unloaded = replace(mechanism, loads=(), frictions=())
     problem = Problem(unloaded, MotionInputs((), 1), Assembly(), UnitSystem())
-    return Session(problem, found, driven=found.driven)
+    return Session.of(problem, found, driven=found.driven)
 
 
 def _displaced(layout: Layout, move: float) -> Floats:

@@ -1,20 +1,23 @@
-"""A session: one problem's solver graph, layout, frozen plan and inputs, and its verbs.
+"""A session: one problem's structure in the kernel, its inputs, and its verbs.
 
-Everything that is asked of a mechanism goes through the four verbs *close*, *follow*, *search* and
-*run*. What a session has found it keeps: `once` for all sessions of its structure, whatever their
-rows, first assembly, size or packing; `own` for itself alone.
+Everything that is computed about a mechanism goes through four verbs: *close*, *follow*, *search*
+and *run*. A session is a frozen value: other rows, another first assembly, size or packing make
+another session, by `dataclasses.replace`. What follows from it is remembered with it, by the
+arguments of the question (`memo.remembered`); only a `Structure` is shared between sessions, and it
+knows nothing of rows or of the first assembly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout
 from mechkin_cli.session.following import (
     Followed,
@@ -26,40 +29,12 @@ from mechkin_cli.session.kernel_run import RESIDUAL_TESTS, Batch, Chart, run as 
 from mechkin_cli.structure import SolverGraph, build_graph, is_redundant
 
 if TYPE_CHECKING:
-    from typing import Self
-
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
     from mechkin_cli.search import Assemblies, Within
     from mechkin_cli.session.double_double import Precise, PreciseBatch
     from mechkin_cli.session.path import FollowedPath, InputTie, Route
     from mechkin_cli.show import Floats
-
-
-# What has been found and is kept: a question asked twice does its work once.
-
-T = TypeVar("T")
-
-
-class Keeping:
-    """Keeps what it has found, by keys: `once` for all objects of one structure, which share it,
-    `own` for one object alone."""
-
-    def __init__(self) -> None:
-        self._kept: dict[object, object] = {}
-        self._own: dict[object, object] = {}
-
-    def once(self, key: object, find: Callable[[], T]) -> T:
-        """What `find` gives, found once for each key and all that share the structure."""
-        if key not in self._kept:
-            self._kept[key] = find()
-        return cast("T", self._kept[key])
-
-    def own(self, key: object, find: Callable[[], T]) -> T:
-        """What `find` gives, found once for each key and this object."""
-        if key not in self._own:
-            self._own[key] = find()
-        return cast("T", self._own[key])
 
 
 Coordinate = tuple[str, str]
@@ -83,60 +58,165 @@ class Continued(NamedTuple):
     row: int
 
 
-class Session(Keeping):
-    """A problem in the kernel.
+@dataclass(frozen=True, eq=False)
+class ContinuedFrom:
+    """A first assembly that is brought from that of another session.
 
-    Args:
-        problem: mechanism, motion and assembly.
-        graph: its solver graph; None builds the best one.
-        driven: the inputs, where they are not those of the problem's motion and what is held.
-        closed_at: closing joints to use instead of the best ones.
-        packing: how rows are packed.
-
-    `text` gives the numbers as the file says them, where the problem is that of a file.
-
-    Raises:
-        UnsolvableGraph: the mechanism cannot be solved as it is driven.
+    Attributes:
+        base: the session of the file's own parameters.
+        between: the session at a place between `base` (0) and the one that continues it (1).
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        graph: SolverGraph | None = None,
-        *,
-        driven: Sequence[Coordinate] | None = None,
-        closed_at: Sequence[str] | None = None,
-        packing: Packing = Packing(),
-    ) -> None:
-        super().__init__()
-        self.problem = problem
-        self.driven = list(problem.driven if driven is None else driven)
-        self.closed_at = closed_at
-        self.packing = packing
-        self.size: float | None = None
-        self.continued: Continued | None = None
-        self.text: Callable[[], Precise] | None = None
-        self.graph = graph or build_graph(problem.solved_mechanism, self.driven, closed_at)
-        self._readouts: dict[object, Readout] = {}
+    base: Session
+    between: Callable[[float], Session]
 
-    @cached_property
-    def layout(self) -> Layout:
-        """How the mechanism lies in the kernel."""
-        return Layout(self.problem.laid_mechanism, self.graph, laws=self.problem.laws)
+
+First = Continued | ContinuedFrom | None
+"""How the first assembly is found; None: chosen as `problem.assembly` says (home, near or mode)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A mechanism and its graph in the kernel: what depends neither on rows nor on the choice of
+    the first assembly.
+
+    Attributes:
+        layout: how the mechanism lies in the kernel.
+        driven: its inputs (joint, coordinate).
+        closed_at: cut joints that were asked for instead of the best ones.
+        built: the plan, where it is not that of the layout alone.
+        varied: the readout of some quantities, where their constants follow from those of another
+            structure.
+    """
+
+    layout: Layout
+    driven: tuple[Coordinate, ...]
+    closed_at: tuple[str, ...] | None = None
+    built: Plan | None = None
+    varied: Callable[[tuple[Wanted, ...]], Readout] | None = None
+    memo: Memo = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def plan(self) -> Plan:
-        """The frozen plan; residual and condition in parts of `size` (m; None: the drawing's)."""
-        return self.layout.build()
+        """The frozen plan; residual and condition in parts of the drawing's size."""
+        return self.layout.build() if self.built is None else self.built
 
     @cached_property
     def turn_slots(self) -> TurnSlots:
         """Where the turns of angles stand among `Followed.turns`."""
         return TurnSlots.of(self.plan)
 
+    @remembered
+    def readout(self, wanted: tuple[Wanted, ...], points: tuple[Attached, ...]) -> Readout:
+        """The outputs that give some quantities, and the places of some points."""
+        if self.varied is not None and not points:
+            return self.varied(wanted)
+        outputs = OutputPlan(self.layout, self.plan, self.driven)
+        for quantity in wanted:
+            outputs.add(quantity)
+        slots = [outputs.add_point(at, 0) for at in points]
+        return Readout(outputs.outputs, outputs.slots, slots)
+
+    @remembered
+    def search(self, inputs: Floats, turns: int, about: Floats, thorough: bool) -> Assemblies:
+        """All assemblies at some inputs (inputs,) that random starts find, threads within `turns`
+        to either side of `about` (states,); not `thorough`: most of them."""
+        from mechkin_cli.search import assemblies
+
+        return assemblies(self.layout, self.plan, inputs, turns, None, about, thorough)
+
+
+@dataclass(frozen=True, eq=False)
+class Session:
+    """A problem in the kernel; `Session.of` makes one.
+
+    Attributes:
+        problem: mechanism, motion and assembly.
+        structure: the mechanism in the kernel.
+        first: how the first assembly is found.
+        size: residual and condition are in parts of it (m); None: of the drawing's.
+        packing: how rows are packed.
+        text: gives the numbers as the file says them, where the problem is that of a file.
+        constants: of the plan, where they are not those of the structure.
+        own_inputs: the inputs of all rows, where they are known.
+    """
+
+    problem: Problem
+    structure: Structure
+    first: First = None
+    size: float | None = None
+    packing: Packing = Packing()
+    text: Callable[[], Precise] | None = None
+    constants: Floats | None = None
+    own_inputs: KernelInputs | None = None
+    memo: Memo = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        problem: Problem,
+        graph: SolverGraph | None = None,
+        *,
+        driven: Sequence[Coordinate] | None = None,
+        closed_at: Sequence[str] | None = None,
+        packing: Packing = Packing(),
+    ) -> Session:
+        """The session of a problem.
+
+        Args:
+            problem: mechanism, motion and assembly.
+            graph: its solver graph; None builds the best one.
+            driven: the inputs, where they are not those of the problem's motion and what is locked.
+            closed_at: cut joints to use instead of the best ones.
+            packing: how rows are packed.
+
+        Raises:
+            UnsolvableGraph: the mechanism cannot be solved as it is driven.
+        """
+        inputs = list(problem.driven if driven is None else driven)
+        graph = graph or build_graph(problem.solved_mechanism, inputs, closed_at)
+        layout = Layout(problem.laid_mechanism, graph, laws=problem.laws)
+        cuts = None if closed_at is None else tuple(closed_at)
+        return cls(problem, Structure(layout, tuple(inputs), cuts), packing=packing)
+
+    @property
+    def layout(self) -> Layout:
+        """How the mechanism lies in the kernel."""
+        return self.structure.layout
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, cut joints and blocks."""
+        return self.structure.layout.graph
+
+    @property
+    def driven(self) -> tuple[Coordinate, ...]:
+        """The inputs (joint, coordinate), with what is locked."""
+        return self.structure.driven
+
+    @property
+    def closed_at(self) -> tuple[str, ...] | None:
+        """Cut joints that were asked for instead of the best ones."""
+        return self.structure.closed_at
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The frozen plan; residual and condition in parts of `size` (m; None: the drawing's)."""
+        plan = self.structure.plan
+        if self.constants is not None:
+            plan = plan.with_constants(self.constants)
+        return plan if self.size is None else plan.with_size(self.size)
+
+    @property
+    def turn_slots(self) -> TurnSlots:
+        """Where the turns of angles stand among `Followed.turns`."""
+        return self.structure.turn_slots
+
     @cached_property
     def inputs(self) -> KernelInputs:
         """The inputs of all rows of the problem's motion."""
+        if self.own_inputs is not None:
+            return self.own_inputs
         return kernel_inputs(self.problem, self.layout)
 
     @cached_property
@@ -150,6 +230,7 @@ class Session(Keeping):
         units = [input_unit(self.layout, item) for item in self.problem.motion.inputs]
         return Route(course, self.inputs.values, np.array(units))
 
+    @remembered
     def tie(self, number: int, row: int = 0) -> InputTie | None:
         """What follows input `number` where all others stand as in a row; None where nothing
         does."""
@@ -159,7 +240,7 @@ class Session(Keeping):
             return None
         from mechkin_cli.session.path import InputTie
 
-        return self.once(("tie", number, row), lambda: InputTie(self, tapes[name], number, row))
+        return InputTie(self, tapes[name], number, row)
 
     @cached_property
     def tie_rates(self) -> Floats | None:
@@ -177,10 +258,9 @@ class Session(Keeping):
         """Whether some loop has more closing equations than unknowns."""
         return is_redundant(self.graph)
 
-    def reading(self, text: Callable[[], Precise]) -> Self:
-        """This session, which now knows where its numbers are written."""
-        self.text = text
-        return self
+    def reading(self, text: Callable[[], Precise]) -> Session:
+        """This session with where its numbers are written."""
+        return replace(self, text=text)
 
     @property
     def precise(self) -> Precise:
@@ -195,77 +275,78 @@ class Session(Keeping):
             raise LookupError("this session is of no file")
         return self.text()
 
-    def of(self, problem: Problem, graph: SolverGraph | None = None) -> Session:
-        """A session of another problem with the same choices."""
-        other = Session(problem, graph, closed_at=self.closed_at, packing=self.packing)
-        other.text = self.text
-        return other
+    def of_problem(self, problem: Problem, graph: SolverGraph | None = None) -> Session:
+        """The session of another problem with the same choices."""
+        other = Session.of(problem, graph, closed_at=self.closed_at, packing=self.packing)
+        return replace(other, text=self.text)
 
     def loaded(self, problem: Problem) -> Session:
-        """A session of a problem that differs in masses and loads alone: the same states serve."""
-        other = self.of(problem, self.graph)
-        other.__dict__["layout"] = Layout(
-            problem.laid_mechanism, self.graph, self.layout.length, laws=problem.laws
-        )
+        """The session of a problem that differs only in masses and loads; the same states serve."""
+        own = self.layout
+        laid = Layout(problem.laid_mechanism, self.graph, own.length, laws=problem.laws)
+        structure = Structure(laid, tuple(problem.driven), self.closed_at)
         # efforts that actuators share go by the size
-        return other if self.size is None else other.sized(self.size)
+        return Session(problem, structure, None, self.size, self.packing, self.text)
+
+    def exchanged(self, graph: SolverGraph) -> Session:
+        """The same mechanism with other inputs: those of a graph with the same edges."""
+        own = self.layout
+        laid = Layout(own.mechanism, graph, own.length, laws=own.laws)
+        structure = Structure(laid, tuple(graph.driven), self.closed_at)
+        return Session(self.problem, structure, None, self.size, self.packing, self.text)
 
     def derived(self, make: Callable[[Session], Problem]) -> Session:
-        """The session of a problem that follows from this session's."""
-        return self.of(make(self))
+        """The session of a problem that follows from this session's; a first assembly that is
+        continued comes from the session that follows in the same way from its base."""
+        other = self.of_problem(make(self))
+        if not isinstance(self.first, ContinuedFrom):
+            return other
+        base, between = self.first.base.derived(make), self.first.between
+        return other.continuing(base, lambda place: between(place).derived(make))
 
+    def continuing(self, base: Session, between: Callable[[float], Session]) -> Session:
+        """This session with its first assembly, and its length unit, from those of a base."""
+        own = self.layout
+        laid = Layout(own.mechanism, self.graph, base.layout.length, own.laws)
+        structure = replace(self.structure, layout=laid)
+        return replace(self, structure=structure, first=ContinuedFrom(base, between))
+
+    @remembered
     def packed(self, packing: Packing) -> Session:
         """The same session with rows packed otherwise."""
         if packing == self.packing:
             return self
-        return self.own(("packed", packing), lambda: self._changed(packing=packing))
+        return replace(self, packing=packing, own_inputs=self.inputs)
 
     def sized(self, size: float) -> Session:
         """The same session with residual and condition in parts of another size (m)."""
         if size == self.size:
             return self
-        other = self._changed(size=size)
-        other.__dict__["plan"] = self.plan.with_size(size)
-        return other
+        return replace(self, size=size, own_inputs=self.inputs)
 
     def with_constants(self, constants: Floats) -> Session:
         """The same session with other constants of its plan."""
-        other = self._changed()
-        other.__dict__["plan"] = self.plan.with_constants(constants)
-        return other
+        return replace(self, constants=constants, own_inputs=self.inputs)
 
     def assembled(self, assembly: Assembly) -> Session:
         """The same session with another choice of the first assembly."""
-        return self._changed(problem=replace(self.problem, assembly=assembly), continued=None)
+        return replace(
+            self, problem=replace(self.problem, assembly=assembly), first=None, own_inputs=None
+        )
+
+    @remembered
+    def in_mode(self, mode: str) -> Session:
+        """The same session with the first assembly in a mode by its letter."""
+        return self.assembled(replace(self.problem.assembly, mode=mode))
 
     def moved(self, problem: Problem) -> Session:
         """The same session with other values of its inputs: of a problem that differs in its motion
         alone."""
-        other = self._changed(problem=problem)
-        other.__dict__.pop("inputs", None)
-        other.__dict__.pop("route", None)
-        return other
-
-    def _changed(self, **changes: object) -> Session:
-        """A session that shares graph, layout, plan, inputs and what was found."""
-        _ = self.plan  # made before it is shared: outputs belong to one structure
-        other = object.__new__(type(self))
-        other.__dict__.update(self.__dict__)
-        other.__dict__.update(changes)
-        other._own = {}
-        return other
+        return replace(self, problem=problem, own_inputs=None)
 
     def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
         """The outputs that give some quantities, and the places of some points."""
-        wanted, points = tuple(wanted), tuple(points)
-        key = (tuple(quantity.name for quantity in wanted), points)
-        if key not in self._readouts:
-            outputs = OutputPlan(self.layout, self.plan, self.driven)
-            for quantity in wanted:
-                outputs.add(quantity)
-            slots = [outputs.add_point(at, 0) for at in points]
-            self._readouts[key] = Readout(outputs.outputs, outputs.slots, slots)
-        return self._readouts[key]
+        return self.structure.readout(tuple(wanted), tuple(points))
 
     def close(self, inputs: Floats, guess: Floats, demand: Demand = Demand.POSITION) -> Batch:
         """Closes the loops at some inputs (inputs, places) from guesses (states, places)."""
@@ -305,9 +386,14 @@ class Session(Keeping):
             path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
             return self.follow(path, start, every_row=every_row, turns=True, whole=whole)
         straight = self.problem.assembly.straight
-        route = self.route
-        way = self.own(("way", row, step), lambda: route.way(row, step))
+        way = self._path(row, step)
         return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
+
+    @remembered
+    def _path(self, row: int, step: int) -> FollowedPath:
+        """The path along all rows from a row on, or with step -1 back."""
+        assert self.route is not None
+        return self.route.way(row, step)
 
     def follow_way(self, way: FollowedPath, start: Floats) -> Followed:
         """Follows the branch through `start` (states,) along a way of all inputs."""
@@ -318,22 +404,14 @@ class Session(Keeping):
     ) -> Assemblies:
         """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
         not `thorough`: most of them, where one is wanted."""
-        from mechkin_cli.search import assemblies
-
         turns, about = self.problem.assembly.turns, self._named_turns()
         if within is not None:
+            from mechkin_cli.search import assemblies
+
             return assemblies(self.layout, self.plan, inputs, turns, within, about, thorough)
-
-        def find(thorough: bool) -> Assemblies:
-            key = ("search", inputs.tobytes(), turns, about.tobytes(), thorough)
-            return self.once(
-                key,
-                lambda: assemblies(self.layout, self.plan, inputs, turns, None, about, thorough),
-            )
-
-        quick = find(thorough=False)
+        quick = self.structure.search(inputs, turns, about, False)
         final = quick.complete or quick.cut or not thorough
-        return quick if final else find(thorough=True)
+        return quick if final else self.structure.search(inputs, turns, about, True)
 
     def _named_turns(self) -> Floats:
         """States (states,): the turns of threads that the assembly's `near` names, else zero."""

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         UnsolvableGraph as UnsolvableGraph,
         is_redundant as is_redundant,
         listed as listed,
+        structure_of as structure_of,
     )
     from mechkin_cli.structure.network import whole_link as whole_link
     from mechkin_cli.structure.random_starts import RandomStarts as RandomStarts
@@ -44,6 +45,7 @@ __getattr__, __dir__ = lazy_names(
             "UnsolvableGraph",
             "is_redundant",
             "listed",
+            "structure_of",
         ],
         "network": ["whole_link"],
         "random_starts": ["RandomStarts"],

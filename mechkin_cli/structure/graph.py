@@ -191,3 +191,10 @@ def undriven(
 
 def _joints(c: Connection) -> tuple[str, ...]:
     return (c.name,) if c.leg is None else c.leg.joints
+
+
+def structure_of(graph: SolverGraph) -> object:
+    """What two graphs of the same structure have in common."""
+    edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
+    closings = tuple((closing.joint.name, closing.loop) for closing in graph.closings)
+    return edges, closings, graph.blocks, graph.inputs

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.assembly import PlacesBefore, at_unit_rate, left_for, unit_rates
+from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import precise_inputs
@@ -90,7 +90,7 @@ def _chosen(
         nearest = seen[np.argmin(np.abs(seen - row))]
         return [ways[0 if along[nearest] > 0.0 else 1]]
     # a variant's branch is the base's, which `near` names where the base stands
-    if not session.problem.assembly.near or session.continued is not None:
+    if not session.problem.assembly.near or continued_start(session) is not None:
         return ways
     from mechkin_cli.assembly import distances_of, is_unclear
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import needs_all_links
 from mechkin_cli.structure import SolverGraph
 
@@ -29,10 +30,12 @@ def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
     left_out = tuple(b for b in range(len(session.graph.blocks)) if b not in needed)
     if not left_out:
         return session
-    key = ("part", left_out)
-    return session.once(
-        key, lambda: session.derived(lambda whole: _part(whole.problem, whole.graph, left_out))
-    )
+    return _without_blocks(session, left_out)
+
+
+@remembered
+def _without_blocks(session: Session, left_out: tuple[int, ...]) -> Session:
+    return session.derived(lambda whole: _part(whole.problem, whole.graph, left_out))
 
 
 def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Problem:

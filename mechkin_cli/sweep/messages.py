@@ -18,6 +18,7 @@ from mechkin_cli.mechanism import (
     quantities_read,
     undefined_laws,
 )
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
@@ -52,7 +53,7 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     A thread that advances with the turn, and what moves with it, is not meant to be. `states`
     (states, rows) in kernel units.
     """
-    turns = session.own("turns", lambda: _whole_turns(session))
+    turns = _whole_turns(session)
     turn = next((turn for turn in turns if reached[turn.row]), None)
     if turn is None or not reached[0] or not stands_elsewhere(session, states[:, [0, turn.row]]):
         return None
@@ -66,6 +67,7 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     )
 
 
+@remembered
 def _whole_turns(session: Session) -> list[_Turn]:
     """The rows that are whole turns of the one moving input away from the first, in order."""
     inputs = session.inputs.values

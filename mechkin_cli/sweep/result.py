@@ -52,24 +52,28 @@ class Proven:
 
     session: Session
     row_states: SweepRows
+    _certificate: SweepProofs | None = None
     if TYPE_CHECKING:
 
         @cached_property
         def solved(self) -> Bools:
             """Rows that have a position (rows,)."""
 
-    @cached_property
+    @property
     def certificate(self) -> SweepProofs:
         """What is proven of the rows."""
-        from mechkin_cli.proofs import certify
+        if self._certificate is None:
+            from mechkin_cli.proofs import certify
 
-        rows = self.row_states
-        return certify(self.session, rows.states, self.solved & rows.reached, rows.ends)
+            rows = self.row_states
+            solved = self.solved & rows.reached
+            self._certificate = certify(self.session, rows.states, solved, rows.ends)
+        return self._certificate
 
     @property
     def is_certified(self) -> bool:
         """Whether proofs have been asked for."""
-        return "certificate" in self.__dict__
+        return self._certificate is not None
 
     @property
     def proven_way(self) -> tuple[bool, int]:
@@ -384,8 +388,7 @@ class Result(Proven):
             return
         columns, outputs = self._split(wanted, batch, self.session), batch.outputs
         assert outputs is not None
-        slots = self.session.readout(wanted).slots
-        self._rests |= make_continuous(self, wanted, slots, outputs)
+        self._rests |= make_continuous(self, wanted, outputs)
         self._columns |= columns
         self.friction.judge(self, wanted, demand)
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]

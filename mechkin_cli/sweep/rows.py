@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import pi
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import is_angle
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import ORIENTATION, continuous_angle, turn_count
 from mechkin_cli.verdict import Status
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart, PlacesBefore
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.plan import Slot
     from mechkin_cli.session import EndOfRows, Followed, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.result import Columns, Result
@@ -217,17 +217,14 @@ class _Angles:
     closing: _Turning = field(default_factory=_Turning)
 
 
-def make_continuous(
-    result: Result, wanted: Sequence[Wanted], slots: Mapping[str, Slot], outputs: Floats
-) -> Columns:
+def make_continuous(result: Result, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
     """Makes the angles among some outputs (outputs, rows) continuous from the first row, in place.
 
     Returns:
         What they are within a turn, of those that have turns.
     """
     rows, session = result.row_states, result.session
-    key = ("angles", tuple(quantity.name for quantity in wanted))
-    angles = session.own(key, lambda: _angles(session, wanted, slots))
+    angles = _angles(session, tuple(wanted))
     reached = rows.reached
     for output, number in zip(angles.driven.outputs, angles.driven.turns, strict=True):
         values = result.problem.motion.inputs[number].values
@@ -247,8 +244,9 @@ def make_continuous(
     return rests
 
 
-def _angles(session: Session, wanted: Sequence[Wanted], slots: Mapping[str, Slot]) -> _Angles:
-    found, layout = _Angles(), session.layout
+@remembered
+def _angles(session: Session, wanted: tuple[Wanted, ...]) -> _Angles:
+    found, layout, slots = _Angles(), session.layout, session.readout(wanted).slots
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
         name, output = quantity.name, slots[quantity.name].first

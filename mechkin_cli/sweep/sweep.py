@@ -21,6 +21,7 @@ from mechkin_cli.mechanism import (
     find_legs,
     read_for,
 )
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.session import assembly_size, moves_freely, places_at
 from mechkin_cli.sweep.friction import judged_by
@@ -68,24 +69,20 @@ class SweepQuantities:
     rests_on_reactions: bool
 
 
-def question(session: Session, asked: Sequence[Wanted], *, verdicts: bool) -> SweepQuantities:
+@remembered
+def question(session: Session, asked: tuple[Wanted, ...], *, verdicts: bool) -> SweepQuantities:
     """What a session is asked; `verdicts`: each row's condition, and its power error where forces
     are computed."""
-
-    def worked_out() -> SweepQuantities:
-        problem, everything = session.problem, list(asked)
-        everything += held_moments(problem, everything)
-        everything += watched(problem, everything)
-        wanted, demand = at_once(session, everything, verdicts)
-        return SweepQuantities(
-            tuple(everything),
-            (*wanted, *judged_by(problem, wanted, demand)),
-            demand,
-            rest_on_reactions(problem, everything),
-        )
-
-    key = ("question", tuple(quantity.name for quantity in asked), verdicts)
-    return session.own(key, worked_out)
+    problem, everything = session.problem, list(asked)
+    everything += held_moments(problem, everything)
+    everything += watched(problem, everything)
+    wanted, demand = at_once(session, everything, verdicts)
+    return SweepQuantities(
+        tuple(everything),
+        (*wanted, *judged_by(problem, wanted, demand)),
+        demand,
+        rest_on_reactions(problem, everything),
+    )
 
 
 def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -144,7 +141,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         from mechkin_cli.sweep.branch_end import input_faults
 
         start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
-    wanted = question(session, asked, verdicts=verdicts)
+    wanted = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, wanted)
     result.read(wanted.asked)
     result.row_states.diagnostics += row_notes(
@@ -159,7 +156,7 @@ def closed_rows(
 ) -> Result:
     """The rows of a session on the branch through the start, with what is asked for and their
     conditions where `verdicts` are, too."""
-    wanted = question(session, asked, verdicts=verdicts)
+    wanted = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, wanted)
     result.read(wanted.asked)
     return result
@@ -170,11 +167,16 @@ def first_assembly(session: Session) -> tuple[Session, AssemblyStart]:
     start = choose_start(session)
     if start.state is None or session.size is not None:
         return session, start
-    inputs, state = session.inputs.reduced[:, start.row], start.state
-    return session.own(
-        "in parts of its size",
-        lambda: session.sized(assembly_size(session.plan, inputs, state)),
-    ), start
+    return _in_parts_of_its_size(session), start
+
+
+@remembered
+def _in_parts_of_its_size(session: Session) -> Session:
+    """The session with residual and condition in parts of the size of its first assembly."""
+    start = choose_start(session)
+    assert start.state is not None
+    inputs = session.inputs.reduced[:, start.row]
+    return session.sized(assembly_size(session.plan, inputs, start.state))
 
 
 def _followed_part(session: Session, asked: list[Wanted]) -> Session:
@@ -316,6 +318,13 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     return [known[name] for name in quantities_read(result.problem)]
 
 
+@remembered
+def _conventional_notes(session: Session, read: tuple[Wanted, ...]) -> list[Diagnostic]:
+    from mechkin_cli.idle import conventional_notes
+
+    return conventional_notes(session.problem, read)
+
+
 def row_notes(
     result: Result, asked: Sequence[Wanted], *, rests_on_reactions: bool
 ) -> list[Diagnostic]:
@@ -324,7 +333,6 @@ def row_notes(
     notes: list[Diagnostic] = []
     if find_legs(problem.mechanism) or problem.held:
         from mechkin_cli.idle import (
-            conventional_notes,
             holding_notes,
             idle_freedoms,
             nearly_common_notes,
@@ -332,8 +340,7 @@ def row_notes(
 
         notes += nearly_common_notes(problem)
         read = [*asked, *_read_by_loads(result)]
-        key = ("conventional", tuple(quantity.name for quantity in read))
-        notes += session.own(key, lambda: conventional_notes(problem, read))
+        notes += _conventional_notes(session, tuple(read))
         if problem.hold_idle:
             named = {idle.holding for idle in idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}

@@ -7,6 +7,7 @@ the latter (mechkin_cli/uniqueness.py).
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,8 +35,9 @@ def told_anew(result: Result, name: str, count: int) -> tuple[Result, ...]:
     """The same rows with other reactions, told apart by the numbers in an attribute."""
     found = []
     for number in range(count):
-        other = object.__new__(type(result))
-        other.__dict__.update(result.__dict__, alternatives=(), disturbed=(), **{name: number})
+        other = copy(result)  # of the same rows, with what has been read of them
+        other.alternatives = other.disturbed = ()
+        setattr(other, name, number)
         found.append(other)
     return tuple(found)
 

@@ -6,7 +6,6 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.variants.anew import structure_of as structure_of
     from mechkin_cli.variants.many import (
         Reduce as Reduce,
         Variants as Variants,
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "anew": ["structure_of"],
         "many": ["Reduce", "Variants", "expressions_of", "sample_of", "vary", "way_of"],
         "model": [
             "Base",

@@ -20,14 +20,13 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, Usage
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.model import Model
-from mechkin_cli.session import Session
-from mechkin_cli.structure import SolverGraph
+from mechkin_cli.session import Continued, Session
+from mechkin_cli.structure import SolverGraph, structure_of
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost, Verdict
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import LENGTH
-from mechkin_cli.variants.anew import AnewSession, structure_of
-from mechkin_cli.variants.variation import FirstAssembly, SessionVariation, VariedSession
+from mechkin_cli.variants.variation import FirstAssembly, SessionVariation, varied_session
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -263,16 +262,18 @@ class VariedModel(Model):
         """The mechanism in the kernel."""
         if self._variation is None:
             base = self._base.model.session
-            anew = AnewSession(self.problem, self.graph, base, self._between)
-            return anew.reading(lambda: self.precise)
-        varied = VariedSession(self._variation, self._row, self.problem, self._base.start)
-        if varied.continued is not None and varied.continued.state is None:
+            own = Session.of(
+                self.problem, self.graph, closed_at=base.closed_at, packing=base.packing
+            )
+            return own.continuing(base, self._between).reading(lambda: self.precise)
+        varied = varied_session(self._variation, self._row, self.problem, self._base.start)
+        if isinstance(varied.first, Continued) and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
             fresh = self._base.built(self._values)
             if isinstance(fresh.graph, Diagnostic):
                 raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
             if structure_of(fresh.graph) != structure_of(varied.graph):
-                return Session(fresh.problem, fresh.graph)
+                return Session.of(fresh.problem, fresh.graph)
         return varied.reading(lambda: self.precise)
 
     @cached_property
@@ -298,7 +299,7 @@ class VariedModel(Model):
         built = self._base.built(values)
         if isinstance(built.graph, Diagnostic):
             raise InvalidFile([*built.problem.diagnostics, built.graph])
-        return Session(built.problem, built.graph)
+        return Session.of(built.problem, built.graph)
 
     @property
     def graph(self) -> SolverGraph:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ from mechkin_cli.session import (
     Continued,
     KernelInputs,
     Session,
+    Structure,
     angle_slots,
     kernel_inputs,
     step_limits,
@@ -43,7 +44,7 @@ from mechkin_cli.tape import (
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.mechanism import Attached, Wanted
+    from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import Recorder
 
@@ -221,9 +222,7 @@ class SessionVariation:
             motion=motion,
             parameters=parameters,
         )
-        known = self.base.problem.quantities()
-        problem.__dict__["_quantities"] = known
-        return problem
+        return problem.with_quantities_of(self.base.problem)
 
     def plan(self, values: Floats, size: float) -> _kernel.Plan:
         """The plan of one variant; residual and condition in parts of `size` (m)."""
@@ -256,8 +255,10 @@ def _flat(tables: Sequence[Any]) -> list[Any]:
 # The session of one variant: the base's structure with other constants.
 
 
-class VariedSession(Session):
-    """A session whose first assembly is continued from the base's.
+def varied_session(
+    variation: SessionVariation, values: Floats, problem: Problem, start: FirstAssembly
+) -> Session:
+    """The session of a variant whose first assembly is continued from the base's.
 
     Args:
         variation: how the base depends on the parameters.
@@ -265,34 +266,30 @@ class VariedSession(Session):
         problem: its problem.
         start: the base's first assembly.
     """
+    base = variation.base
+    graph = graph_of(problem.solved_mechanism, base.graph)
+    end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
+    lost = end != VariantEnd.COMPLETE
+    structure = Structure(
+        Layout(problem.laid_mechanism, graph, base.layout.length, problem.laws),
+        base.driven,
+        base.closed_at,
+        built=variation.plan(values, start.size if lost else size),
+        varied=partial(_varied_readout, variation, values),
+    )
+    return Session(
+        problem,
+        structure,
+        first=Continued(None if lost else np.asarray(state), start.row),
+        size=start.size if lost else size,
+        packing=base.packing,
+        own_inputs=variation.inputs(values),
+    )
 
-    def __init__(
-        self, variation: SessionVariation, values: Floats, problem: Problem, start: FirstAssembly
-    ) -> None:
-        base = variation.base
-        self.__dict__.update(base.__dict__)
-        self.variation = variation
-        self.values = values
-        self.problem = problem
-        self.graph = graph_of(problem.solved_mechanism, base.graph)
-        for found in ("plan", "layout", "inputs", "route"):
-            self.__dict__.pop(found, None)
-        self._readouts, self._kept, self._own = {}, {}, {}
-        end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
-        lost = end != VariantEnd.COMPLETE
-        self.continued = Continued(None if lost else np.asarray(state), start.row)
-        self.size = base.size if lost else size
-        self.layout = Layout(problem.laid_mechanism, self.graph, base.layout.length, problem.laws)
-        self.plan = variation.plan(values, start.size if lost else size)
-        self.inputs = variation.inputs(values)
 
-    def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
-        """As `Session.readout`; constants of quantities are replayed."""
-        wanted, points = tuple(wanted), tuple(points)
-        key = (tuple(quantity.name for quantity in wanted), points)
-        if points or key in self._readouts:
-            return super().readout(wanted, points)
-        reading = self.variation.reading(wanted)
-        found = reading.readout._replace(outputs=reading.outputs(self.values))
-        self._readouts[key] = found
-        return found
+def _varied_readout(
+    variation: SessionVariation, values: Floats, wanted: tuple[Wanted, ...]
+) -> Readout:
+    """Outputs whose constants are replayed."""
+    reading = variation.reading(wanted)
+    return reading.readout._replace(outputs=reading.outputs(values))

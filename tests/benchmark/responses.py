@@ -396,7 +396,7 @@ def sweep_cases() -> dict[str, tuple[str, str]]:
 
 def sweep_call(text: str, effort: str) -> Callable[[], object]:
     """The kernel's run of `BATCH` rows with the input's effort, verdicts included."""
-    result = analyze(Session(mk.loads(text).problem), [effort])
+    result = analyze(Session.of(mk.loads(text).problem), [effort])
     known, session = result.problem.quantities(), result.session
     wanted, demand = at_once(session, [known[effort]], verdicts=True)
     wanted += result.friction.beside(result.problem, wanted, demand)

@@ -265,7 +265,7 @@ def test_the_closing_joint_does_not_change_the_count(family: str) -> None:
         problem = mk.loads(text([case])).problem
         for k in range(1, len(case.joints)):
             try:
-                session = Session(problem, closed_at=[f"J0_{k}"])
+                session = Session.of(problem, closed_at=[f"J0_{k}"])
             except UnsolvableGraph:
                 continue
             found = session.search(session.inputs.values[:, 0])

@@ -37,7 +37,7 @@ class Searched:
     """A mechanism of one block, searched with starts of its own."""
 
     def __init__(self, text: str) -> None:
-        session = Session(mk.loads(text).problem)
+        session = Session.of(mk.loads(text).problem)
         self.layout = session.layout
         self.inputs = session.inputs.values[:, 0]
         middle = np.zeros(session.layout.states)
@@ -94,7 +94,7 @@ def test_the_bound_holds_at_every_look(name: str, monkeypatch: pytest.MonkeyPatc
 
 def test_the_words_say_what_the_search_knows() -> None:
     """A search that stops early finds fewer than forty, and its bound covers the rest of them."""
-    session = Session(mk.loads(forty()).problem)
+    session = Session.of(mk.loads(forty()).problem)
     few = assemblies(session.layout, session.plan, session.inputs.values[:, 0], thorough=False)
     assert few.number < 40
     assert not few.complete

@@ -275,7 +275,7 @@ def test_turns_of_a_fast_screw_and_its_spring(
     for rng in cases(round(1 / lead), 2):
         order = rng.sample(range(6), 6)
         problem = loads(lead_screw(lead, order, rng.random() < 0.5)).problem
-        session = Session(problem, closed_at=None if closed_at is None else list(closed_at))
+        session = Session.of(problem, closed_at=None if closed_at is None else list(closed_at))
         result = analyze(session, ["R.theta", "H.theta", "A.effort"])
         assert result.complete
         for name in ("R.theta", "H.theta"):
@@ -387,7 +387,7 @@ def test_the_closing_joint_changes_no_angle(name: str) -> None:
     driven = problem.motion.inputs[0].joint
     found = []
     for joint in [None, *(joint for joint in problem.mechanism.joints if joint != driven)]:
-        session = Session(problem, closed_at=None if joint is None else [joint])
+        session = Session.of(problem, closed_at=None if joint is None else [joint])
         result = analyze(session, names)
         assert result.complete, joint
         found.append(np.stack([np.asarray(result.quantity(name).value) for name in names]))

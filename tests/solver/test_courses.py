@@ -103,7 +103,7 @@ def test_a_dead_centre_is_named_with_its_time() -> None:
 
 def test_rows_have_their_own_inputs_bit_for_bit() -> None:
     model = mk.loads(FULL.text(swept(333.0, 14, "0.9 rad*sin(A.theta)")))
-    session = Session(model.problem)
+    session = Session.of(model.problem)
     assert session.route is not None
     for row, step in ((0, 1), (13, -1), (5, -1)):
         way = session.route.way(row, step)
