@@ -2,7 +2,7 @@
 
 import mechkin_cli as mk
 
-m = mk.load("mechanisms/rcsr.yaml")    a Model: the checked file; also a dict of its sections
+m = mk.load("rcsr.yaml")               a Model: the checked file; also a dict of its sections
 m = mk.loads(text)                     the same from a text
 r = m.analyze()                        an Analysis: the sweep; m.respond("NAME"): a response
 
@@ -84,3 +84,8 @@ def __getattr__(name: str) -> Any:
     from importlib import import_module
 
     return getattr(import_module(f"{__name__}.{_PLACES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """The public names, for `dir(mk)` and tab completion."""
+    return list(__all__)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from oracle import document, with_links
 from oracle.document import Document
-from references import MECHANISMS
+from references import FILE_OF
 
 
 class Crank(NamedTuple):
@@ -29,7 +29,7 @@ CRANKS = {
 
 def plain(name: str) -> Document:
     """The mechanism alone, without what is written of it."""
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     return {key: value for key, value in data.items() if key not in ("tables", "follow")}
 
 

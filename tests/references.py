@@ -6,7 +6,7 @@ Newton-Euler; `author_*` follow the inertia couples of the dissertation, which a
 reproduce its print. Other files of `exact/` have kinematics only, angles in degrees; how their
 branches are chosen is said where they are used. `raised/` has the kinematics of these tables, and
 reactions of the RCSR, at 60 digits (`python -P tests/precise/raised`). Cells as printed stand
-beside the mechanisms, in `mechanisms/*/published/*.csv`.
+beside the mechanisms, in `mechanisms/*/*/published/*.csv`.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from pathlib import Path
 
 FOLDER = Path(__file__).parent / "reference"
 MECHANISMS = Path(__file__).parent.parent / "mechanisms"
-RCSR = MECHANISMS / "rcsr.yaml"
-SWEPT = sorted(
-    path for path in MECHANISMS.glob("*.yaml") if "\nmotion:\n" in path.read_text(encoding="utf-8")
-)
+FILE_OF = {path.stem: path for path in sorted(MECHANISMS.glob("*/*.yaml"), key=lambda p: p.name)}
+"""The kept mechanisms by the stems of their names, whatever folder they lie in."""
+
+RCSR = FILE_OF["rcsr"]
+SWEPT = [path for path in FILE_OF.values() if "\nmotion:\n" in path.read_text(encoding="utf-8")]
 """Mechanism files that have a sweep; others have responses alone."""
 
 
@@ -33,18 +34,20 @@ def exact(name: str) -> dict[str, list[str]]:
 @cache
 def published(name: str) -> dict[str, list[str]]:
     """The columns of `published/<name>.csv` by header, as printed."""
-    (path,) = MECHANISMS.glob(f"*/published/{name}.csv")
+    (path,) = MECHANISMS.glob(f"*/*/published/{name}.csv")
     return _columns(path)
 
 
 def committed(stem: str, table: str) -> list[dict[str, str]]:
     """The rows of a table kept beside its mechanism, by label."""
-    with (MECHANISMS / stem / f"{table}.csv").open(newline="", encoding="utf-8") as file:
+    with (FILE_OF[stem].with_suffix("") / f"{table}.csv").open(
+        newline="", encoding="utf-8"
+    ) as file:
         return list(csv.DictReader(file))
 
 
 def published_names() -> list[str]:
-    return sorted(path.stem for path in MECHANISMS.glob("*/published/*.csv"))
+    return sorted(path.stem for path in MECHANISMS.glob("*/*/published/*.csv"))
 
 
 def _columns(path: Path) -> dict[str, list[str]]:

@@ -8,7 +8,7 @@ from references import RCSR
 
 from mechkin_cli import tolerances
 
-ROOT = RCSR.parent.parent
+ROOT = RCSR.parents[2]
 PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
 NAMES = [str(page.relative_to(ROOT)) for page in PAGES]
 FENCES = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

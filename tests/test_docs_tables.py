@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from references import RCSR
 
-DOCS = RCSR.parent.parent / "docs"
+DOCS = RCSR.parents[2] / "docs"
 # a block ends at its own fence: else two blocks would be one, with the words between them
 BLOCK = r"((?:(?!```).*\n)*)```"
 SHOWN = re.compile(rf"^```yaml\n{BLOCK}\n\n```text\n{BLOCK}$", re.MULTILINE)

@@ -9,7 +9,7 @@ import pytest
 from documents.reading import ROOT, blocks, page, ran
 
 import mechkin_cli as mk
-from mechkin_cli.cli.analyze import analyze_files
+from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
 README = page("README.md")
 LONGEST = 120
@@ -44,7 +44,7 @@ def test_the_gate_runs_the_command_lines_of_the_readme(marker: str) -> None:
     assert block == f"{found}\n"
     assert found.startswith("python3 -m venv .venv && .venv/bin/pip install -q ")
     ending = {
-        "main": ".venv/bin/mechkin analyze mechanisms/rcsr.yaml",
+        "main": ".venv/bin/mechkin analyze mechanisms/dissertation/rcsr.yaml",
         "tests": ".venv/bin/pytest -n auto --dist loadfile",
     }
     assert found.endswith(ending[marker])
@@ -56,7 +56,7 @@ def test_what_the_example_prints(
     (text,) = blocks(README, "yaml")
     monkeypatch.chdir(tmp_path)
     Path("readme.yaml").write_text(text, encoding="utf-8")
-    analyze_files([Path("readme.yaml")], None, [])
+    analyze_files(AnalyzeCommand([Path("readme.yaml")], None, []))
     said = capsys.readouterr()
     assert said.out + said.err in blocks(README, "text")
 

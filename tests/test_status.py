@@ -1,5 +1,7 @@
 """The verdicts on rows."""
 
+from pathlib import Path
+
 import pytest
 
 from mechkin_cli.verdict import Status
@@ -33,3 +35,9 @@ def test_every_status_has_a_sentence(status):
 def test_rows_with_a_position_have_a_solution():
     solved = {status.label for status in Status if status.has_solution}
     assert solved == {"ok", "near-singular", "rank-unclear", "friction-undecided", "dead-centre"}
+
+
+@pytest.mark.parametrize("status", Status)
+def test_the_page_explains_every_status(status: Status) -> None:
+    page = (Path(__file__).parents[1] / "docs" / "verdicts.md").read_text(encoding="utf-8")
+    assert f"`{status.label}`" in page

@@ -6,6 +6,11 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.assembly.distances import (
+        AssemblyStart as AssemblyStart,
+        distances_of as distances_of,
+        is_unclear as is_unclear,
+    )
     from mechkin_cli.assembly.fold import (
         PlacesBefore as PlacesBefore,
         at_unit_rate as at_unit_rate,
@@ -26,11 +31,8 @@ if TYPE_CHECKING:
         HOME as HOME,
         MAY_BE_RIGID as MAY_BE_RIGID,
         NEAR as NEAR,
-        AssemblyStart as AssemblyStart,
         choose_start as choose_start,
         continued_start as continued_start,
-        distances_of as distances_of,
-        is_unclear as is_unclear,
         mode_letter as mode_letter,
         state_at_first_row as state_at_first_row,
     )
@@ -38,26 +40,24 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "distances": ["AssemblyStart", "distances_of", "is_unclear"],
         "fold": ["PlacesBefore", "at_unit_rate", "left_for", "unit_rates"],
         "home": [
             "NamedModes",
-            "probe_of",
             "is_cyclic",
             "is_home_assembled",
             "name_modes",
             "nearest_to_home",
+            "probe_of",
             "wrapped",
         ],
         "near": ["nothing_found"],
         "start": [
-            "AssemblyStart",
             "HOME",
             "MAY_BE_RIGID",
             "NEAR",
             "choose_start",
             "continued_start",
-            "distances_of",
-            "is_unclear",
             "mode_letter",
             "state_at_first_row",
         ],

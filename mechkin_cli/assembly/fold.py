@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.home import name_modes
-from mechkin_cli.assembly.start import (
+from mechkin_cli.assembly.distances import (
     distances_home,
     distances_near,
     distances_of,
@@ -19,12 +18,14 @@ from mechkin_cli.assembly.start import (
     is_unclear,
     unclear,
 )
+from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
 from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.tolerances import BEFORE_DEAD_CENTRE, OFF_FOLD
 
 if TYPE_CHECKING:
-    from mechkin_cli.assembly.start import AssemblyStart
+    from mechkin_cli.assembly.distances import AssemblyStart
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Floats
 
@@ -55,15 +56,9 @@ def at_unit_rate(session: Session, values: Floats, states: Floats, number: int) 
         states: (states, places) closed there.
         number: of the input.
     """
-    return session.run(
-        values,
-        states,
-        demand=Demand.VELOCITY | Demand.ACCELERATION,
-        rates=unit_rates(values, number),
-        accelerations=np.zeros_like(values),
-        derivatives=True,
-        iterations=0,
-    )
+    rows = RowInputs(values, states, unit_rates(values, number), np.zeros_like(values))
+    demand = Demand.VELOCITY | Demand.ACCELERATION
+    return session.run(rows, Ask(demand, derivatives=True, iterations=0))
 
 
 def unit_rates(values: Floats, number: int) -> Floats:
@@ -184,7 +179,7 @@ def _next_clear(session: Session) -> int:
 
 def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
     """The condition of an assembly; None where it is none."""
-    batch = session.run(inputs[:, None], state[:, None], demand=Demand.CONDITION)
+    batch = session.run(RowInputs(inputs[:, None], state[:, None]), Ask(Demand.CONDITION))
     return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
 
 

@@ -13,7 +13,8 @@ from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, home_inputs, home_state
-from mechkin_cli.search import Assemblies, with_assemblies
+from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
+from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,7 +29,7 @@ def is_home_assembled(session: Session) -> bool:
     inputs = home_inputs(session.layout)[:, None]
     tests = (0.0, 0.0, tolerances.HOME_ASSEMBLED)
     home = home_state(session.layout)[:, None]
-    batch = session.run(inputs, home, iterations=0, tests=tests)
+    batch = session.run(RowInputs(inputs, home), Ask(iterations=0, tests=tests))
     return bool(batch.good[0])
 
 
@@ -67,7 +68,7 @@ class Probe:
         """Coordinates by name (SI) and the joint points of the moving links (points, 3,
         assemblies)."""
         values = np.repeat(inputs[:, None], states.shape[1], axis=1)
-        batch = self.session.run(values, states, readout=self.readout)
+        batch = self.session.run(RowInputs(values, states), Ask(readout=self.readout))
         assert batch.outputs is not None
         out = batch.outputs
         coordinates = {name: out[self.readout.slots[name].first] for name in self.coordinates}
@@ -116,7 +117,7 @@ class NamedModes:
 def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> NamedModes:
     """The modes at the first row, `inputs` (inputs,) in kernel units; not `thorough`: most of them,
     and letters only if these are all for certain."""
-    found = session.search(inputs, thorough=thorough)
+    found = all_assemblies(session, inputs, thorough=thorough)
     if is_home_assembled(session):
         home = follow_from_home(session, inputs)
         if home.end == TrackEnd.FINISHED:

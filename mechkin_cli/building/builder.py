@@ -11,11 +11,10 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
 from mechkin_cli.building.fields import (
     Fields,
     Path,
-    dimension_of,
-    is_coordinate,
     is_link,
     note_force_unit,
     read_parameters,
@@ -34,7 +33,7 @@ from mechkin_cli.building.tables import (
     runs_of,
     used_quantities,
 )
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
 from mechkin_cli.expressions import (
     ExpressionError,
     Move,
@@ -45,23 +44,20 @@ from mechkin_cli.expressions import (
     in_order as expressions_in_order,
     parse,
 )
-from mechkin_cli.idle import held_freedoms
 from mechkin_cli.mechanism import (
     TIME_OF_ROW,
-    Assembly,
     Attached,
-    Joint,
     Mechanism,
     MotionInputs,
     Problem,
     RigidLink,
     Wanted,
-    find_legs,
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import in_order
-from mechkin_cli.schema import AssemblySection, MechanismFile
-from mechkin_cli.structure import SolverGraph, UnsolvableGraph, build_graph, listed
+from mechkin_cli.schema import MechanismFile
+from mechkin_cli.session import solver_graph
+from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
 from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
@@ -69,79 +65,13 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
-    from mechkin_cli.mechanism import AnyBalance, LockedFreedom, ResponseProblem
+    from mechkin_cli.mechanism import AnyBalance, ResponseProblem
 
 
 # `assembly:` and `follow:`: which assembly is meant, and which loops are followed.
 
 
-def build_assembly(
-    fields: Fields, section: AssemblySection | None, joints: Mapping[str, Joint]
-) -> Assembly:
-    """The assembly that the section means, with its coordinates in SI."""
-    if section is None:
-        return Assembly()
-    near = near_values(fields, ("assembly", "near"), section.near, joints)
-    straight = section.at_branch_points is not None
-    return Assembly(near, section.mode, section.turns, straight)
-
-
-def near_values(
-    fields: Fields, path: Path, texts: Mapping[str, str], joints: Mapping[str, Joint]
-) -> dict[str, float]:
-    """The coordinates (rad, m) of the section `near` at `path`."""
-    near = {}
-    for name, text in texts.items():
-        place = (*path, name)
-        if is_coordinate(fields, place, name, joints):
-            near[name] = fields.number(place, text, dimension_of(name.rpartition(".")[2]))
-    return near
-
-
-def build_follow(
-    fields: Fields, names: tuple[str, ...] | None, joints: Mapping[str, Joint]
-) -> tuple[str, ...] | None:
-    """The joints that `follow:` lists, each of which must be there; None without it."""
-    for i, name in enumerate(names or ()):
-        if name not in joints and not fields.is_refused(name):
-            hint = nearest_hint(name, list(joints))
-            fields.error("unknown-joint", ("follow", i), f"there is no joint {name}", hint)
-    return names
-
-
 # Idle freedoms of a built problem: what holds them, and what must not drive them.
-
-
-def held_of(problem: Problem) -> tuple[LockedFreedom, ...]:
-    """What holds the idle freedoms."""
-    held, as_drawn = held_freedoms(problem.mechanism, problem.motion.driven)
-    if not as_drawn:
-        return held
-    from mechkin_cli.mobility import held_along
-
-    return held_along(problem, held)
-
-
-def note_spins(fields: Fields, problem: Problem, *, free: bool = False) -> None:
-    """Notes what would drive the idle freedoms: kinematics alone does not know how they move, and a
-    `free` motion where its start does not name them."""
-    if not (find_legs(problem.mechanism) or problem.held):
-        return
-    from mechkin_cli.idle import spin_errors
-
-    for link, diagnostic in spin_errors(problem, free=free):
-        found = diagnostic._replace(place=fields.document.place(("links", link)))
-        if found not in fields.diagnostics:
-            fields.diagnostics.append(found)
-
-
-def settled(problem: Problem) -> Problem:
-    """The problem without the moments of inertia that nothing turns."""
-    if not problem.held:
-        return problem
-    from mechkin_cli.idle import without_spin
-
-    return without_spin(problem)
 
 
 # Limits on a well-formed file: equations of one block, and how small a mechanism may be.
@@ -454,7 +384,7 @@ def _graph(
     if fields.error_count or not check_size(fields, problem.mechanism):
         return None
     try:
-        graph = build_graph(problem.solved_mechanism, problem.driven)
+        graph = solver_graph(problem.solved_mechanism, problem.driven)
     except UnsolvableGraph as error:
         driven = problem.motion.inputs
         path = ("motion", "inputs") if driven else _place_of(file, error.joints)

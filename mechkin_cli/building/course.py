@@ -34,7 +34,7 @@ from mechkin_cli.tape import Recorder, Tape, Traced, TraceLost, is_traced, regis
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.motion import Written
+    from mechkin_cli.building.fields import Written
 
 
 _NO_LAWS = (SweptInput, ListedInput, HeldInput, FollowingInput, HeldCoordinate)

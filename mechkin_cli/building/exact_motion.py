@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import pi, prod
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.building.fields import Fields, Path, dimension_of
+from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
 from mechkin_cli.building.load_laws import joining_of, read_rows
 from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions import Expression, Quantity, literal, parse, scalar
@@ -50,14 +50,6 @@ if TYPE_CHECKING:
 
 PowerLaw = ConstantRate | ConstantAcceleration | Polynomial
 """x = c0 + c1 t + c2 t^2 + ..., with t from the first moment of `time`."""
-
-
-class Clock(NamedTuple):
-    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
-
-    moments: Floats
-    first: float
-    last: float
 
 
 def coefficients(fields: Fields, path: Path, law: PowerLaw, coordinate: str) -> list[float]:

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from mechkin_cli.mechanism import Moments
+from mechkin_cli.schema import HeldCoordinate, InputMotion
+from mechkin_cli.show import Floats
+
+if TYPE_CHECKING:
+    pass
+
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
@@ -463,3 +473,21 @@ def note_force_unit(fields: Fields) -> None:
             hint=f"write force: {forces} to say so, or another, such as force: {coherent}",
         )
     )
+
+
+class Written(NamedTuple):
+    """Driven coordinates as some section writes them, its place, and the moments of their laws with
+    the clock that these laws go by."""
+
+    inputs: Mapping[str, InputMotion | HeldCoordinate]
+    path: Path
+    time: Moments | None = None
+    clock: Clock | None = None
+
+
+class Clock(NamedTuple):
+    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
+
+    moments: Floats
+    first: float
+    last: float

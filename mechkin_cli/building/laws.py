@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.building.exact_motion import Clock, PowerLaw, coefficients, over_time, span
-from mechkin_cli.building.fields import Fields, Path, dimension_of
+from mechkin_cli.building.exact_motion import PowerLaw, coefficients, over_time, span
+from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
 from mechkin_cli.building.load_laws import joining_of, read_rows
 from mechkin_cli.expressions import literal
 from mechkin_cli.mechanism import joined_curve

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.fields import Fields, Path, dimension_of, is_coordinate
+from mechkin_cli.building.fields import Fields, Path, Written, dimension_of, is_coordinate
 from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.diagnostics import Number, nearest_hint
 from mechkin_cli.expressions import Expression
@@ -41,7 +41,6 @@ from mechkin_cli.schema import (
     FollowingInput,
     HeldCoordinate,
     HeldInput,
-    InputMotion,
     ListedInput,
     MechanismFile,
     MotionSection,
@@ -56,7 +55,7 @@ from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
 from mechkin_cli.units import TIME, Dimension
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.exact_motion import Clock
+    pass
 
 
 # How many rows a run may have: what it keeps must fit into memory.
@@ -190,16 +189,6 @@ def spaced(
     return by_step(first, step if last >= first else -step, int(ratio) + 1)
 
 
-class Written(NamedTuple):
-    """Driven coordinates as some section writes them, its place, and the moments of their laws with
-    the clock that these laws go by."""
-
-    inputs: Mapping[str, InputMotion | HeldCoordinate]
-    path: Path
-    time: Moments | None = None
-    clock: Clock | None = None
-
-
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
 
@@ -288,7 +277,7 @@ def _timed(
     fields: Fields, written: Written, path: Path, section: TimeSection, limit: RowLimit
 ) -> Written:
     """With the moments of a section at `path`."""
-    from mechkin_cli.building.exact_motion import Clock
+    from mechkin_cli.building.fields import Clock
 
     moments, last = spaced_moments(fields, path, section, limit)
     clock = Clock(moments.written, float(moments.written[0]), last)

@@ -2,7 +2,7 @@
 
 Every key keeps its path, so that what is wrong with a value is told where it is written; what the
 plane leaves out stands in as a literal, which has no errors of its own. That no closing joint holds
-what the plane holds already is the joints' own affair (mechanism/joint_table.py).
+what the plane holds already is the joints' own affair (mechanism/pairs.py).
 """
 
 from __future__ import annotations

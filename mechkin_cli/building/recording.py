@@ -16,7 +16,8 @@ from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields, settled
+from mechkin_cli.building.assembly import settled
+from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.exact import PI

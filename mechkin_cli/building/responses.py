@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.builder import held_of, near_values, note_spins, settled
-from mechkin_cli.building.exact_motion import Clock
-from mechkin_cli.building.fields import CODE, dimension_of, is_coordinate, without
+from mechkin_cli.building.assembly import held_of, near_values, note_spins, settled
+from mechkin_cli.building.fields import CODE, Clock, Written, dimension_of, is_coordinate, without
 from mechkin_cli.building.load_laws import LoadLaws
-from mechkin_cli.building.motion import Written, build_inputs, spaced_moments
+from mechkin_cli.building.motion import build_inputs, spaced_moments
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
 from mechkin_cli.mechanism import (
     CrossingEnd,
@@ -29,14 +28,8 @@ from mechkin_cli.mechanism import (
     response_problem,
 )
 from mechkin_cli.schema import TimeSection, responses as written
-from mechkin_cli.structure import (
-    SolverGraph,
-    UnsolvableGraph,
-    build_graph,
-    is_redundant,
-    left_free,
-    listed,
-)
+from mechkin_cli.session import left_free, solver_graph
+from mechkin_cli.structure import SolverGraph, UnsolvableGraph, is_redundant, listed
 from mechkin_cli.units import DIMENSIONLESS, TIME
 
 if TYPE_CHECKING:
@@ -427,7 +420,7 @@ def response_graph(
     driven, mechanism = first.driven, first.solved_mechanism
     place = fields.document.place(("responses", response.name, "start"))
     try:
-        graph = build_graph(mechanism, driven)
+        graph = solver_graph(mechanism, driven)
     except UnsolvableGraph as error:
         if error.missing:
             return _too_few(response, error)._replace(place=place)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.cli.messages import (
     FORMS,
     ExitCode,
     Record,
     model_of,
+    parameters,
     put,
     put_json,
     refusal,
@@ -22,7 +22,6 @@ from mechkin_cli.cli.messages import (
     stem_of,
     tell_as,
 )
-from mechkin_cli.cli.options import parameters
 from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
@@ -101,77 +100,64 @@ def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
 FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
 
 
-@dataclass(frozen=True, slots=True)
-class _Request:
-    """What is wanted of every file."""
+class AnalyzeCommand(NamedTuple):
+    """The options of the command, as `analyze_command` declares them."""
 
-    settings: dict[str, str]
-    mode: str | None
-    tables: list[str] | None
-    formats: tuple[str, ...]
-    threads: int
-    units: bool
-    explain: bool
-    json: bool
-    writes: bool
-    quiet: bool
-    strict: bool
-    errors: bool
-    certify: bool
-    view: bool
+    files: list[Path]
+    out: Path | None = None
+    format: list[str] | None = None
+    units: bool = False
+    set_: list[str] | None = None
+    mode: str | None = None
+    table: list[str] | None = None
+    lanes: int = 0
+    threads: int = 0
+    certify: bool = False
+    strict: bool = False
+    errors: bool = False
+    view: bool = False
+    explain: bool = False
+    messages: str | None = None
+    json: bool = False
+    quiet: bool = False
+
+    @property
+    def formats(self) -> tuple[str, ...]:
+        """The formats of tables.
+
+        Raises:
+            UsageError: one is not known.
+        """
+        formats = tuple(dict.fromkeys(self.format or USUAL_FORMATS))
+        for name in formats:
+            if name not in WRITERS:
+                cure = f"; for messages write --messages {name}" if name in FORMS else ""
+                raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
+        return formats
+
+    @property
+    def writes(self) -> bool:
+        """Whether files are written."""
+        return not self.json or self.out is not None or bool(self.format) or self.view
 
 
-def analyze_files(
-    files: list[Path],
-    out: Path | None = None,
-    format: list[str] | None = None,
-    units: bool = False,
-    set_: list[str] | None = None,
-    mode: str | None = None,
-    table: list[str] | None = None,
-    lanes: int = 0,
-    threads: int = 0,
-    certify: bool = False,
-    strict: bool = False,
-    errors: bool = False,
-    view: bool = False,
-    explain: bool = False,
-    messages: str | None = None,
-    json: bool = False,
-    quiet: bool = False,
-) -> ExitCode:
+def analyze_files(command: AnalyzeCommand) -> ExitCode:
     """Runs the sweep and the responses of each file and writes their tables.
-
-    The arguments are the options of the command, as `analyze_command` declares them.
 
     Raises:
         UsageError: an option that cannot be.
     """
     from mechkin_cli.kernel.functions import force_threads, force_width
 
-    tell_as(messages)
-    force_width(lanes)
-    force_threads(threads)
-    request = _Request(
-        settings=parameters(set_),
-        mode=mode,
-        tables=table,
-        formats=_formats(format),
-        threads=threads,
-        units=units,
-        explain=explain,
-        json=json,
-        writes=not json or out is not None or bool(format) or view,
-        quiet=quiet,
-        strict=strict,
-        errors=errors,
-        view=view,
-        certify=certify,
-    )
+    tell_as(command.messages)
+    force_width(command.lanes)
+    force_threads(command.threads)
+    settings, files = parameters(command.set_), command.files
+    _ = command.formats  # refused before any file is run
     code = ExitCode.OK
     records: list[Record] = []
-    folders = _folders(files, out)
-    with working("", quiet) as tell:
+    folders = _folders(files, command.out)
+    with working("", command.quiet) as tell:
         for number, (path, folder) in enumerate(folders.items(), 1):
             count = f" ({number} of {len(files)})" if len(files) > 1 else ""
             words = f"{shown(path)}{count}"
@@ -179,60 +165,62 @@ def analyze_files(
             def at(what: str, words: str = words) -> None:
                 tell(f"{words}: {what}")
 
-            outcome, record = _one(path, folder, request, at)
+            outcome, record = _one(path, folder, command, settings, at)
             code = max(code, outcome)
             records.append(record)
-    if json:
+    if command.json:
         put_json(records[0] if len(files) == 1 else {"files": records})
     return code
 
 
-def _one(path: Path, folder: Path, request: _Request, tell: Tell) -> tuple[ExitCode, Record]:
+def _one(
+    path: Path, folder: Path, command: AnalyzeCommand, settings: dict[str, str], tell: Tell
+) -> tuple[ExitCode, Record]:
     """Runs one file; what is wrong with it does not stop the others."""
     try:
         tell("reading")
-        model = model_of(path, request.settings)
-        if request.errors:
-            _refuse_own_errors(model, request.tables)
-        analyses, notes, written = _run(model, folder, request, tell)
+        model = model_of(path, settings)
+        if command.errors:
+            _refuse_own_errors(model, command.table)
+        analyses, notes, written = _run(model, folder, command, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
     say_diagnostics((*said, *notes), shown(path))
     record: Record = {}
-    if request.json:
+    if command.json:
         from mechkin_cli.tables import runs_record
 
-        results = [_results(analysis, request) for analysis in analyses]
+        results = [_results(analysis, command) for analysis in analyses]
         record = {"file": shown(path)} | runs_record(results)
-        if request.explain:
+        if command.explain:
             from mechkin_cli.cli.explanation import explanation
 
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(shown(path), analyses, folder, written, request)
-    enough = all(_is_enough(analysis, request) for analysis in analyses)
+        _report(shown(path), analyses, folder, written, command)
+    enough = all(_is_enough(analysis, command) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
 
 
 def _run(
-    model: Model, folder: Path, request: _Request, tell: Tell
+    model: Model, folder: Path, command: AnalyzeCommand, tell: Tell
 ) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path]]:
     """The runs, notes on what is not proven, and the files written: alone in their folder from
     before the work on, so that nothing is computed that cannot be written."""
     from mechkin_cli.tables import OutputFolder
 
-    with OutputFolder(folder) if request.writes else nullcontext() as output:
-        analyses = run_all(model, request.tables, request.mode, tell)
-        tell("proving rows" if request.certify else "evaluating tables")
-        notes = certify_sweeps(analyses) if request.certify else ()
+    with OutputFolder(folder) if command.writes else nullcontext() as output:
+        analyses = run_all(model, command.table, command.mode, tell)
+        tell("proving rows" if command.certify else "evaluating tables")
+        notes = certify_sweeps(analyses) if command.certify else ()
         if output is None:
             return analyses, notes, []
-        tell("measuring true errors" if request.errors else "writing tables")
-        results = [_results(analysis, request) for analysis in analyses]
-        files = written_files(results, request.formats)
-        if request.view:
+        tell("measuring true errors" if command.errors else "writing tables")
+        results = [_results(analysis, command) for analysis in analyses]
+        files = written_files(results, command.formats)
+        if command.view:
             notes = (*notes, *_add_page(files, analyses))
         return analyses, notes, output.write(files)
 
@@ -260,20 +248,11 @@ def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
         )
 
 
-def _is_enough(analysis: Analysis, request: _Request) -> bool:
-    proofs = request.strict and request.certify and analysis.run == SWEEP
+def _is_enough(analysis: Analysis, command: AnalyzeCommand) -> bool:
+    proofs = command.strict and command.certify and analysis.run == SWEEP
     if proofs and not analysis.certificate.is_one_branch:
         return False
-    return analysis.complete and (analysis.result.sound or not request.strict)
-
-
-def _formats(given: list[str] | None) -> tuple[str, ...]:
-    formats = tuple(dict.fromkeys(given or USUAL_FORMATS))
-    for name in formats:
-        if name not in WRITERS:
-            cure = f"; for messages write --messages {name}" if name in FORMS else ""
-            raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
-    return formats
+    return analysis.complete and (analysis.result.sound or not command.strict)
 
 
 def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
@@ -293,37 +272,37 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
-def _results(analysis: Analysis, request: _Request) -> Results:
+def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
     name, result = analysis.model.name, analysis.result
     tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
-    errors = analysis.errors.columns if request.errors else None
+    errors = analysis.errors.columns if command.errors else None
     return Results(
         name,
         tables,
         result,
         analysis.diagnostics,
-        request.threads,
+        command.threads,
         analysis.run,
         errors,
-        request.units,
+        command.units,
     )
 
 
 def _report(
-    file: str, analyses: list[Analysis], folder: Path, written: list[Path], request: _Request
+    file: str, analyses: list[Analysis], folder: Path, written: list[Path], command: AnalyzeCommand
 ) -> None:
     from mechkin_cli.cli.show import files_line, shown_tables, summary
 
     for analysis in analyses:
-        if request.explain:
+        if command.explain:
             from mechkin_cli.cli.explanation import explanation
 
             put(f"{explanation(analysis)}\n")
-        for part in () if request.quiet else shown_tables(analysis, folder):
+        for part in () if command.quiet else shown_tables(analysis, folder):
             put(part)
-    if request.quiet:
+    if command.quiet:
         return
     for analysis in analyses:
-        for line in summary(file, analysis, errors=request.errors):
+        for line in summary(file, analysis, errors=command.errors):
             say(line)
     say(files_line(folder, written))

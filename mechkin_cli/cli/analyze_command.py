@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from mechkin_cli.cli.analyze import FORMATS, analyze_files
+from mechkin_cli.cli.analyze import FORMATS, AnalyzeCommand, analyze_files
 from mechkin_cli.cli.options import (
     Files,
     Json,
@@ -106,7 +106,7 @@ def analyze(
     Tables go to stdout and to files in out/STEM, messages to stderr. With --json no files are
     written, unless --out or --format asks for them. The exit code is 4 if rows are missing.
     """
-    code = analyze_files(
+    command = AnalyzeCommand(
         files=files,
         out=out,
         format=format,
@@ -125,5 +125,6 @@ def analyze(
         json=json,
         quiet=quiet,
     )
+    code = analyze_files(command)
     if code:
         raise typer.Exit(code)

@@ -14,6 +14,7 @@ from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
     model_of,
+    parameters,
     put,
     put_json,
     refusal,
@@ -21,7 +22,7 @@ from mechkin_cli.cli.messages import (
     say_diagnostics,
     shown,
 )
-from mechkin_cli.cli.options import File, Json, Quiet, Set, parameters, response_names
+from mechkin_cli.cli.options import File, Json, Quiet, Set, response_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 

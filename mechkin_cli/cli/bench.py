@@ -2,78 +2,39 @@
 
 from __future__ import annotations
 
-import contextlib
-import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from mechkin_cli.cli.messages import ExitCode, Record, put, put_json, refusal, refuse_stdin, say
+from mechkin_cli.cli.messages import ExitCode, Record, put, put_json, refusal, refuse_stdin
 from mechkin_cli.cli.options import Json, folder
 from mechkin_cli.cli.progress import working
-from mechkin_cli.diagnostics import LONGEST_NAME, InvalidFile, UsageError, nearest_hint
+from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
-    from mechkin_cli.benchmark.report import Table
-    from mechkin_cli.benchmark.runs import Bench, Rounds
-    from mechkin_cli.benchmark.scene import Scene
-    from mechkin_cli.benchmark.stress.tally import Tally
-    from mechkin_cli.benchmark.subject import Subject
+    from mechkin_cli.bench.measurement import Bench
+    from mechkin_cli.bench.report import Table
+    from mechkin_cli.bench.runs import Rounds, Suite
+    from mechkin_cli.bench.scene import Scene, Subject
 
 
-# Options of `mechkin bench --stress`.
-
-MOST_ROWS = 10**9
-MOST_SEED = 2**63 - 1
-MOST_NUMBER = 10**9
-MOST_PROCESSES = 256
-
-Stress = Annotated[
-    bool, typer.Option("--stress", help="Hard mechanisms by the thousand instead of run times.")
+Quick = Annotated[
+    bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
 ]
-Rows = Annotated[
-    float,
-    typer.Option("--rows", min=1, max=MOST_ROWS, help="--stress: rows in all, as 1e6."),
-]
-Seed = Annotated[
-    int,
-    typer.Option("--seed", min=0, max=MOST_SEED, help="--stress: seed of the random mechanisms."),
-]
-Family = Annotated[
-    str | None, typer.Option("--family", metavar="NAME", help="--stress: one family alone.")
-]
-Only = Annotated[
-    int | None,
+Out = Annotated[
+    Path | None,
     typer.Option(
-        "--only",
-        min=0,
-        max=MOST_NUMBER,
-        metavar="K",
-        help="--stress: print mechanism K of the family as a file, and run nothing.",
+        "--out",
+        metavar="DIR",
+        parser=folder,
+        help="Also write bench.json, bench.csv, bench.md, bench.svg.",
     ),
 ]
-Page = Annotated[
-    Path | None, typer.Option("--page", metavar="FILE", help="--stress: also write a page.")
-]
-Check = Annotated[
-    bool,
-    typer.Option("--check", help="--stress: run the small set anew and compare it with the page."),
-]
-Processes = Annotated[
-    int,
-    typer.Option(
-        "--processes", min=0, max=MOST_PROCESSES, help="--stress: processes at once; 0: all cores."
-    ),
-]
-
-
-_OF_STRESS = ("rows", "seed", "family", "only", "page", "check", "processes")
-_OF_TIMES = ("files", "quick", "out")
 
 
 def bench(
@@ -81,59 +42,85 @@ def bench(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Mechanism files to measure instead of the eight of its own.", metavar="FILE"
+            help="Mechanism files to measure instead of some templates.", metavar="FILE"
         ),
     ] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            parser=folder,
-            help="Also write bench.json, bench.csv, bench.md, bench.svg.",
-        ),
-    ] = None,
+    quick: Quick = False,
+    out: Out = None,
     json: Json = False,
-    stress: Stress = False,
-    rows: Rows = 2_000,
-    seed: Seed = 1,
-    family: Family = None,
-    only: Only = None,
-    page: Page = None,
-    check: Check = False,
-    processes: Processes = 0,
+    stress: Annotated[
+        bool, typer.Option("--stress", help="Hard mechanisms of known rows instead of run times.")
+    ] = False,
 ) -> None:
-    """Measure run time against error, mechkin's and others'.
+    """Measure run time against error.
 
-    Without files it measures eight mechanisms, variants and responses. Other libraries are measured
-    if they are installed (pip install 'mechkin[bench]'). With --stress it runs hard mechanisms by
-    the thousand instead, and decides every row in double-double.
+    Beside mechkin's own settings it measures scipy (pip install 'mechkin[bench]'), the dense
+    systems of the sources, and explicit stepping. Without files it measures some of the templates.
+    With --stress it runs a small set of hard mechanisms instead, whose rows are known, and judges
+    every row.
     """
-    _refuse_options_of_the_other(context, stress=stress)
     if stress:
-        asked = BenchStressStress(round(rows), seed, family, only, page, check, processes, json)
-        code = stress_command(asked, _show)
-        if code:
-            raise typer.Exit(code)
-        return
-    from mechkin_cli.benchmark.machine import machine
-    from mechkin_cli.benchmark.outputs import record, write
-    from mechkin_cli.benchmark.runs import FULL, QUICK
+        refuse_options(context, ("files", "quick", "out"), STRESS_IS_ALONE)
+        code = _stress(json=json)
+    else:
+        from mechkin_cli.bench.runs import SUITE
+
+        code = measure(SUITE, files or [], quick=quick, out=out, json=json)
+    if code:
+        raise typer.Exit(code)
+
+
+STRESS_IS_ALONE = "--stress judges mechanisms of its own and times nothing; leave {} out"
+
+
+def refuse_options(context: typer.Context, names: Sequence[str], message: str) -> None:
+    """Refuses options that mean nothing beside others.
+
+    Args:
+        names: the parameters that must not be given.
+        message: why, and what to do, with {} for those that are.
+
+    Raises:
+        UsageError: one of them is given.
+    """
+    given = [name for name in names if _is_given(context, name)]
+    if given:
+        words = ", ".join("FILE" if name == "files" else f"--{name}" for name in given)
+        raise UsageError(message.format(words))
+
+
+def _is_given(context: typer.Context, name: str) -> bool:
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
+def measure(
+    suite: Suite, files: Sequence[Path], *, quick: bool, out: Path | None, json: bool
+) -> int:
+    """Measures the files, or a suite's own mechanisms, and shows and writes what was found.
+
+    Returns:
+        The exit code: that of the first file that cannot be measured.
+
+    Raises:
+        UsageError: a file is given twice, or the folder takes no file.
+    """
+    from mechkin_cli.bench.outputs import record, write
+    from mechkin_cli.bench.report import machine
+    from mechkin_cli.bench.runs import FULL, QUICK
 
     rounds = QUICK if quick else FULL
     if out is not None:
         _made(out)
-    code, subjects, scenes, refused = _read(files or [])
+    code, subjects, refused = _read(files) if files else (int(ExitCode.OK), suite.subjects(), [])
+    scenes = [subject.scene for subject in subjects]
     described, shown = machine(), not json
     if shown and scenes:
         put(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
-    benches = list(_benches(scenes, rounds, shown=shown))
-    tables = list(_tables(subjects, scenes, rounds, whole=not files, shown=shown))
+    benches = list(_benches(suite, scenes, rounds, shown=shown))
+    tables = list(_tables(suite, subjects, rounds, shown=shown))
     if out is not None and scenes:
-        command = " ".join(["mechkin bench", *map(str, files or [])])
+        command = " ".join([suite.command, *map(str, files)])
         try:
             written = write(out, described, benches, tables, command)
         except OSError as error:
@@ -142,37 +129,29 @@ def bench(
             put("\n" + "".join(f"{path}\n" for path in written))
     if json:
         put_json(record(described, benches, tables) | ({"refused": refused} if refused else {}))
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
-def _refuse_options_of_the_other(context: typer.Context, *, stress: bool) -> None:
+def _stress(*, json: bool) -> int:
+    """Runs the small set of hard mechanisms.
+
+    Returns:
+        The exit code: 1 where a row is wrong and says ok, or a file is refused.
     """
-    Raises:
-        UsageError: an option is given that means nothing with, or without, --stress.
-    """
-    others = _OF_TIMES if stress else _OF_STRESS
-    given = [name for name in others if _is_given(context, name)]
-    if not given:
-        return
-    words = ", ".join("FILE" if name == "files" else f"--{name}" for name in given)
-    if stress:
-        raise UsageError(
-            f"--stress judges mechanisms of its own and times nothing; leave {words} out"
-        )
-    raise UsageError(
-        f"without --stress there is nothing for {words}; add --stress, or leave it out"
-    )
+    from mechkin_cli.bench.stress import stress, stress_table
 
-
-def _is_given(context: typer.Context, name: str) -> bool:
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
+    with working("hard mechanisms", json) as tell:
+        found = stress(tell)
+    if json:
+        put_json({"mechanisms": [outcome.record() for outcome in found]})
+    else:
+        show(stress_table(found))
+    return ExitCode.DIFFERENCES if any(outcome.is_wrong for outcome in found) else ExitCode.OK
 
 
 def _made(folder: Path) -> None:
     """Makes the folder of the files before anything is measured."""
-    from mechkin_cli.benchmark.outputs import NAMES
+    from mechkin_cli.bench.outputs import NAMES
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -188,28 +167,21 @@ def _not_written(folder: Path, error: OSError) -> UsageError:
     return UsageError(f"--out {folder}: {why}{file}; name a folder that can be written")
 
 
-def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Scene], list[Record]]:
-    """The scenes of the files, or the known ones; files that cannot be measured are told."""
-    from mechkin_cli.benchmark.scene import Scene
-    from mechkin_cli.benchmark.scenes import subjects
-    from mechkin_cli.benchmark.subject import Subject
+def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Record]]:
+    """The files that can be measured; others are told."""
+    from mechkin_cli.bench.scene import Scene, Subject
     from mechkin_cli.model import load
 
-    if not files:
-        known = subjects()
-        return ExitCode.OK, known, [Scene(each.name, each.model) for each in known], []
-    code, found, scenes = int(ExitCode.OK), [], []
+    code, found = int(ExitCode.OK), []
     refused: list[Record] = []
     for file, name in _names(files).items():
         try:
             refuse_stdin(file, "bench reads a file several times, and - is none")
-            subject = Subject(name, load(file), file)
-            scenes.append(Scene(subject.name, subject.model))
-            found.append(subject)
+            found.append(Subject(Scene(name, load(file)), file))
         except (InvalidFile, UsageError) as error:
             own, record = refusal(file, error)
             code, refused = max(code, own), [*refused, record]
-    return code, found, scenes, refused
+    return code, found, refused
 
 
 def _names(files: Sequence[Path]) -> dict[Path, str]:
@@ -219,7 +191,7 @@ def _names(files: Sequence[Path]) -> dict[Path, str]:
     Raises:
         UsageError: a file is given twice.
     """
-    from mechkin_cli.benchmark.report import key_of
+    from mechkin_cli.bench.report import key_of
 
     names: dict[Path, str] = {}
     taken: set[str] = set()
@@ -235,44 +207,39 @@ def _names(files: Sequence[Path]) -> dict[Path, str]:
     return names
 
 
-def _benches(scenes: Sequence[Scene], rounds: Rounds, *, shown: bool) -> Iterator[Bench]:
+def _benches(
+    suite: Suite, scenes: Sequence[Scene], rounds: Rounds, *, shown: bool
+) -> Iterator[Bench]:
     """Each scene's measurements, shown as soon as they are there."""
-    from mechkin_cli.benchmark.runs import bench as measure
-    from mechkin_cli.benchmark.tables import bench_table
+    from mechkin_cli.bench.report import bench_table
+    from mechkin_cli.bench.runs import bench as measured
 
     for number, scene in enumerate(scenes, 1):
         with working(f"measuring {scene.name}: {number} of {len(scenes)}"):
-            found = measure(scene, rounds)
+            found = measured(scene, rounds, suite.families)
         if shown:
-            _show(bench_table(found))
+            show(bench_table(found))
         yield found
 
 
 def _tables(
-    subjects: Sequence[Subject],
-    scenes: Sequence[Scene],
-    rounds: Rounds,
-    *,
-    whole: bool,
-    shown: bool,
+    suite: Suite, subjects: Sequence[Subject], rounds: Rounds, *, shown: bool
 ) -> Iterator[Table]:
-    """What settings cost, variants and responses, each shown as soon as it is there."""
-    from mechkin_cli.benchmark.runs import tables
-
-    found = tables(subjects, scenes, rounds, whole=whole) if scenes else iter(())
+    """What else a suite measures, each table shown as soon as it is there."""
+    found = suite.tables(subjects, rounds) if subjects else iter(())
     while True:
-        with working("measuring demand plan, threads, variants, responses"):
+        with working(f"measuring {suite.words}"):
             table = next(found, None)
         if table is None:
             return
         if shown:
-            _show(table)
+            show(table)
         yield table
 
 
-def _show(table: Table) -> None:
+def show(table: Table) -> None:
     """Styled on a terminal wide enough, else aligned text."""
-    from mechkin_cli.benchmark.report import plain_text, width
+    from mechkin_cli.bench.report import plain_text, width
 
     if not sys.stdout.isatty():
         put("\n" + plain_text(table))
@@ -310,136 +277,3 @@ def _styled(table: Table) -> RichTable:
     for row in table.texts():
         styled.add_row(*row)
     return styled
-
-
-# `mechkin bench --stress`: families of hard mechanisms, every row decided in double-double.
-
-LONG = 60.0
-"""Seconds of work that are told beforehand."""
-
-
-class BenchStressStress(NamedTuple):
-    """What the command line asks for."""
-
-    rows: int
-    seed: int
-    family: str | None
-    only: int | None
-    page: Path | None
-    check: bool
-    processes: int
-    json: bool
-
-
-def stress_command(asked: BenchStressStress, show: Callable[[Table], None]) -> int:
-    """Runs what is asked for; `show` prints a table for a person.
-
-    Returns:
-        The exit code: 1 where a row is wrong and says ok, a file is refused, or the page is old.
-
-    Raises:
-        UsageError: an unknown family, or options that do not go together.
-    """
-    from mechkin_cli.benchmark.stress.families.table import FAMILIES
-
-    names = list(FAMILIES)
-    if asked.family is not None:
-        if asked.family not in FAMILIES:
-            hint = nearest_hint(asked.family, names) or f"known are {', '.join(names)}"
-            raise UsageError(f"there is no family {asked.family[:LONGEST_NAME]}; {hint}")
-        names = [asked.family]
-    if asked.only is not None:
-        return _one(asked)
-    if asked.check:
-        return _checked(asked)
-    if asked.page is not None and asked.family is not None:
-        raise UsageError("--page tells of all families; leave --family out")
-    tallies = _run(asked, asked.rows, asked.seed, names)
-    if asked.page is not None:
-        _write(asked, tallies)
-    if asked.json:
-        families = {tally.family: tally.record() for tally in tallies}
-        put_json({"rows": asked.rows, "seed": asked.seed, "families": families})
-    else:
-        from mechkin_cli.benchmark.stress.tables import tables
-
-        for table in tables(tallies):
-            show(table)
-    wrong = any(tally.verdicts["false_ok"] or tally.verdicts["refused"] for tally in tallies)
-    return ExitCode.DIFFERENCES if wrong else ExitCode.OK
-
-
-def _run(asked: BenchStressStress, rows: int, seed: int, names: Sequence[str]) -> list[Tally]:
-    """All blocks, with progress on a terminal, and a word beforehand where it takes long."""
-    from mechkin_cli.benchmark.stress.run import stress
-
-    processes = asked.processes or os.cpu_count() or 1
-    told = asked.json
-
-    def step(done: int, count: int, left: float | None) -> None:
-        nonlocal told
-        more = "" if left is None else f", about {_span(left)} left"
-        tell(f"{done} of {count} blocks{more}")
-        if left is not None and not told:
-            told = True
-            if left > LONG:
-                say(f"{rows} rows: about {_span(left)} more with {processes} at once")
-
-    with working(f"{rows} rows", asked.json) as tell:
-        return stress(rows, seed, names, processes, step)
-
-
-def _span(seconds: float) -> str:
-    """In words of one or two digits."""
-    return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
-
-
-def _one(asked: BenchStressStress) -> int:
-    """One mechanism as a file on stdout."""
-    from mechkin_cli.benchmark.stress.block import text_of
-
-    if asked.family is None or asked.only is None:
-        raise UsageError("--only K is a mechanism of one family; name it with --family")
-    put(text_of(asked.family, asked.seed, asked.only))
-    return ExitCode.OK
-
-
-def _write(asked: BenchStressStress, tallies: list[Tally]) -> None:
-    """The page, which takes its place whole."""
-    from mechkin_cli.benchmark.stress.families.table import FAMILIES
-    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, page
-
-    assert asked.page is not None
-    small = _run(asked, SMALL_ROWS, asked.seed, list(FAMILIES))
-    text = page(tallies, small, asked.rows, asked.seed)
-    beside = asked.page.with_name(f".{asked.page.name}.{os.getpid()}")
-    try:
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(asked.page)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            beside.unlink()
-        raise UsageError(f"{asked.page} cannot be written: {error.strerror}") from None
-
-
-def _checked(asked: BenchStressStress) -> int:
-    """Whether the page has today's form, and its small set's numbers."""
-    from mechkin_cli.benchmark.stress.families.table import FAMILIES
-    from mechkin_cli.benchmark.stress.page import SMALL_ROWS, is_current, of_page
-
-    if asked.page is None:
-        raise UsageError("--check compares a page; name it with --page")
-    try:
-        text = asked.page.read_text(encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{asked.page} cannot be read: {error.strerror}") from None
-    known = of_page(text)
-    seed = known[1] if known else asked.seed
-    if is_current(text, _run(asked, SMALL_ROWS, seed, list(FAMILIES))):
-        return ExitCode.OK
-    rows = known[0] if known else asked.rows
-    say(
-        f"{asked.page} is not what would be written now; write it by: mechkin bench --stress "
-        f"--rows {rows} --seed {seed} --page {asked.page}"
-    )
-    return ExitCode.DIFFERENCES

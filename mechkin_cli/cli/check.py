@@ -11,6 +11,7 @@ from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
     model_of,
+    parameters,
     put,
     put_json,
     refusal,
@@ -18,15 +19,7 @@ from mechkin_cli.cli.messages import (
     shown,
     tell_as,
 )
-from mechkin_cli.cli.options import (
-    MESSAGES_HELP,
-    Files,
-    Json,
-    Quiet,
-    Set,
-    message_forms,
-    parameters,
-)
+from mechkin_cli.cli.options import MESSAGES_HELP, Files, Json, Quiet, Set, message_forms
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP
 

@@ -10,13 +10,14 @@ import typer
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
+    parameters,
     put,
     refusal,
     say_diagnostics,
     shown,
     stem_of,
 )
-from mechkin_cli.cli.options import File, Quiet, Set, mode_names, parameters, run_names, table_names
+from mechkin_cli.cli.options import File, Quiet, Set, mode_names, run_names, table_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mechkin_cli.cli.main import said
+from mechkin_cli.cli.interrupts import said
 from mechkin_cli.cli.messages import ExitCode, say, say_diagnostics, stdout_failed, tell_as
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 
@@ -24,7 +24,7 @@ from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 
 
 class Option(NamedTuple):
-    """An option: the argument of `analyze_files`, what turns its word into a value (None: a flag),
+    """An option: the field of `AnalyzeCommand`, what turns its word into a value (None: a flag),
     and whether it may be repeated."""
 
     argument: str
@@ -53,7 +53,7 @@ OPTIONS = {
 
 
 def plain_analysis(words: Sequence[str]) -> dict[str, Any] | None:
-    """The arguments of `analyze_files` that a command line means; None where it is not plain."""
+    """The fields of `AnalyzeCommand` that a command line means; None where it is not plain."""
     if words[:1] != ["analyze"] or "_MECHKIN_COMPLETE" in os.environ:
         return None
     given: dict[str, Any] = {"files": []}
@@ -100,7 +100,7 @@ def _run() -> int:
     try:
         given = plain_analysis(sys.argv[1:])
         if given is not None:
-            return int(_analyze_files()(**given))
+            return _analyzed(given)
         from mechkin_cli.cli.app import run
 
         return run()
@@ -118,15 +118,15 @@ def _run() -> int:
         return _failed(error)
 
 
-def _analyze_files() -> Callable[..., int]:
-    """Loads what a plain analysis needs, and no more than that."""
+def _analyzed(given: dict[str, Any]) -> int:
+    """A plain analysis; it loads what that needs, and no more."""
     # an analysis multiplies no large matrices: one thread of BLAS per core would only be started
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if "mechkin_cli.model.model" not in sys.modules:
         _load_without_collecting()
-    from mechkin_cli.cli.analyze import analyze_files
+    from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
-    return analyze_files
+    return int(analyze_files(AnalyzeCommand(**given)))
 
 
 def _load_without_collecting() -> None:
@@ -137,8 +137,7 @@ def _load_without_collecting() -> None:
 
     gc.disable()
     try:
-        import mechkin_cli.cli.analyze
-        import mechkin_cli.model.model  # noqa: F401
+        from mechkin_cli.model import Model  # noqa: F401
     finally:
         gc.freeze()
         gc.enable()

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from mechkin_cli.cli.main import then
+from mechkin_cli.cli.interrupts import then
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
+    parameters,
     put,
     put_json,
     refusal,
@@ -26,7 +27,6 @@ from mechkin_cli.cli.options import (
     Quiet,
     Set,
     folder,
-    parameters,
     study_files,
     study_format_names,
 )

@@ -38,7 +38,7 @@ def tables(
     path: Annotated[
         Path,
         typer.Argument(
-            help="A mechanism file, or a folder of them.",
+            help="A mechanism file, or a folder of them or of such folders.",
             metavar="PATH",
             autocompletion=mechanism_files,
         ),
@@ -59,12 +59,14 @@ def tables(
     Writes the tables of FOLDER/STEM.yaml to FOLDER/STEM/TABLE.csv and .md, and a small picture to
     FOLDER/STEM/picture.svg. If tables name printed values, FOLDER/STEM/errata.md compares them and
     disagreements.csv lists every printed cell that does not agree. What mechkin wrote for a table
-    that the file no longer has is removed; other files stay. FOLDER/README.md is an overview of
-    its mechanisms; a README.md of your own is left alone.
+    that the file no longer has is removed; other files stay. A folder without mechanism files of
+    its own stands for those of the folders in it. FOLDER/README.md is an overview of its
+    mechanisms; a README.md of your own is left alone.
     """
     tell_as(messages)
     refuse_stdin(path, "tables are kept beside a file, and - is none")
     files = _mechanism_files(path)
+    overview = path if path.is_dir() else None
     if against:
         if check:
             raise UsageError("--against and --check are two questions; ask them one by one")
@@ -77,15 +79,15 @@ def tables(
         for number, file in enumerate(files, 1):
             tell(f"{file} ({number} of {len(files)})")
             try:
-                outcome, record, row = _one(file, check, json, quiet, overview=path.is_dir())
+                outcome, record, row = _one(file, check, json, quiet, overview)
                 rows += [row] if row else []
             except (InvalidFile, UsageError) as error:
                 outcome, record = refusal(file, error)
             code = max(code, outcome)
             records.append(record)
     found: Record = {"files": records}
-    if len(rows) == len(files):
-        outcome, found["overview"] = keep_overview(path, rows, check, json, quiet)
+    if overview is not None and len(rows) == len(files):
+        outcome, found["overview"] = keep_overview(overview, rows, check, json, quiet)
         code = max(code, outcome)
     if json:
         put_json(found)
@@ -95,29 +97,33 @@ def tables(
 
 def _mechanism_files(path: Path) -> list[Path]:
     if path.is_dir():
-        files = sorted(path.glob("*.yaml"))
+        files = [*path.glob("*.yaml")] or [*path.glob("*/*.yaml")]
         if not files:
             raise UsageError(f"{path} holds no mechanism files (*.yaml)")
-        return files
+        return sorted(files, key=lambda file: (file.name, file))
     if not path.exists():
         raise UsageError(f"{path} does not exist; give a mechanism file or a folder of them")
     return [path]
 
 
 def _one(
-    file: Path, check: bool, json: bool, quiet: bool, *, overview: bool
+    file: Path, check: bool, json: bool, quiet: bool, overview: Path | None
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
-    """Computes one file's tables, and compares or writes them; alone in their folder if it does."""
+    """Computes one file's tables, and compares or writes them; alone in their folder if it does.
+
+    Args:
+        overview: the folder whose overview has the file in it.
+    """
     from mechkin_cli.model import load
     from mechkin_cli.tables import OutputFolder
 
     model = load(file)
     if check:
-        return _made(file, model, None, json, quiet, overview=overview)
+        return _made(file, model, None, json, quiet, overview)
     if not file.stem.strip("."):
         raise UsageError(f"{file}: a folder for its tables would be {file.stem}; rename the file")
     with OutputFolder(file.with_suffix("")) as output:
-        return _made(file, model, output, json, quiet, overview=overview)
+        return _made(file, model, output, json, quiet, overview)
 
 
 def _made(
@@ -126,8 +132,7 @@ def _made(
     output: OutputFolder | None,
     json: bool,
     quiet: bool,
-    *,
-    overview: bool,
+    overview: Path | None,
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
     from mechkin_cli.tables import against_print, stale_in
 
@@ -135,7 +140,7 @@ def _made(
     said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
     say_diagnostics(said, str(file))
     printed = [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
-    row = overview_row(file, analyses, printed) if overview else None
+    row = None if overview is None else overview_row(file, overview, analyses, printed)
     fresh = _fresh_files(model, analyses, printed)
     complete = all(one.complete for one in analyses)
     code = ExitCode.OK if complete else ExitCode.ROWS_MISSING
@@ -258,9 +263,9 @@ def _told(file: Path, printed: Sequence[PrintedTable], json: bool, quiet: bool) 
 
 
 def overview_row(
-    file: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
+    file: Path, folder: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> OverviewRow:
-    """One file in a line."""
+    """One file in a line of the overview of a folder that it lies in, or in a folder of it."""
     from mechkin_cli.tables import counts
     from mechkin_cli.view import PICTURE_NAME as PICTURE
 
@@ -268,7 +273,7 @@ def overview_row(
     solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
     rows = sum(analysis.rows for analysis in analyses)
     return OverviewRow(
-        file.stem,
+        file.relative_to(folder).with_suffix("").as_posix(),
         model.name,
         " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
         _mobility(model),

@@ -10,6 +10,7 @@ import typer
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
+    parameters,
     put,
     refusal,
     say,
@@ -18,7 +19,7 @@ from mechkin_cli.cli.messages import (
     stem_of,
     tell_as,
 )
-from mechkin_cli.cli.options import File, Messages, Quiet, Set, mode_names, parameters, run_names
+from mechkin_cli.cli.options import File, Messages, Quiet, Set, mode_names, run_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 

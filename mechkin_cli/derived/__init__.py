@@ -6,31 +6,63 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.derived.balances import balance_table as balance_table
     from mechkin_cli.derived.basis import (
+        AXES as AXES,
         BasisQuantities as BasisQuantities,
+        OtherMoments as OtherMoments,
         basis_of as basis_of,
+        directions as directions,
         displacement as displacement,
         rotation_of as rotation_of,
         vector_of as vector_of,
     )
+    from mechkin_cli.derived.coefficients import (
+        GRAVITY as GRAVITY,
+        effort_powers as effort_powers,
+        friction_power as friction_power,
+        load_powers_along as load_powers_along,
+        power_against as power_against,
+        unloaded as unloaded,
+    )
     from mechkin_cli.derived.columns import derived_columns as derived_columns
-    from mechkin_cli.derived.dense import row_motion as row_motion
-    from mechkin_cli.derived.newton_euler import (
-        DenseSystem as DenseSystem,
-        coefficient_tables as coefficient_tables,
-        dense_system as dense_system,
+    from mechkin_cli.derived.quadrature import (
+        largest_between as largest_between,
+        mean as mean,
+        over_cycle as over_cycle,
+        running_integral_of_cycle as running_integral_of_cycle,
+        total as total,
     )
     from mechkin_cli.derived.rotation import quaternion as quaternion
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "balances": ["balance_table"],
-        "basis": ["BasisQuantities", "basis_of", "displacement", "rotation_of", "vector_of"],
+        "basis": [
+            "AXES",
+            "BasisQuantities",
+            "OtherMoments",
+            "basis_of",
+            "directions",
+            "displacement",
+            "rotation_of",
+            "vector_of",
+        ],
+        "coefficients": [
+            "GRAVITY",
+            "effort_powers",
+            "friction_power",
+            "load_powers_along",
+            "power_against",
+            "unloaded",
+        ],
         "columns": ["derived_columns"],
-        "dense": ["row_motion"],
-        "newton_euler": ["DenseSystem", "coefficient_tables", "dense_system"],
+        "quadrature": [
+            "largest_between",
+            "mean",
+            "over_cycle",
+            "running_integral_of_cycle",
+            "total",
+        ],
         "rotation": ["quaternion"],
     },
 )

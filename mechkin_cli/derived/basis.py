@@ -19,9 +19,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from mechkin_cli.derived.rotation import Rotation, RowVector
     from mechkin_cli.session import KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
+
+    RowVector = tuple[Floats, Floats, Floats]
+    Rotation = tuple[RowVector, RowVector, RowVector]
 
 
 AXES = ("x", "y", "z")

@@ -19,13 +19,11 @@ from mechkin_cli.tape import of_two
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.derived.basis import Rotation, RowVector
     from mechkin_cli.show import Floats
 
 
 # Vectors over rows: three arrays of shape (rows,), elementwise in a fixed order.
-
-if TYPE_CHECKING:
-    RowVector = tuple[Floats, Floats, Floats]
 
 
 def add(a: RowVector, b: RowVector) -> RowVector:
@@ -80,7 +78,6 @@ def off(axis: RowVector, a: RowVector) -> RowVector:
 
 if TYPE_CHECKING:
     Quaternion = tuple[Floats, Floats, Floats, Floats]
-    Rotation = tuple[RowVector, RowVector, RowVector]
 
 
 def relative(first: Rotation, second: Rotation) -> Rotation:

@@ -49,7 +49,7 @@ from mechkin_cli.tape import of_two
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.derived.rotation import RowVector
+    from mechkin_cli.derived.basis import RowVector
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 

@@ -28,7 +28,7 @@ from mechkin_cli.errors.rows import NOT_RESOLVED, as_number, as_parts
 from mechkin_cli.kernel.functions import power
 from mechkin_cli.mechanism import Damper, Spring
 from mechkin_cli.plan import Demand
-from mechkin_cli.session import Chart
+from mechkin_cli.session import Ask, Chart, PreciseConstants, RowInputs
 from mechkin_cli.tape import DoubleDoubles, eliminate, joined
 
 if TYPE_CHECKING:
@@ -208,19 +208,19 @@ class ForcedMotion:
         )
         inputs = np.repeat(self.held[:, :, None], count, axis=2)
         still = np.zeros((plan.inputs, 2, count))
-        batch = self.session.run_precise(
+        rows = RowInputs(
             inputs,
             as_parts(places.states),
-            constants=self.constants,
             rates=still,
             accelerations=still,
             full=inputs,
             turned=places.turned,
             time=np.stack([places.time.high, places.time.low]),
             chart=chart,
-            demand=MOVING if forces else Demand.VELOCITY | Demand.ACCELERATION,
-            derivatives=True,
         )
+        demand = MOVING if forces else Demand.VELOCITY | Demand.ACCELERATION
+        ask = Ask(demand, derivatives=True)
+        batch = self.session.run(rows, ask, PreciseConstants(self.constants))
         assert batch.first is not None
         assert batch.second is not None
         good = batch.good | self.session.is_redundant

@@ -35,13 +35,13 @@ from mechkin_cli.expressions import Quantity, exact_literal
 from mechkin_cli.mechanism import Varying, response_quantities
 from mechkin_cli.plan import Demand
 from mechkin_cli.response import MotionStart, integrate, prepare, watched_stop
-from mechkin_cli.session import Chart, PreciseInputs
+from mechkin_cli.session import Ask, Chart, PreciseConstants, PreciseInputs, RowInputs
 from mechkin_cli.tape import DoubleDoubles, TraceLost, double_doubles, exactly
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.response import Beginning, ResponseResult
-    from mechkin_cli.session import Precise
+    from mechkin_cli.session import KernelInputs, Precise, Session
     from mechkin_cli.show import Bools, Floats
 
 
@@ -169,13 +169,10 @@ class ResponseRows(KernelRows):
         count = len(first.values)
         copies = np.zeros(count + 1, dtype=np.intp)
         unit = np.concatenate([np.zeros((count, 1)), np.eye(count)], axis=1)
-        batch = chosen.run_precise(
-            np.ascontiguousarray(first.reduced[:, :, copies]),
-            np.ascontiguousarray(state[:, None][:, copies]),
-            constants=self.precise.constants(chosen),
-            rates=unit,
-            demand=Demand.VELOCITY,
-            derivatives=True,
+        batch = chosen.run(
+            RowInputs(first.reduced[:, :, copies], state[:, None][:, copies], unit),
+            Ask(Demand.VELOCITY, derivatives=True),
+            PreciseConstants(self.precise.constants(chosen)),
         )
         assert batch.first is not None
         if not (batch.good.all() or chosen.is_redundant):
@@ -320,21 +317,15 @@ class ResponseRows(KernelRows):
         """Rows that are repeated (rows,)."""
         return self._rows[2]
 
-    def _start(self, at: Any, session: Any) -> dict[str, Any]:
+    def _row_inputs(self, inputs: KernelInputs, session: Session) -> RowInputs:
         places = self._rows[0]
         if not session.plan.charts:
             raise NotRepeated("read as if the start's coordinates were driven")
-        rates, seconds = (
-            as_parts(self._motion.along(self._charts, part))[..., at] for part in places[2:4]
-        )
-        chart = Chart(
-            np.ascontiguousarray(self.result.chart.direction[:, at]),
-            np.ascontiguousarray(rates),
-            np.ascontiguousarray(seconds),
-            np.zeros((0, at.size)),
-        )
-        guess = np.ascontiguousarray(as_parts(places.states)[..., at])
-        return {"guess": guess, "chart": chart}
+        rates, seconds = (as_parts(self._motion.along(self._charts, part)) for part in places[2:4])
+        nothing = np.zeros((0, self.result.rows))
+        chart = Chart(self.result.chart.direction, rates, seconds, nothing)
+        found = super()._row_inputs(inputs, session)
+        return found._replace(guess=as_parts(places.states), chart=chart)
 
 
 def _put(

@@ -27,7 +27,7 @@ from mechkin_cli.mechanism import (
     is_angle,
 )
 from mechkin_cli.plan import Demand, demand_of
-from mechkin_cli.session import KernelInputs
+from mechkin_cli.session import Ask, KernelInputs, PreciseConstants, RowInputs
 from mechkin_cli.tape import DoubleDoubles, TraceLost, exactly
 from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.verdict import Status
@@ -410,29 +410,13 @@ class KernelRows:
     def _run(
         self, wanted: Sequence[Wanted], session: Session, inputs: KernelInputs, demand: Demand
     ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
-        rows, given, forces = self.result.row_states, self.given, demand & Demand.FORCES
         known = self.known
         at = np.flatnonzero(known) if known.any() else np.zeros(1, dtype=np.intp)
 
-        def parts(numbers: Any) -> Floats:
-            return as_parts(numbers)[..., at]
-
-        batch = session.run_precise(
-            parts(inputs.reduced),
-            **self._start(at, session),
-            readout=session.readout(wanted) if wanted else None,
-            constants=self._constants(session),
-            output_constants=self.precise.outputs(session, wanted) if wanted else None,
-            demand=demand & ~Demand.CONDITION,
-            rates=parts(inputs.rates) if demand & Demand.VELOCITY else None,
-            accelerations=parts(inputs.accelerations) if demand & Demand.ACCELERATION else None,
-            jerks=parts(inputs.jerks) if demand & Demand.JERK else None,
-            ties=None if given.tie_rates is None or not forces else given.tie_rates[..., at],
-            turned=np.ascontiguousarray(rows.turns[:, at]),
-            whole=np.ascontiguousarray(given.whole[:, at]),
-            full=parts(inputs.values),
-            time=None if given.time is None else np.ascontiguousarray(given.time[:, at]),
-        )
+        ask = Ask(demand & ~Demand.CONDITION, session.readout(wanted) if wanted else None)
+        written = self.precise.outputs(session, wanted) if wanted else None
+        numbers = PreciseConstants(self._constants(session), written)
+        batch = session.run(self._row_inputs(inputs, session).at(at), ask, numbers)
         # what the text does not close exactly is solved by least squares, as in doubles
         closed = (batch.good | session.is_redundant) & known[at]
         self.residual[at] = np.fmax(self.residual[at], batch.residual[0])
@@ -440,9 +424,12 @@ class KernelRows:
         values = None if outputs is None else _put_back(outputs, at, closed, known.size)
         return _put_back(batch.states, at, closed, known.size), values
 
-    def _start(self, at: NDArray[np.intp], session: Session) -> dict[str, Any]:
-        """What `Session.run_precise` starts `session` from at the rows `at`."""
-        return {"guess": np.ascontiguousarray(self.result.row_states.states[:, at])}
+    def _row_inputs(self, inputs: KernelInputs, session: Session) -> RowInputs:
+        """What a run of `session` is given for the rows."""
+        given, rows = self.given, self.result.row_states
+        values, rates, accelerations, jerks, reduced, _ = map(as_parts, inputs)
+        in_parts = KernelInputs(values, rates, accelerations, jerks, reduced, given.whole)
+        return in_parts.at(rows.states, rows.turns, given.time, given.tie_rates)
 
     def _constants(self, session: Session) -> Floats:
         """The constants of a session's plan as the text says them (constants, 2); kept."""

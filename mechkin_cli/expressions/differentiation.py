@@ -23,12 +23,10 @@ from mechkin_cli.expressions import (
     operations as steps,
     operations as truths,
 )
-from mechkin_cli.expressions.expression import Expression
+from mechkin_cli.expressions.expression import Expression, refuse_large
 from mechkin_cli.expressions.grammar import parse_nodes
 from mechkin_cli.expressions.jets import Jet
 from mechkin_cli.expressions.quantity import (
-    MAX_EXPANDED,
-    ExpressionError,
     Name,
     Node,
     NumberNode,
@@ -396,17 +394,6 @@ def differentiated(nodes: Sequence[Node], rate: Rate, unit: str, offset: int) ->
         return found
     # log(x) has none where x < 0, though 1/x has a value, and so for what does not move
     return _filled(f"d + 0*a/(1 {unit})", {"a": value, "d": found}, offset)
-
-
-def refuse_large(size: int, offset: int) -> None:
-    """Refuses an expression that has grown too large.
-
-    Raises:
-        ExpressionError: it has more nodes than the limit.
-    """
-    if size > MAX_EXPANDED:
-        text = f"with the quantities in it the expression has more than {MAX_EXPANDED} parts"
-        raise ExpressionError(text, offset, "use fewer of them in one another")
 
 
 def _operated(node: OperationNode, operands: list[_Moving], unit: str, offset: int) -> _Moving:

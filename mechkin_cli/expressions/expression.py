@@ -27,6 +27,7 @@ from mechkin_cli.expressions.functions import (
 )
 from mechkin_cli.expressions.grammar import VANISHES, WRITE_ZERO, parse_nodes
 from mechkin_cli.expressions.quantity import (
+    MAX_EXPANDED,
     MAX_EXPONENT,
     MAX_QUOTED,
     ExpressionError,
@@ -321,7 +322,6 @@ class Definitions:
         """
         if not any(self._is_replaced(node) for node in expression.nodes):
             return expression
-        from mechkin_cli.expressions.differentiation import refuse_large
 
         stack: list[list[Node]] = []
         for node in expression.nodes:
@@ -384,3 +384,14 @@ def exact_literal(number: NumberNode) -> Quantity:
         return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
     value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
     return Quantity(value, number.unit.dimension)
+
+
+def refuse_large(size: int, offset: int) -> None:
+    """Refuses an expression that has grown too large.
+
+    Raises:
+        ExpressionError: it has more nodes than the limit.
+    """
+    if size > MAX_EXPANDED:
+        text = f"with the quantities in it the expression has more than {MAX_EXPANDED} parts"
+        raise ExpressionError(text, offset, "use fewer of them in one another")

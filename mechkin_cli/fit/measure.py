@@ -265,7 +265,7 @@ def rms_weights(model: Model, run: str) -> Floats:
         weights = row_weights(model.problem.responses[run].moments.written)
         return np.asarray(np.sqrt(weights / weights.sum()), dtype=np.float64)
     way = way_of(model.problem)
-    at = np.zeros(model.problem.motion.rows) if way is None else way.values
+    at = np.zeros(model.problem.motion.rows) if way is None else way[1]
     weights = row_weights(np.asarray(at, dtype=np.float64))
     found: Floats = np.sqrt(weights / weights.sum())
     return found

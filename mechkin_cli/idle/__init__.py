@@ -12,7 +12,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.idle.find import (
         PLACES as PLACES,
-        Coordinate as Coordinate,
         LinkMotion as LinkMotion,
         RigidGroup as RigidGroup,
     )
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "find": ["Coordinate", "LinkMotion", "PLACES", "RigidGroup"],
+        "find": ["LinkMotion", "PLACES", "RigidGroup"],
         "hold": ["exact_holds", "held_freedoms", "held_groups"],
         "idle": [
             "conventional_notes",

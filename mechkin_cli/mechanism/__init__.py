@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.curve import (
         Curve as Curve,
         Joining as Joining,
+        LoadLaw as LoadLaw,
         joined_curve as joined_curve,
     )
     from mechkin_cli.mechanism.derived import (
@@ -45,7 +46,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.model import (
         GROUND_NAME as GROUND_NAME,
         Amount as Amount,
-        Attached as Attached,
         Damper as Damper,
         Drives as Drives,
         Joint as Joint,
@@ -83,6 +83,7 @@ if TYPE_CHECKING:
         ELEMENTARY as ELEMENTARY,
         FIRST as FIRST,
         SECOND as SECOND,
+        Attached as Attached,
         Condition as Condition,
         Coordinate as Coordinate,
         Drawing as Drawing,
@@ -108,8 +109,8 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.mechanism.problem import (
         Laws as Laws,
-        LoadLaw as LoadLaw,
         Problem as Problem,
+        differentiation as differentiation,
         law_value as law_value,
         quantities_read as quantities_read,
         undefined_laws as undefined_laws,
@@ -120,10 +121,8 @@ if TYPE_CHECKING:
         REACTION_LEVEL as REACTION_LEVEL,
         SELF_LOCKING as SELF_LOCKING,
         TIME_OF_ROW as TIME_OF_ROW,
-        Wanted as Wanted,
         bearing_load as bearing_load,
         coordinate_quantities as coordinate_quantities,
-        differentiation as differentiation,
         effort_quantity as effort_quantity,
         friction_states as friction_states,
         read_for as read_for,
@@ -142,9 +141,8 @@ if TYPE_CHECKING:
         Stop as Stop,
         TurnsEnd as TurnsEnd,
         WorkBalance as WorkBalance,
-        read_by as read_by,
-        response_problem as response_problem,
     )
+    from mechkin_cli.mechanism.runs import read_by as read_by, response_problem as response_problem
     from mechkin_cli.mechanism.vectors import (
         GROUND as GROUND,
         ZERO as ZERO,
@@ -163,11 +161,12 @@ if TYPE_CHECKING:
         unit as unit,
         upright as upright,
     )
+    from mechkin_cli.mechanism.wanted import Wanted as Wanted
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "curve": ["Curve", "Joining", "joined_curve"],
+        "curve": ["Curve", "Joining", "LoadLaw", "joined_curve"],
         "derived": [
             "COEFFICIENT_KINDS",
             "DERIVED_KINDS",
@@ -190,7 +189,6 @@ __getattr__, __dir__ = lazy_names(
         "held": ["Line", "LockedFreedom", "is_turn", "is_unnamed", "slide_name", "turn_name"],
         "model": [
             "Amount",
-            "Attached",
             "Damper",
             "Drives",
             "GROUND_NAME",
@@ -226,6 +224,7 @@ __getattr__, __dir__ = lazy_names(
             "Parameter",
         ],
         "pair_type": [
+            "Attached",
             "Condition",
             "Coordinate",
             "Drawing",
@@ -252,17 +251,22 @@ __getattr__, __dir__ = lazy_names(
             "joint_type",
             "seat_letter",
         ],
-        "problem": ["Laws", "LoadLaw", "Problem", "law_value", "quantities_read", "undefined_laws"],
+        "problem": [
+            "Laws",
+            "Problem",
+            "differentiation",
+            "law_value",
+            "quantities_read",
+            "undefined_laws",
+        ],
         "quantities": [
             "ACTUATION",
             "BEARING_KINDS",
             "REACTION_LEVEL",
             "SELF_LOCKING",
             "TIME_OF_ROW",
-            "Wanted",
             "bearing_load",
             "coordinate_quantities",
-            "differentiation",
             "effort_quantity",
             "friction_states",
             "read_for",
@@ -281,9 +285,8 @@ __getattr__, __dir__ = lazy_names(
             "Stop",
             "TurnsEnd",
             "WorkBalance",
-            "read_by",
-            "response_problem",
         ],
+        "runs": ["read_by", "response_problem"],
         "vectors": [
             "Frame",
             "GROUND",
@@ -302,5 +305,6 @@ __getattr__, __dir__ = lazy_names(
             "unit",
             "upright",
         ],
+        "wanted": ["Wanted"],
     },
 )

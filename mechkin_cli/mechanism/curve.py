@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from mechkin_cli.diagnostics import Place
+from mechkin_cli.expressions import Expression
 from mechkin_cli.tape import of_numbers, plain
 
 if TYPE_CHECKING:
@@ -240,3 +242,16 @@ def _at_end(h0: float, h1: float, rise0: float, rise1: float) -> float:
     if rise0 * rise1 <= 0.0 and abs(slope) > 3.0 * abs(rise0):
         return 3.0 * rise0
     return slope
+
+
+class LoadLaw(NamedTuple):
+    """The value of a load in SI: `expression`, or `curve` over the one quantity that is read.
+
+    `reads` are the names of the quantities that the law depends on; `place` is where the file
+    says it.
+    """
+
+    reads: tuple[str, ...]
+    place: Place
+    expression: Expression | None = None
+    curve: Curve | None = None

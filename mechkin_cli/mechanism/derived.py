@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from mechkin_cli.mechanism.model import GROUND_NAME, Attached, Joint, Mechanism, is_written
+from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, is_written
 from mechkin_cli.mechanism.motion import ORDERS
+from mechkin_cli.mechanism.pair_type import Attached
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, dimension_of, is_angle
-from mechkin_cli.mechanism.quantities import BEARING_KINDS, Kind, Wanted, effort_quantity, in_plane
+from mechkin_cli.mechanism.quantities import BEARING_KINDS, effort_quantity, in_plane
 from mechkin_cli.mechanism.vectors import ZERO
+from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,

@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from mechkin_cli.idle import Coordinate
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism
+from mechkin_cli.mechanism.model import GROUND_NAME, Coordinate, Joint, Mechanism
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, subtract
 

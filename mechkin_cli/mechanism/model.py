@@ -17,6 +17,7 @@ from mechkin_cli.exact import TURN
 from mechkin_cli.mechanism.pair_type import (
     FIRST,
     SECOND,
+    Attached,
     DrawnDirection,
     JointType,
     Part,
@@ -40,7 +41,7 @@ from mechkin_cli.mechanism.vectors import (
 from mechkin_cli.tape import largest, nonzero, smallest
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism.quantities import Wanted
+    from mechkin_cli.mechanism.wanted import Wanted
 
 
 # Where the efforts act that keep up the motion of the inputs: at these, or at actuators.
@@ -268,13 +269,6 @@ class Joint(NamedTuple):
         if self.type.parameter == "from axis to pin":
             return -dot(self.axis.vector, self.on_first.y)
         return 0.0
-
-
-class Attached(NamedTuple):
-    """A point or a direction carried by a link, as drawn at home."""
-
-    link: str
-    vector: Vector
 
 
 class Varying(NamedTuple):

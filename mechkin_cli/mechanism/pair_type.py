@@ -17,7 +17,6 @@ from mechkin_cli.units import ANGLE, Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Place
-    from mechkin_cli.mechanism.model import Attached
 
 
 Screw = tuple[Vector, Vector]
@@ -469,3 +468,10 @@ def _closing_codes() -> dict[str, int]:
     from mechkin_cli.kernel import _kernel
 
     return {row["letter"]: row["code"] for row in _kernel.joint_table()}
+
+
+class Attached(NamedTuple):
+    """A point or a direction carried by a link, as drawn at home."""
+
+    link: str
+    vector: Vector

@@ -9,8 +9,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.diagnostics import Diagnostic, Place
-from mechkin_cli.expressions import Definitions, Expression, Quantity
+from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.expressions import (
+    Definitions,
+    ExpressionError,
+    Name,
+    Node,
+    NumberNode,
+    OperationNode,
+    Quantity,
+    parse_nodes,
+)
+from mechkin_cli.mechanism.curve import LoadLaw
 from mechkin_cli.mechanism.derived import (
     coefficient_catalogue,
     derived_catalogue,
@@ -19,20 +29,18 @@ from mechkin_cli.mechanism.derived import (
     ledger_catalogue,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
-from mechkin_cli.mechanism.model import Mechanism, without_effort
+from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, without_effort
 from mechkin_cli.mechanism.motion import Assembly, MotionInputs
-from mechkin_cli.mechanism.quantities import (
-    Wanted,
-    bearing_catalogue,
-    catalogue,
-    response_quantities,
-)
+from mechkin_cli.mechanism.pairs import is_angle
+from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
+from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.expressions import Differentiate
     from mechkin_cli.mechanism.curve import Curve
     from mechkin_cli.mechanism.response import ResponseProblem
     from mechkin_cli.show import Bools, Floats
@@ -170,19 +178,6 @@ class Problem:
 Resolve = Callable[[str], Quantity]
 
 
-class LoadLaw(NamedTuple):
-    """The value of a load in SI: `expression`, or `curve` over the one quantity that is read.
-
-    `reads` are the names of the quantities that the law depends on; `place` is where the file
-    says it.
-    """
-
-    reads: tuple[str, ...]
-    place: Place
-    expression: Expression | None = None
-    curve: Curve | None = None
-
-
 class Laws(NamedTuple):
     """The laws of the loads that vary, and what the names in them stand for; `watched` are values
     that a motion is watched for beside them."""
@@ -281,3 +276,91 @@ class _LawPlaces(NamedTuple):
         dimension = self.resolve(name).dimension
         in_file = float(self.units.from_si(value, dimension))
         return f"{in_file:.12g} {self.units.label(dimension)}".rstrip()
+
+
+_AXES = ("x", "y", "z")
+
+
+_POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"
+
+
+def differentiation(problem: Problem) -> Differentiate:
+    """How derivatives by the inputs of a problem are taken."""
+
+    def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
+        # loaded only where a derivative is written
+        from mechkin_cli.expressions import differentiated
+
+        influence = _Influence(problem, by)
+        return differentiated(nodes, influence.rate, influence.unit, offset)
+
+    return differentiate
+
+
+class _Influence:
+    """The derivatives of names by one input.
+
+    Raises:
+        ExpressionError: it is no input.
+    """
+
+    def __init__(self, problem: Problem, by: Name) -> None:
+        self.problem, self.input = problem, by.text
+        self.known: Mapping[str, Wanted] = problem.quantities()
+        self.inputs = [f"{joint}.{name}" for joint, name in problem.motion.driven]
+        if self.input not in self.inputs:
+            hint = nearest_hint(self.input, self.inputs) or "the motion has no inputs"
+            raise ExpressionError(f"{self.input[:40]} is no input of the motion", by.offset, hint)
+        self.unit = "rad" if is_angle(self.input.rpartition(".")[2]) else "m"
+
+    def rate(self, name: Name) -> tuple[Node, ...] | None:
+        """The derivative of a name; None of what does not move.
+
+        Raises:
+            ExpressionError: it is no position.
+        """
+        text, axis = name.text, ""
+        if text in self.problem.parameters:
+            return None
+        if text not in self.known and text.rpartition(".")[2] in _AXES:
+            text, _, axis = text.rpartition(".")
+        wanted = self.known.get(text)
+        if wanted is None:
+            return None  # what is not known is told when the expression is evaluated
+        component = (OperationNode(f".{axis}", 1, name.offset),) if axis else ()
+        if wanted.kind == "coordinate" and wanted.order == 0:
+            return self._of_coordinate(text, name)
+        if wanted.kind == "point" and wanted.order == 0:
+            if self.problem.mechanism.points[wanted.owner].link == GROUND_NAME:
+                return None
+            return (*self._per(f"{wanted.owner}.acceleration", name), *component)
+        if wanted.kind == "direction":
+            link = self.problem.mechanism.directions[text].link
+            if link == GROUND_NAME:
+                return None
+            turning = self._per(f"{link}.alpha", name)
+            # a rate of turning times a length is a velocity: its rad is left out
+            bare = (*parse_nodes("1 rad"), OperationNode("/", 2, name.offset))
+            cross = OperationNode("cross", 2, name.offset)
+            return (*turning, *bare, Name(text, name.offset), cross, *component)
+        hint = _POSITIONS
+        if wanted.kind == "joint_point":
+            hint = f"name the place in points: and write its position; {_POSITIONS}"
+        raise ExpressionError(f"{text} has no derivative by an input", name.offset, hint)
+
+    def _of_coordinate(self, text: str, name: Name) -> tuple[Node, ...] | None:
+        if text in self.inputs:
+            one = NumberNode(1.0, None, "1", name.offset)
+            return (one,) if text == self.input else None
+        return self._per(f"{text}_ddot", name)
+
+    def _per(self, acceleration: str, name: Name) -> tuple[Node, ...]:
+        """The coefficient of an acceleration."""
+        leading = self.problem.motion.leading
+        found = f"{acceleration}.per.{self.input}_ddot"
+        if found not in self.known and leading is not None and leading.name == self.input:
+            found = f"{acceleration}.per_acceleration"
+        if found not in self.known:
+            text = f"{name.text} has no derivative by {self.input}"
+            raise ExpressionError(text, name.offset, _POSITIONS)
+        return (Name(found, name.offset, whole=True),)

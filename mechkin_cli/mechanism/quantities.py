@@ -9,27 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import (
     Expression,
-    ExpressionError,
-    Name,
-    Node,
-    NumberNode,
-    OperationNode,
     Quantity,
     Resolve,
-    Value,
-    Vector,
     parse,
-    parse_nodes,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, find_legs, is_written
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
+from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -49,103 +41,7 @@ from mechkin_cli.units import (
 )
 
 if TYPE_CHECKING:
-    from mechkin_cli.expressions import Differentiate
-    from mechkin_cli.mechanism.problem import Problem
-
-
-Kind = Literal[
-    "coordinate",
-    "point",
-    "direction",
-    "omega",
-    "alpha",
-    "axis",
-    "joint_point",
-    "slip",
-    "force",
-    "moment",
-    "moment_about_origin",
-    "effort",
-    "shaking_force",
-    "shaking_moment",
-    "inertia_force",
-    "inertia_moment",
-    "holding_moment",
-    "holding_force",
-    "residual",
-    "condition",
-    "power_error",
-    "error_bound",
-    "work",
-    "dissipated",
-    "energy_error",
-    "time",
-    "quaternion",
-    "turn",
-    "screw_axis",
-    "screw_point",
-    "screw_pitch",
-    "finite_axis",
-    "finite_point",
-    "finite_angle",
-    "finite_slide",
-    "mechanical_advantage",
-    "transmission_angle",
-    "per_acceleration",
-    "without_acceleration",
-    "dynamic_transmission_angle",
-    "ledger_work",
-    "ledger_dissipated",
-    "ledger_energy_error",
-    "kinetic_energy",
-    "potential_energy",
-    "total_force",
-    "total_moment",
-    "link_direction",
-    "link_point",
-    "normal_load",
-    "friction_force",
-    "friction_moment",
-    "friction_power",
-    "friction_state",
-    "self_locking",
-    "reaction_level",
-    "load_power",
-    "actuation",
-    "radial_force",
-    "axial_force",
-    "tilting_moment",
-]
-"""Some are of no use to users: what derived quantities are computed from, and what cells
-are judged by."""
-
-
-_SEEN = {"xyz": (0, 1, 2), "xy": (0, 1), "z": (2,)}
-"""What is told of a vector -> the places of its components."""
-
-
-class Wanted(NamedTuple):
-    """One quantity: its kind, whose it is, which derivative, dimension, whether it is a vector, and
-    which of a vector's components users see: in a plane x and y, or z alone."""
-
-    name: str
-    kind: Kind
-    owner: str
-    dimension: Dimension
-    vector: bool
-    coordinate: str = ""
-    order: int = 0
-    told: str = "xyz"
-
-    @property
-    def places(self) -> tuple[int, ...]:
-        """Which of its numbers users see."""
-        return _SEEN[self.told] if self.vector else (0,)
-
-    def value(self, numbers: Any) -> Value:
-        """What users see of its numbers."""
-        seen = [numbers[place] for place in self.places]
-        return Vector(*seen) if len(seen) > 1 else seen[0]
+    pass
 
 
 TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
@@ -360,91 +256,6 @@ def response_quantities() -> dict[str, Wanted]:
 # of the position by the input (influence coefficients: J. Duffy, Analysis of Mechanisms and Robot
 # Manipulators, 1980): `p.position` by `A.theta` is `p.acceleration.per_acceleration`. A direction d
 # of a link moves by the cross product of the link's coefficient and d.
-
-_AXES = ("x", "y", "z")
-_POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"
-
-
-def differentiation(problem: Problem) -> Differentiate:
-    """How derivatives by the inputs of a problem are taken."""
-
-    def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
-        # loaded only where a derivative is written
-        from mechkin_cli.expressions import differentiated
-
-        influence = _Influence(problem, by)
-        return differentiated(nodes, influence.rate, influence.unit, offset)
-
-    return differentiate
-
-
-class _Influence:
-    """The derivatives of names by one input.
-
-    Raises:
-        ExpressionError: it is no input.
-    """
-
-    def __init__(self, problem: Problem, by: Name) -> None:
-        self.problem, self.input = problem, by.text
-        self.known: Mapping[str, Wanted] = problem.quantities()
-        self.inputs = [f"{joint}.{name}" for joint, name in problem.motion.driven]
-        if self.input not in self.inputs:
-            hint = nearest_hint(self.input, self.inputs) or "the motion has no inputs"
-            raise ExpressionError(f"{self.input[:40]} is no input of the motion", by.offset, hint)
-        self.unit = "rad" if is_angle(self.input.rpartition(".")[2]) else "m"
-
-    def rate(self, name: Name) -> tuple[Node, ...] | None:
-        """The derivative of a name; None of what does not move.
-
-        Raises:
-            ExpressionError: it is no position.
-        """
-        text, axis = name.text, ""
-        if text in self.problem.parameters:
-            return None
-        if text not in self.known and text.rpartition(".")[2] in _AXES:
-            text, _, axis = text.rpartition(".")
-        wanted = self.known.get(text)
-        if wanted is None:
-            return None  # what is not known is told when the expression is evaluated
-        component = (OperationNode(f".{axis}", 1, name.offset),) if axis else ()
-        if wanted.kind == "coordinate" and wanted.order == 0:
-            return self._of_coordinate(text, name)
-        if wanted.kind == "point" and wanted.order == 0:
-            if self.problem.mechanism.points[wanted.owner].link == GROUND_NAME:
-                return None
-            return (*self._per(f"{wanted.owner}.acceleration", name), *component)
-        if wanted.kind == "direction":
-            link = self.problem.mechanism.directions[text].link
-            if link == GROUND_NAME:
-                return None
-            turning = self._per(f"{link}.alpha", name)
-            # a rate of turning times a length is a velocity: its rad is left out
-            bare = (*parse_nodes("1 rad"), OperationNode("/", 2, name.offset))
-            cross = OperationNode("cross", 2, name.offset)
-            return (*turning, *bare, Name(text, name.offset), cross, *component)
-        hint = _POSITIONS
-        if wanted.kind == "joint_point":
-            hint = f"name the place in points: and write its position; {_POSITIONS}"
-        raise ExpressionError(f"{text} has no derivative by an input", name.offset, hint)
-
-    def _of_coordinate(self, text: str, name: Name) -> tuple[Node, ...] | None:
-        if text in self.inputs:
-            one = NumberNode(1.0, None, "1", name.offset)
-            return (one,) if text == self.input else None
-        return self._per(f"{text}_ddot", name)
-
-    def _per(self, acceleration: str, name: Name) -> tuple[Node, ...]:
-        """The coefficient of an acceleration."""
-        leading = self.problem.motion.leading
-        found = f"{acceleration}.per.{self.input}_ddot"
-        if found not in self.known and leading is not None and leading.name == self.input:
-            found = f"{acceleration}.per_acceleration"
-        if found not in self.known:
-            text = f"{name.text} has no derivative by {self.input}"
-            raise ExpressionError(text, name.offset, _POSITIONS)
-        return (Name(found, name.offset, whole=True),)
 
 
 # What a joint transmits along its axis and square to it, as bearings are chosen by.

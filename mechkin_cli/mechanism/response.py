@@ -7,26 +7,25 @@ moment.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.expressions import parse
+from mechkin_cli.diagnostics import Place
+from mechkin_cli.expressions import Expression, parse
+from mechkin_cli.mechanism.curve import LoadLaw
 from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, MotionInputs
 from mechkin_cli.mechanism.pairs import dimension_of
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from mechkin_cli.diagnostics import Place
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import Amount, Mechanism
     from mechkin_cli.mechanism.motion import Assembly, Course
-    from mechkin_cli.mechanism.problem import LoadLaw, Problem
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -171,7 +170,6 @@ class ResponseProblem:
 def _watched(stop: Stop) -> LoadLaw:
     if isinstance(stop, CrossingEnd):
         return stop.law
-    from mechkin_cli.mechanism.problem import LoadLaw
 
     name = f"{stop.joint}.{stop.coordinate}"
     if isinstance(stop, DeadCentreEnd):
@@ -212,26 +210,6 @@ def _at_first(item: DrivenInput) -> DrivenInput:
         jerks=item.jerks[:1],
         written_orders=item.written_orders[:, :1],
         follows=False,
-    )
-
-
-def response_problem(
-    problem: Problem, response: ResponseProblem, motion: MotionInputs | None = None
-) -> Problem:
-    """The problem at the first moment of a response, with its loads, laws and quantities.
-
-    Its motion, or the `motion` that is given, has one row, in which the start's coordinates are
-    inputs; a solver graph of its `driven` is that of the assembly at the start.
-    """
-    return replace(
-        problem,
-        mechanism=response.mechanism,
-        motion=first_motion(response, problem.units) if motion is None else motion,
-        assembly=response.assembly,
-        load_laws=response.load_laws,
-        held=response.held,
-        follow=None,
-        response=response,
     )
 
 
@@ -284,17 +262,3 @@ class Flywheel(Balance):
 
 
 AnyBalance = WorkBalance | Harmonics | Flywheel
-
-
-def read_by(balances: Iterable[AnyBalance], problem: Problem) -> list[str]:
-    """Names of the quantities that balances read at once."""
-    found: list[str] = []
-    for balance in balances:
-        if isinstance(balance, Harmonics):
-            known = problem.quantities()
-            for _, expression in balance.of:
-                names = sorted(expression.names)
-                found += [n if n in known else n.rpartition(".")[0] for n in names]
-        else:
-            found += [f"{joint}.{coordinate}.effort" for joint, coordinate in problem.acting]
-    return [name for name in dict.fromkeys(found) if name in problem.quantities()]

@@ -47,7 +47,7 @@ def verdict(found: Mobility) -> str:
 def count_of_freedoms(number: int) -> str:
     """A number of freedoms in words.
 
-    >>> freedoms(1), freedoms(2)
+    >>> count_of_freedoms(1), count_of_freedoms(2)
     ('one freedom', '2 freedoms')
     """
     return "one freedom" if number == 1 else f"{number} freedoms"

@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
+from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.structure import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ class Poses:
     def at(self, inputs: Floats, states: Floats) -> tuple[Floats, Floats]:
         """Turns (rows, bodies, 3, 3) and places (rows, bodies, 3) of ground and the bodies, in this
         order, at inputs (inputs, rows) and states (states, rows)."""
-        batch = self.session.run(inputs, states, readout=self.readout)
+        batch = self.session.run(RowInputs(inputs, states), Ask(readout=self.readout))
         assert batch.outputs is not None
         rows = states.shape[1]
         marks = batch.outputs[self._slots].reshape(len(self.bodies), 4, 3, rows)

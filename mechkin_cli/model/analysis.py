@@ -199,7 +199,7 @@ class Reading(Listed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> r = load("mechanisms/rcsr.yaml").analyze()
+            >>> r = load("mechanisms/dissertation/rcsr.yaml").analyze()
             >>> r.to_pandas("table_03").attrs["units"]["theta4"]
             'deg'
         """
@@ -325,7 +325,7 @@ class Summarized:
 
         Example:
             >>> from mechkin_cli import load
-            >>> r = load("mechanisms/slider_crank.yaml").analyze()
+            >>> r = load("mechanisms/plane/slider_crank.yaml").analyze()
             >>> found = r.summary("A.effort")
             >>> found.peak.place, found.rows
             (260.0, 37)
@@ -350,7 +350,8 @@ class Summarized:
 
         Example:
             >>> from mechkin_cli import load
-            >>> value, place = load("mechanisms/slider_crank.yaml").analyze().peak("A.radial_force")
+            >>> r = load("mechanisms/plane/slider_crank.yaml").analyze()
+            >>> value, place = r.peak("A.radial_force")
             >>> round(value, 3), place
             (145.425, 220.0)
         """
@@ -454,7 +455,7 @@ class Analysis(Reading, Summarized, Plotted):
     def _balanced(self) -> tuple[tuple[Columns, ...], tuple[Diagnostic, ...]]:
         if not self.chosen_balances:
             return (), ()
-        from mechkin_cli.derived import balance_table
+        from mechkin_cli.balances import balance_table
 
         found = [balance_table(balance, self.result) for balance in self.chosen_balances]
         faults = dict.fromkeys(fault for _, own in found for fault in own)
@@ -482,7 +483,7 @@ class Analysis(Reading, Summarized, Plotted):
         """
         if not self.chosen_coefficients:
             return ()
-        from mechkin_cli.derived import coefficient_tables
+        from mechkin_cli.balances import coefficient_tables
 
         found = [coefficient_tables(one, self.result) for one in self.chosen_coefficients]
         return tuple(table for pair in found for table in pair)

@@ -13,7 +13,7 @@ from mechkin_cli.building import Built, build, open_data, open_file, open_text
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.model.analysis import Analysis
-from mechkin_cli.model.runs import run_name
+from mechkin_cli.model.runs import RunOptions, run_name
 from mechkin_cli.model.settings import input_values, parameter_texts
 from mechkin_cli.session import Session
 from mechkin_cli.show import Listed, Listing, Named
@@ -76,7 +76,7 @@ class Certified:
 
         Example:
             >>> from mechkin_cli import load
-            >>> proofs = load("mechanisms/rcsr.yaml").certify()
+            >>> proofs = load("mechanisms/dissertation/rcsr.yaml").certify()
             >>> proofs.is_one_branch, sorted(set(proofs.status.tolist()))
             (True, ['proven'])
             >>> low, high = proofs.enclosure("O2.theta")
@@ -131,7 +131,7 @@ class Fitted:
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/planar_four_bar.yaml")
+            >>> m = load("mechanisms/plane/planar_four_bar.yaml")
             >>> wanted = m.with_parameters({"a": 35, "c": 95}).analyze()["C.theta"][[4, 8, 16]]
             >>> target = {"of": "C.theta", "at": [60, 120, 240], "is": wanted.tolist()}
             >>> f = m.fit(target, {"a": (30, 50), "c": (80, 100)}, starts=1)
@@ -251,7 +251,7 @@ class Studied:
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
             >>> r = m.study(
             ...     {"vary": {"P1": [0.48, 0.5, 0.52]}, "keep": [{"of": "O1.effort", "as": "peak"}]}
             ... )
@@ -330,7 +330,7 @@ class Toleranced:
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
             >>> s = m.sensitivities(["O4.theta"], ["P1", "alpha1"], at=170)
             >>> s["O4.theta", "P1"].round(4).tolist(), s.unit("O4.theta", "P1")
             ([39.755], 'deg/in')
@@ -372,7 +372,7 @@ class Toleranced:
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
             >>> t = m.tolerances({"P1": "0.002 in", "P2": "0.002 in"}, ["O4.theta"], samples=64)
             >>> {name: round(float(share[-1]), 2) for name, share in t.shares("O4.theta").items()}
             {'P2': 0.8, 'P1': 0.2}
@@ -436,7 +436,7 @@ class Viewed:
             >>> from tempfile import TemporaryDirectory
             >>> from mechkin_cli import load
             >>> with TemporaryDirectory() as folder:
-            ...     load("mechanisms/rcsr.yaml").view(f"{folder}/rcsr.html").name
+            ...     load("mechanisms/dissertation/rcsr.yaml").view(f"{folder}/rcsr.html").name
             'rcsr.html'
         """
         from mechkin_cli.view import analyses_of, view_page, write_view
@@ -574,7 +574,8 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
         """
         from mechkin_cli.model.runs import run_sweep
 
-        return run_sweep(self, quantities, tables, mode, closed_at, lanes, threads, errors)
+        options = RunOptions(quantities, tables, mode, closed_at, lanes, threads, errors)
+        return run_sweep(self, options)
 
     def respond(
         self,
@@ -602,12 +603,11 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Raises:
             InvalidFile: the start names too few coordinates or too many.
-            UsageError: an unknown response, table, quantity or mode, or a width that the machine
-                lacks.
+            UsageError: an unknown response, table, quantity or mode, or a width as of `analyze`.
         """
         from mechkin_cli.model.runs import respond
 
-        return respond(self, name, quantities, tables, mode, lanes, threads)
+        return respond(self, name, RunOptions(quantities, tables, mode, None, lanes, threads))
 
     @cached_property
     def _variants(self) -> Base:
@@ -631,7 +631,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
             >>> m.with_parameters({"P1": "0.52 in"}).analyze()["O4.theta"][:2].round(3).tolist()
             [36.504, 36.269]
         """
@@ -671,7 +671,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/rcsr.yaml")
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
             >>> r = m.vary({"P1": [0.48, 0.5, 0.52]}, ["O1.effort"], reduce="peak")
             >>> r["O1.effort"].round(2).tolist()
             [147.41, 135.04, 125.93]
@@ -713,7 +713,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> place = load("mechanisms/rcsr.yaml").solve({"O1.theta": 161.5}, ["O4.theta"])
+            >>> place = load("mechanisms/dissertation/rcsr.yaml").solve({"O1.theta": 161.5})
             >>> round(place["O4.theta"], 6), place.status
             (28.438352, 'ok')
         """
@@ -761,7 +761,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> [mode.name for mode in load("mechanisms/rcsr.yaml").modes(at=170).modes]
+            >>> [a.name for a in load("mechanisms/dissertation/rcsr.yaml").modes(at=170).modes]
             ['A', 'B']
         """
         from mechkin_cli.modes import find_modes
@@ -798,7 +798,7 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
 
         Example:
             >>> from mechkin_cli import load
-            >>> load("mechanisms/bennett.yaml").mobility().mobility
+            >>> load("mechanisms/classics/bennett.yaml").mobility().mobility
             1
         """
         from mechkin_cli.mobility import find_mobility
@@ -838,7 +838,7 @@ def load(
         InvalidFile: with every independent error and its place.
 
     Example:
-        >>> load("mechanisms/rcsr.yaml").name
+        >>> load("mechanisms/dissertation/rcsr.yaml").name
         'RCSR'
         >>> pin = {"type": "R", "links": ["ground", "arm"], "point": [0, 0, 0], "axis": [0, 0, 1]}
         >>> sweep = {"O.theta": {"from": 0, "to": 90, "step": 45}}

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from mechkin_cli import response as response_room
 from mechkin_cli.arguments import a_text, a_whole_number, texts
 from mechkin_cli.building import used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
@@ -16,7 +17,6 @@ from mechkin_cli.mechanism import find_legs, response_problem
 from mechkin_cli.memo import remembered
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.plan import needs_all_links
-from mechkin_cli.response import respond as run_response
 from mechkin_cli.session import Packing, Session
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import analyze
@@ -37,6 +37,18 @@ QUANTITIES = (
     "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
     'and expressions are read from the analysis: r["J.force.x"]'
 )
+
+
+class RunOptions(NamedTuple):
+    """What a caller wants of a run: the arguments of `Model.analyze` and `Model.respond`."""
+
+    quantities: Iterable[str] | None = None
+    tables: Sequence[str] | None = None
+    mode: str | None = None
+    closed_at: Sequence[str] | None = None
+    lanes: int = 0
+    threads: int = 0
+    errors: bool = False
 
 
 def a_packing(lanes: object, threads: object) -> Packing:
@@ -132,32 +144,23 @@ def known_mode(analysis: Analysis) -> Analysis:
     return analysis
 
 
-def run_sweep(
-    model: Model,
-    quantities: Iterable[str] | None,
-    tables: Sequence[str] | None,
-    mode: str | None,
-    closed_at: Sequence[str] | None,
-    lanes: int,
-    threads: int,
-    errors: bool,
-) -> Analysis:
-    """Runs the sweep of a model; arguments and errors are those of `Model.analyze`."""
-    packing = a_packing(lanes, threads)
+def run_sweep(model: Model, options: RunOptions) -> Analysis:
+    """Runs the sweep of a model; errors are those of `Model.analyze`."""
+    packing, mode = a_packing(options.lanes, options.threads), options.mode
     if SWEEP not in model.runs:
         raise UsageError(
             f"{model.name} has no sweep: its file has no motion:; its responses are run by "
             f'respond("{model.runs[0]}")'
         )
     session, problem = model.session, model.problem
-    if closed_at is not None:
-        session = _closed_at(problem, closed_at)
+    if options.closed_at is not None:
+        session = _closed_at(problem, options.closed_at)
     if mode is not None:
         a_text("mode", mode, '"A"')
         session = session.in_mode(mode)
-    layouts = chosen_tables(model.built, tables, SWEEP)
-    balances = chosen(model.built.balances, tables)
-    names = wanted_names(session, SWEEP, layouts, quantities)
+    layouts = chosen_tables(model.built, options.tables, SWEEP)
+    balances = chosen(model.built.balances, options.tables)
+    names = wanted_names(session, SWEEP, layouts, options.quantities)
     asked = tuple(names)
     if balances:
         from mechkin_cli.mechanism import read_by
@@ -165,10 +168,10 @@ def run_sweep(
         names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
-    systems = chosen(model.built.coefficients, tables)
+    systems = chosen(model.built.coefficients, options.tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
     analysis = analysis if mode is None else known_mode(analysis)
-    if errors:
+    if options.errors:
         _ = analysis.errors
     return analysis
 
@@ -218,17 +221,9 @@ def _causes_of_spin(session: Session) -> list[Diagnostic]:
 _AS_WRITTEN: Mapping[str, Quantity] = MappingProxyType({})
 
 
-def respond(
-    model: Model,
-    name: str | None,
-    quantities: Iterable[str] | None,
-    tables: Sequence[str] | None,
-    mode: str | None,
-    lanes: int,
-    threads: int,
-) -> Analysis:
-    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
-    packing = a_packing(lanes, threads)
+def respond(model: Model, name: str | None, options: RunOptions) -> Analysis:
+    """Runs a response of a model; errors are those of `Model.respond`."""
+    packing, mode = a_packing(options.lanes, options.threads), options.mode
     run = response_name(model, name)
     session = model.session_of(run)
     problem = model.problem
@@ -238,9 +233,9 @@ def respond(
         assembly = replace(response.assembly, near={}, mode=mode)
         response = replace(response, assembly=assembly)
         session = session.assembled(assembly)
-    layouts = chosen_tables(model.built, tables, run)
-    names = wanted_names(session, run, layouts, quantities)
-    result = run_response(problem, response, names, packing, session)
+    layouts = chosen_tables(model.built, options.tables, run)
+    names = wanted_names(session, run, layouts, options.quantities)
+    result = response_room.respond(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     return analysis if mode is None else known_mode(analysis)
 

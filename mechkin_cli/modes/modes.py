@@ -27,7 +27,7 @@ from mechkin_cli.assembly import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.plan import Layout, TrackEnd
-from mechkin_cli.search import Assemblies, pose_keys, same_poses, with_assemblies
+from mechkin_cli.search import Assemblies, all_assemblies, pose_keys, same_poses, with_assemblies
 from mechkin_cli.session import input_numbers, input_text, kernel_inputs
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.units import Dimension
@@ -147,7 +147,7 @@ def find_modes(
         return _result(session, first, {}, named.found, names, letter, notes, certify)
     place = _inputs_at(session, at)
     ends, notes = _follow_all(session, first, place, named)
-    found = session.search(place)
+    found = all_assemblies(session, place)
     if ends:
         states = np.stack([*ends.values()], axis=1)
         found = with_assemblies(layout, session.plan, place, found, states)

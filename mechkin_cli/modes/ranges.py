@@ -23,7 +23,7 @@ from mechkin_cli.mechanism import Problem, Wanted, dimension_of
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand
 from mechkin_cli.search import pose_keys, same_poses
-from mechkin_cli.session import input_number
+from mechkin_cli.session import Ask, RowInputs, input_number, input_tie
 from mechkin_cli.show import Listed, Listing
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(session, leader, first, session.tie(leader, row))
+    walker = Walker(session, leader, first, input_tie(session, leader, row))
     ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
     notes = (
         *problem.diagnostics,
@@ -155,7 +155,7 @@ def _leader(session: Session, number: int) -> tuple[int, set[str]]:
     names = [item.name for item in session.problem.motion.inputs]
     followers = followers_of(session)
     leader = followers.get(names[number], names[number])
-    moved = session.tie(names.index(leader))
+    moved = input_tie(session, names.index(leader))
     return names.index(leader), {leader, *(moved.followers if moved else ())}
 
 
@@ -315,12 +315,8 @@ class _Stationary:
         """The output and its first two derivatives by the input, (3, places)."""
         inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
         batch = self.session.run(
-            inputs,
-            guess,
-            readout=self.readout,
-            rates=rates,
-            accelerations=accelerations,
-            demand=Demand.VELOCITY | Demand.ACCELERATION,
+            RowInputs(inputs, guess, rates, accelerations),
+            Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout),
         )
         assert batch.outputs is not None
         return batch.outputs[self.slots]

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
         forces_demand as forces_demand,
         needs_all_links as needs_all_links,
     )
-    from mechkin_cli.plan.plan import plan_records as plan_records
+    from mechkin_cli.plan.plan import build_plan as build_plan, plan_records as plan_records
     from mechkin_cli.plan.programs import kink_laws as kink_laws
     from mechkin_cli.plan.records import (
         ClosingJoint as ClosingJoint,
@@ -56,7 +56,7 @@ __getattr__, __dir__ = lazy_names(
             "forces_demand",
             "needs_all_links",
         ],
-        "plan": ["plan_records"],
+        "plan": ["build_plan", "plan_records"],
         "programs": ["kink_laws"],
         "records": ["ClosingJoint", "PlanLeg", "TreeJoint", "flatten"],
     },

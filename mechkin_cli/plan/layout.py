@@ -36,7 +36,6 @@ from mechkin_cli.structure import SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import Laws
     from mechkin_cli.show import Floats
 
@@ -204,12 +203,6 @@ class Layout:
         if drives is None or drives.are_plain:
             return None
         return drives if self.graph.driven[: len(drives.inputs)] == drives.inputs else None
-
-    def build(self, size: float | None = None) -> Plan:
-        """The kernel's plan without outputs; `size` (m) normalises residual and condition."""
-        from mechkin_cli.plan.plan import build_plan
-
-        return build_plan(self, size)
 
 
 def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:

@@ -2,7 +2,7 @@
 
 Positions only read no mass; reactions need accelerations unless no link has mass, velocities only
 where something is damped or a load reads rates; an effort needs no joint reactions
-(docs/architecture.md, What a run skips).
+(docs/internals.md, What a run skips).
 """
 
 from __future__ import annotations
@@ -111,11 +111,13 @@ class Slot(NamedTuple):
 
 
 class Readout(NamedTuple):
-    """Outputs of a plan: where each quantity stands, and the first columns of points."""
+    """Outputs of a plan: where each quantity that is wanted stands, and the first columns of
+    points."""
 
     outputs: Outputs
     slots: Mapping[str, Slot]
     points: Sequence[int]
+    wanted: tuple[Wanted, ...] = ()
 
 
 class OutputPlan:

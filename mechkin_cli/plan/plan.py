@@ -4,24 +4,21 @@ inertias, loads and the points that tell the size.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism import (
     GROUND_NAME,
     ZERO,
-    Amount,
     Attached,
     Damper,
     Joint,
     JointLoad,
     LinkLoad,
-    Load,
     Spring,
     Varying,
     cross,
     frame_on,
-    is_angle,
     norm,
     scale,
     turned_tensor,
@@ -395,36 +392,3 @@ def _size_points(layout: Layout) -> Iterator[SizePoint]:
 #
 # A load along a coordinate has one column, a load on a link three: its components in the axes that
 # it is given in, in the kernel's units, in the order of the mechanism's loads.
-
-
-def kernel_columns(layout: Layout, values: Mapping[int, Any]) -> list[Any]:
-    """The columns of the loads from the values in SI of laws, by their numbers: rows or recorded
-    numbers."""
-    return [
-        column
-        for load in layout.mechanism.loads
-        if varying(load)
-        for column in _columns(layout, load, values)
-    ]
-
-
-def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]:
-    length = layout.length
-    if isinstance(load, JointLoad):
-        per = length * length if is_angle(load.coordinate) else length
-        return [_amount(load.value, values) / per]
-    assert isinstance(load, LinkLoad)
-    per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
-    given = [_amount(amount, values) for amount in load.value]
-    if load.axes == "link":
-        frame = layout.link_frame[load.link]
-        given = [_along(axis, given) for axis in (frame.x, frame.y, frame.z)]
-    return [per * component for component in given]
-
-
-def _amount(amount: Amount, values: Mapping[int, Any]) -> Any:
-    return values[amount.number] if isinstance(amount, Varying) else amount
-
-
-def _along(axis: Sequence[float], given: Sequence[Any]) -> Any:
-    return axis[0] * given[0] + axis[1] * given[1] + axis[2] * given[2]

@@ -15,8 +15,8 @@ from mechkin_cli.expressions import Expression, Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import is_angle, varying
 from mechkin_cli.plan.codes import OutputCode, ReadCode
+from mechkin_cli.plan.loads import kernel_columns
 from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.plan.plan import kernel_columns
 from mechkin_cli.plan.records import Output, Program, ProgramCurve
 from mechkin_cli.tape import Operation, RowRecorder, register
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END

@@ -15,7 +15,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
-from mechkin_cli.structure import equations_that_follow
+from mechkin_cli.session import Ask, RowInputs, equations_that_follow
 from mechkin_cli.tape import TraceLost
 
 if TYPE_CHECKING:
@@ -240,8 +240,7 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
 
 def _derivatives(session: Session, nodes: Nodes, direction: Floats) -> Floats:
     """Derivatives of the columns (columns, nodes) by the way's length."""
-    batch = session.run(
-        nodes.reduced, nodes.states, demand=Demand.VELOCITY, rates=direction, derivatives=True
-    )
+    rows = RowInputs(nodes.reduced, nodes.states, rates=direction)
+    batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True))
     assert batch.first is not None
     return batch.first

@@ -12,14 +12,12 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.proofs.enclose import (
     bounds,
-    dead_centre_enclosure,
-    enclosures,
-    input_bounds,
     inside_boxes,
     is_angle_of_place,
     reason_against,
     reason_unknown,
 )
+from mechkin_cli.proofs.enclosed_rows import dead_centre_enclosure, enclosures, input_bounds
 from mechkin_cli.proofs.fold import are_one
 from mechkin_cli.session import input_number, input_text
 from mechkin_cli.show import Listed, Listing

@@ -18,6 +18,7 @@ from mechkin_cli.plan import Demand
 from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, enclosed_of, prove_boxes
 from mechkin_cli.proofs.enclose import Positions, enclose_derivatives
 from mechkin_cli.proofs.modes import differences
+from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:
     from mechkin_cli.session import Exchanged
@@ -133,14 +134,8 @@ def _closed_fold(
     rates = np.zeros_like(values)
     rates[exchanged.number] = 1.0
     for _ in range(tolerances.NEWTON_ITERATIONS):
-        batch = session.run(
-            values,
-            states,
-            demand=Demand.VELOCITY | Demand.ACCELERATION,
-            rates=rates,
-            accelerations=np.zeros_like(values),
-            derivatives=True,
-        )
+        rows = RowInputs(values, states, rates, np.zeros_like(values))
+        batch = session.run(rows, Ask(Demand.VELOCITY | Demand.ACCELERATION, derivatives=True))
         assert batch.first is not None
         assert batch.second is not None
         step = batch.first[freed.column, 0] / (batch.second[freed.column, 0] or np.nan)

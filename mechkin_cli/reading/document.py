@@ -208,7 +208,7 @@ def source_mark(scalar: ScalarNode, offset: int, lines: list[str]) -> Mark:
 
     An offset behind the last character gives the place just behind it.
 
-    >>> source_mark(Scalar("a''b", Mark(1, 4), Style.DOUBLE_QUOTED), 3, ["x: \\"a''b\\""])
+    >>> source_mark(ScalarNode("a''b", Mark(1, 4), Style.DOUBLE_QUOTED), 3, ["x: \\"a''b\\""])
     Mark(line=1, column=8)
     """
     visible_before = sum(not character.isspace() for character in scalar.text[:offset])

@@ -10,7 +10,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.plan import Demand, kink_laws
 from mechkin_cli.response.integration import Fault, MotionEnd
-from mechkin_cli.session import input_numbers, input_text
+from mechkin_cli.session import Ask, RowInputs, input_numbers, input_text
 from mechkin_cli.sweep import passed_straight_on
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
@@ -251,13 +251,8 @@ def _energies(session: Session, state: Floats, rates: Floats) -> Floats:
     readout = session.readout([wanted])
     cases = np.zeros(rates.shape[1], dtype=np.intp)
     places = [session.layout.state(edge, freedom) for edge, freedom in session.graph.inputs]
-    batch = session.run(
-        state[places][:, None][:, cases],
-        state[:, None][:, cases],
-        readout=readout,
-        rates=rates,
-        demand=Demand.VELOCITY,
-    )
+    rows = RowInputs(state[places][:, None][:, cases], state[:, None][:, cases], rates)
+    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
     assert batch.outputs is not None
     found: Floats = batch.outputs[readout.slots[wanted.name].first]
     return found

@@ -21,15 +21,15 @@ from mechkin_cli.mechanism import (
     law_value,
     response_quantities,
 )
+from mechkin_cli.session import RowInputs
 from mechkin_cli.sweep import Result, SweepRows
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Amount, ResponseProblem, Wanted
-    from mechkin_cli.plan import Demand
     from mechkin_cli.response.integration import MotionReport
-    from mechkin_cli.session import Batch, Chart, KernelInputs, Session
+    from mechkin_cli.session import Chart, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
 
 
@@ -88,9 +88,10 @@ class ResponseResult(Result):
     def __init__(
         self,
         session: Session,
-        chosen: Session,
         start: AssemblyStart,
         rows: SweepRows,
+        *,
+        chosen: Session,
         chart: Chart,
         work: Floats,
         events: Sequence[str],
@@ -125,27 +126,8 @@ class ResponseResult(Result):
 
         return mode_letter(self.chosen, self.start)
 
-    def run(
-        self,
-        wanted: Sequence[Wanted],
-        demand: Demand,
-        *,
-        session: Session | None = None,
-        inputs: KernelInputs | None = None,
-        shift: int = 0,
-        iterations: int = 0,
-        chart: Chart | None = None,
-    ) -> Batch:
-        """As `Result.run`, with the chart about each row."""
-        return super().run(
-            wanted,
-            demand,
-            session=session,
-            inputs=inputs,
-            shift=shift,
-            iterations=iterations,
-            chart=self.chart if chart is None else chart,
-        )
+    def _row_inputs(self, inputs: KernelInputs, ties: Floats | None) -> RowInputs:
+        return super()._row_inputs(inputs, ties)._replace(chart=self.chart)
 
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:

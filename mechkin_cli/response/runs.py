@@ -33,7 +33,7 @@ from mechkin_cli.response.integration import (
 )
 from mechkin_cli.response.result import ENERGIES, ResponseResult
 from mechkin_cli.response.start import Beginning, beginning
-from mechkin_cli.session import Chart, Packing, Session, input_unit, turn_count
+from mechkin_cli.session import Ask, Chart, Packing, Session, input_unit, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
     SweepRows,
@@ -318,14 +318,14 @@ def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
     chart = found.chart.at(part)
     return ResponseResult(
         free.moved(rows_problem(free, response, one.driven, found, count)),
-        chosen,
         one.start,
         rows,
-        Chart(*(np.where(reached, array, 0.0) for array in chart)),
-        np.where(reached, energy * found.work[:, part], np.nan),
-        events,
-        response,
-        found.report,
+        chosen=chosen,
+        chart=Chart(*(np.where(reached, array, 0.0) for array in chart)),
+        work=np.where(reached, energy * found.work[:, part], np.nan),
+        events=events,
+        response=response,
+        report=found.report,
     )
 
 
@@ -350,7 +350,17 @@ def _nothing(one: Prepared) -> ResponseResult:
     session = free.moved(replace(free.problem, motion=motion))
     lost = np.full((2, count), np.nan)
     events = [""] * count
-    return ResponseResult(session, one.chosen, start, rows, chart, lost, events, response, None)
+    return ResponseResult(
+        session,
+        start,
+        rows,
+        chosen=one.chosen,
+        chart=chart,
+        work=lost,
+        events=events,
+        response=response,
+        report=None,
+    )
 
 
 def _all_turns(free: Session, closing: Floats) -> Floats:
@@ -369,14 +379,15 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         wanted, demand = at_once(result.session, [*asked, *energies], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
-        batch = result.run(wanted, demand, iterations=tolerances.NEWTON_ITERATIONS)
+        ask = Ask(demand, result.session.readout(wanted) if wanted else None)
+        batch = result.run(ask)
         # what is read later is read on the same states
         rows.states = np.where(rows.reached & batch.good, batch.states, rows.states)
         failed = rows.reached & ~batch.good
         rows.status[failed] = Status.not_converged
         rows.reached &= ~failed
         judge_condition(result.session, rows, batch)
-        result.keep(batch, wanted, demand)
+        result.keep(batch, ask)
         result.read(asked)
     result.row_states.diagnostics += row_notes(
         result, asked, rests_on_reactions=rest_on_reactions(result.problem, asked)

@@ -13,6 +13,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand
+from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -51,13 +52,9 @@ def _unit_rates(session: Session, state: Floats) -> Floats:
     """Rates of the columns (inputs, columns) where one input after the other has unit rate."""
     count = len(session.graph.inputs)
     repeated = np.zeros(count, dtype=np.intp)
-    batch = session.run(
-        session.inputs.reduced[:, repeated],
-        state[:, None][:, repeated],
-        rates=np.eye(count),
-        demand=Demand.VELOCITY,
-        derivatives=True,
-    )
+    reduced = session.inputs.reduced[:, repeated]
+    rows = RowInputs(reduced, state[:, None][:, repeated], np.eye(count))
+    batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True))
     assert batch.first is not None
     return np.ascontiguousarray(batch.first.T)
 
@@ -130,13 +127,9 @@ def solve_rates(
     wanted = [known[f"{one.name}_dot"] for one in given]
     readout = session.readout(wanted)
     repeated = np.zeros(count, dtype=np.intp)
-    batch = session.run(
-        session.inputs.reduced[:, repeated],
-        state[:, None][:, repeated],
-        readout=readout,
-        rates=np.eye(count),
-        demand=Demand.VELOCITY,
-    )
+    reduced = session.inputs.reduced[:, repeated]
+    rows = RowInputs(reduced, state[:, None][:, repeated], np.eye(count))
+    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
     assert batch.outputs is not None
     by_rate = np.array([batch.outputs[readout.slots[quantity.name].first] for quantity in wanted])
     right = np.array([one.rate or 0.0 for one in given])

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mechkin_cli.search.clusters import pose_keys as pose_keys, same_poses as same_poses
     from mechkin_cli.search.search import (
         Assemblies as Assemblies,
-        assemblies as assemblies,
+        all_assemblies as all_assemblies,
         single_assembly as single_assembly,
         with_assemblies as with_assemblies,
     )
@@ -22,7 +22,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "clusters": ["pose_keys", "same_poses"],
-        "search": ["Assemblies", "assemblies", "single_assembly", "with_assemblies"],
+        "search": ["Assemblies", "all_assemblies", "single_assembly", "with_assemblies"],
         "starts": ["Within", "is_in_reach"],
     },
 )

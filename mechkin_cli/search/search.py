@@ -13,6 +13,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.functions import threads_for, width
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import Clusters, first_of_each, pose_keys
@@ -24,7 +25,7 @@ from mechkin_cli.search.starts import (
     unknown_states,
     upstream_states,
 )
-from mechkin_cli.session import run
+from mechkin_cli.session import Ask, RowInputs, Session, Structure, run
 from mechkin_cli.structure import RandomStarts
 
 if TYPE_CHECKING:
@@ -220,7 +221,8 @@ def _isolated(
     if count == 0:
         return states, np.ones(count, dtype=bool), np.zeros(count), 0
     values = np.repeat(request.inputs[:, None], count, axis=1)
-    batch = run(request.plan, values, states, demand=Demand.CONDITION, iterations=20, only=number)
+    ask = Ask(Demand.CONDITION, iterations=20, only=number)
+    batch = run(request.plan, RowInputs(values, states), ask)
     assert batch.condition is not None
     regular = batch.condition < tolerances.SEARCH_CONDITION
     free = int(np.count_nonzero(batch.good & ~regular))
@@ -478,11 +480,11 @@ def _closed(
     if states.shape[1] == 0:
         return states, np.empty(0), np.empty(0)
     values = np.repeat(inputs[:, None], states.shape[1], axis=1)
-    batch = run(plan, values, states, demand=Demand.CONDITION, iterations=20)
+    batch = run(plan, RowInputs(values, states), Ask(Demand.CONDITION, iterations=20))
     if not batch.good.all():
         # next to a fold the last of many steps may be one by rounding over next to nothing
         states = np.where(batch.good, batch.states, states)
-        batch = run(plan, values, states, demand=Demand.CONDITION, iterations=0)
+        batch = run(plan, RowInputs(values, states), Ask(Demand.CONDITION, iterations=0))
     assert batch.condition is not None
     keep = batch.good & (batch.condition < tolerances.SEARCH_CONDITION)
     states, residual, condition = (
@@ -504,3 +506,36 @@ def wrap_angles(layout: Layout, states: Floats) -> None:
                 row = states[number]
                 turns = np.ceil((row - pi) / (2.0 * pi))
                 row -= turns * (2.0 * pi)
+
+
+def all_assemblies(
+    session: Session, inputs: Floats, within: Within | None = None, *, thorough: bool = True
+) -> Assemblies:
+    """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
+    not `thorough`: most of them, where one is wanted."""
+    turns, about = session.problem.assembly.turns, _named_turns(session)
+    if within is not None:
+        return assemblies(session.layout, session.plan, inputs, turns, within, about, thorough)
+    quick = _everywhere(session.structure, inputs, turns, about, False)
+    final = quick.complete or quick.cut or not thorough
+    return quick if final else _everywhere(session.structure, inputs, turns, about, True)
+
+
+@remembered
+def _everywhere(
+    structure: Structure, inputs: Floats, turns: int, about: Floats, thorough: bool
+) -> Assemblies:
+    """All assemblies of a structure, threads within `turns` to either side of `about` (states,)."""
+    return assemblies(structure.layout, structure.plan, inputs, turns, None, about, thorough)
+
+
+def _named_turns(session: Session) -> Floats:
+    """States (states,): the turns of threads that the assembly's `near` names, else zero."""
+    states: Floats = np.zeros(session.layout.states)
+    for name, value in session.problem.assembly.near.items():
+        owner, _, coordinate = name.rpartition(".")
+        joint, edge = session.layout.mechanism.joints[owner], session.layout.edge_number.get(owner)
+        if edge is not None and joint.type.is_threaded:
+            number = session.layout.state(edge, joint.type.freedom_of[coordinate])
+            states[number] = value / joint.unit_of(coordinate, session.layout.length)
+    return states

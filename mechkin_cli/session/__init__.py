@@ -10,18 +10,18 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.session.angles import angle_slots as angle_slots, input_rest as input_rest
+    from mechkin_cli.session.assembled_places import (
+        left_free as left_free,
+        solver_graph as solver_graph,
+    )
     from mechkin_cli.session.cells import Formula as Formula, cells_of as cells_of
     from mechkin_cli.session.double_double import (
         Precise as Precise,
         PreciseInputs as PreciseInputs,
         precise_inputs as precise_inputs,
     )
-    from mechkin_cli.session.exchanged import (
-        Exchanged as Exchanged,
-        assembled_places as assembled_places,
-        closed_places as closed_places,
-        exchange as exchange,
-    )
+    from mechkin_cli.session.exchanged import Exchanged as Exchanged, exchange as exchange
     from mechkin_cli.session.following import (
         BranchFold as BranchFold,
         BranchPoint as BranchPoint,
@@ -29,22 +29,18 @@ if TYPE_CHECKING:
         EndOfRows as EndOfRows,
         Followed as Followed,
         Runaway as Runaway,
-        find_limit as find_limit,
         follow as follow,
-        moves_freely as moves_freely,
         step_limits as step_limits,
     )
     from mechkin_cli.session.inputs import (
         ORIENTATION as ORIENTATION,
         KernelInputs as KernelInputs,
-        angle_slots as angle_slots,
         continuous_angle as continuous_angle,
         continuous_signs as continuous_signs,
         drawn_quaternion as drawn_quaternion,
         held_values as held_values,
         input_number as input_number,
         input_numbers as input_numbers,
-        input_rest as input_rest,
         input_text as input_text,
         input_unit as input_unit,
         kernel_inputs as kernel_inputs,
@@ -53,35 +49,41 @@ if TYPE_CHECKING:
         turn_of as turn_of,
     )
     from mechkin_cli.session.kernel_run import (
+        POSITIONS as POSITIONS,
         RESIDUAL_TESTS as RESIDUAL_TESTS,
+        Ask as Ask,
         Batch as Batch,
         Chart as Chart,
-        RowPlaces as RowPlaces,
+        PreciseConstants as PreciseConstants,
+        RowInputs as RowInputs,
         assembly_size as assembly_size,
         run as run,
     )
-    from mechkin_cli.session.path import (
-        InputTie as InputTie,
-        followers_of as followers_of,
-        places_at as places_at,
-        places_of as places_of,
-    )
+    from mechkin_cli.session.limits import find_limit as find_limit, moves_freely as moves_freely
+    from mechkin_cli.session.path import places_at as places_at, places_of as places_of
+    from mechkin_cli.session.redundancy import equations_that_follow as equations_that_follow
     from mechkin_cli.session.session import (
         Continued as Continued,
         ContinuedFrom as ContinuedFrom,
-        Coordinate as Coordinate,
         Packing as Packing,
         Session as Session,
-        Structure as Structure,
     )
     from mechkin_cli.session.shifted import ShiftingPrecise as ShiftingPrecise
+    from mechkin_cli.session.structure import Coordinate as Coordinate, Structure as Structure
+    from mechkin_cli.session.ties import (
+        InputTie as InputTie,
+        followers_of as followers_of,
+        input_tie as input_tie,
+    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "angles": ["angle_slots", "input_rest"],
+        "assembled_places": ["left_free", "solver_graph"],
         "cells": ["Formula", "cells_of"],
         "double_double": ["Precise", "PreciseInputs", "precise_inputs"],
-        "exchanged": ["Exchanged", "assembled_places", "closed_places", "exchange"],
+        "exchanged": ["Exchanged", "exchange"],
         "following": [
             "BranchFold",
             "BranchPoint",
@@ -89,22 +91,18 @@ __getattr__, __dir__ = lazy_names(
             "Ending",
             "Followed",
             "Runaway",
-            "find_limit",
             "follow",
-            "moves_freely",
             "step_limits",
         ],
         "inputs": [
             "KernelInputs",
             "ORIENTATION",
-            "angle_slots",
             "continuous_angle",
             "continuous_signs",
             "drawn_quaternion",
             "held_values",
             "input_number",
             "input_numbers",
-            "input_rest",
             "input_text",
             "input_unit",
             "kernel_inputs",
@@ -112,9 +110,23 @@ __getattr__, __dir__ = lazy_names(
             "turn_count",
             "turn_of",
         ],
-        "kernel_run": ["Batch", "Chart", "RESIDUAL_TESTS", "RowPlaces", "assembly_size", "run"],
-        "path": ["InputTie", "followers_of", "places_at", "places_of"],
-        "session": ["Continued", "ContinuedFrom", "Structure", "Coordinate", "Packing", "Session"],
+        "kernel_run": [
+            "Ask",
+            "Batch",
+            "Chart",
+            "POSITIONS",
+            "PreciseConstants",
+            "RESIDUAL_TESTS",
+            "RowInputs",
+            "assembly_size",
+            "run",
+        ],
+        "limits": ["find_limit", "moves_freely"],
+        "path": ["places_at", "places_of"],
+        "redundancy": ["equations_that_follow"],
+        "session": ["Continued", "ContinuedFrom", "Packing", "Session"],
         "shifted": ["ShiftingPrecise"],
+        "structure": ["Coordinate", "Structure"],
+        "ties": ["InputTie", "followers_of", "input_tie"],
     },
 )

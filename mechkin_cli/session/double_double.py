@@ -11,33 +11,55 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.exact import nearest
-from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.mechanism import ORDERS, ExactMotion, dimension_of
-from mechkin_cli.plan import Demand, Layout, OutputPlan, RowFlag, flatten, plan_records
+from mechkin_cli.plan import Layout, OutputPlan, flatten, plan_records
 from mechkin_cli.session.inputs import held_values, turn_of
-from mechkin_cli.session.kernel_run import NO_CHART
 from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import ExactRows, NotEnclosed, TraceLost, double_doubles, enclosures, register
 from mechkin_cli.units import ANGLE, TIME
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from mechkin_cli.kernel._kernel import Outputs, Plan
     from mechkin_cli.mechanism import Assembly, Attached, ExactMoments, Problem, Wanted
-    from mechkin_cli.session.kernel_run import Chart
-    from mechkin_cli.session.session import Session
+    from mechkin_cli.session.inputs import KernelInputs
     from mechkin_cli.show import Floats
+    from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tape import ExactRecorder, ExactTape
 
 
 # The inputs of a session over its rows as the text says them, in double-double and enclosed.
+
+
+class InDoubles(Protocol):
+    """What is read of a session whose numbers are wanted in double-double."""
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly."""
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, cut joints and blocks."""
+
+    @property
+    def layout(self) -> Layout:
+        """How the mechanism lies in the kernel."""
+
+    @property
+    def driven(self) -> Sequence[tuple[str, str]]:
+        """The inputs (joint, coordinate)."""
+
+    @property
+    def size(self) -> float | None:
+        """Residual and condition are in parts of it (m)."""
+
+    @property
+    def inputs(self) -> KernelInputs:
+        """The inputs of all rows."""
 
 
 class PreciseInputs(NamedTuple):
@@ -84,19 +106,19 @@ class _Numbers(NamedTuple):
         return [*orders, *self.reduced, *self.time, *self.tie_rates, *self.written.values()]
 
 
-def precise_inputs(precise: Precise, session: Session) -> PreciseInputs:
+def precise_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The inputs of a session's rows in double-double."""
     recorded = _recorded(precise, session)
     return _put_together(session, recorded, recorded.rows.double_doubles(recorded.listed))
 
 
-def enclosed_inputs(precise: Precise, session: Session) -> PreciseInputs:
+def enclosed_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The same enclosed: a third part is the radius about the two."""
     recorded = _recorded(precise, session)
     return _put_together(session, recorded, recorded.rows.enclosures(recorded.listed))
 
 
-def _put_together(session: Session, recorded: _Numbers, found: Floats) -> PreciseInputs:
+def _put_together(session: InDoubles, recorded: _Numbers, found: Floats) -> PreciseInputs:
     count = len(session.inputs.values)
     ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.tie_rates)])
     *parts, time, ties, written = np.split(found, ends)
@@ -115,7 +137,7 @@ def _put_together(session: Session, recorded: _Numbers, found: Floats) -> Precis
     )
 
 
-def _recorded(precise: Precise, session: Session) -> _Numbers:
+def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
     problem = precise.problem_of(session)
     layout, inputs = precise.layout(session), problem.motion.inputs
     motion = _motion_of(precise, problem)
@@ -146,7 +168,7 @@ def _recorded(precise: Precise, session: Session) -> _Numbers:
     )
 
 
-def _reduced(session: Session, motion: ExactMotion, number: int, value: Any) -> Any:
+def _reduced(session: InDoubles, motion: ExactMotion, number: int, value: Any) -> Any:
     """An input without its whole turns, taken off in the file's unit."""
     whole = session.inputs.whole[number]
     if not whole.any():
@@ -204,10 +226,10 @@ class Precise:
         self.motion = motion
         self.base = base
         self.moments = moments
-        self._layouts: dict[int, tuple[Session, Layout]] = {}
+        self._layouts: dict[int, tuple[InDoubles, Layout]] = {}
         self._inputs: dict[int, tuple[Problem, PreciseInputs]] = {}
 
-    def constants(self, session: Session) -> Floats:
+    def constants(self, session: InDoubles) -> Floats:
         """The constants of the session's plan in double-double (constants, 2), in the order in
         which the kernel numbers them: high and low, |low| <= ulp(high)/2.
 
@@ -216,7 +238,7 @@ class Precise:
         """
         return double_doubles(self.tape(self._constants(session)))
 
-    def enclosed_constants(self, session: Session) -> Floats:
+    def enclosed_constants(self, session: InDoubles) -> Floats:
         """The same enclosed (constants, 3): high and low parts, and radii about their sums.
 
         Raises:
@@ -227,25 +249,25 @@ class Precise:
             raise TraceLost("the curve through a table of a load is known in doubles alone")
         return enclosures(self.tape(self._constants(session)))
 
-    def rounds_tables(self, session: Session) -> bool:
+    def rounds_tables(self, session: InDoubles) -> bool:
         """Whether loads of the session are read from tables. The curves through these are structure
         of a plan, not constants: they stay doubles."""
         laws = self.layout(session).laws
         return laws is not None and any(law.curve is not None for law in laws.laws)
 
     def outputs(
-        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
     ) -> Floats:
         """The constants of `session.readout(wanted, points)` in double-double (constants, 2)."""
         return double_doubles(self.tape(self._outputs(session, wanted, points)))
 
     def enclosed_outputs(
-        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
     ) -> Floats:
         """The same enclosed (constants, 3)."""
         return enclosures(self.tape(self._outputs(session, wanted, points)))
 
-    def inputs(self, session: Session) -> PreciseInputs:
+    def inputs(self, session: InDoubles) -> PreciseInputs:
         """The inputs of all rows in double-double, as `session.inputs` has them in doubles; kept.
 
         Rows that a call asked for in place of the file's are the doubles that it gave, in the
@@ -256,7 +278,7 @@ class Precise:
             self._inputs[id(problem)] = (problem, precise_inputs(self, session))
         return self._inputs[id(problem)][1]
 
-    def enclosed_inputs(self, session: Session) -> PreciseInputs:
+    def enclosed_inputs(self, session: InDoubles) -> PreciseInputs:
         """The same enclosed: a third part is the radius about the two."""
         return enclosed_inputs(self, session)
 
@@ -285,7 +307,7 @@ class Precise:
         """The tape to some numbers of the recording."""
         return self.recorder.exact_tape([register(self.recorder, n) for n in numbers])
 
-    def layout(self, session: Session) -> Layout:
+    def layout(self, session: InDoubles) -> Layout:
         """The session's layout over the recording; kept."""
         if id(session) not in self._layouts:
             problem = self.problem_of(session)
@@ -298,12 +320,12 @@ class Precise:
             self._layouts[id(session)] = (session, layout)
         return self._layouts[id(session)][1]
 
-    def _constants(self, session: Session) -> list[Any]:
+    def _constants(self, session: InDoubles) -> list[Any]:
         size = session.size or session.layout.mechanism.box_diagonal()
         return flatten(plan_records(self.layout(session), size))
 
     def _outputs(
-        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached]
+        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached]
     ) -> list[Any]:
         plan = OutputPlan(self.layout(session), None, session.driven)
         for quantity in wanted:
@@ -312,7 +334,7 @@ class Precise:
             plan.add_point(at, 0)
         return flatten(plan.records)
 
-    def problem_of(self, session: Session) -> Problem:
+    def problem_of(self, session: InDoubles) -> Problem:
         """The recorded problem of what the session's problem is made of."""
         own = session.problem
         mechanism = own.mechanism
@@ -376,157 +398,3 @@ def _numbers(part: Any) -> Iterator[float]:
     elif isinstance(part, Mapping):
         for item in part.values():
             yield from _numbers(item)
-
-
-# One call of the kernel over many rows in double-double: about 32 digits.
-#
-# Newton starts from converged doubles and goes on to the rounding of double-double; nothing is
-# judged and no branch is followed. Numbers have two parts, high and low, whose sum they are: arrays
-# are (numbers, 2, rows), or (2, rows) for one number a row. Wherever such an array is given,
-# doubles (numbers, rows) stand for themselves.
-
-PRECISE_TESTS = (
-    tolerances.PRECISE_RESIDUAL_TIGHT,
-    tolerances.PRECISE_STEP_COARSE,
-    tolerances.PRECISE_RESIDUAL_ACCEPT,
-)
-
-
-class PreciseBatch(NamedTuple):
-    """What the kernel found, row by row, as `solver.batch.Batch`, in double-double.
-
-    `flags` (rows,) are `RowFlag`s: a row that Newton could not bring to the rounding of
-    double-double is not converged, and its numbers are as good as its residual. `chart_forces`
-    (charts, 2, rows), in kernel units, are what would have to act along a chart's coordinates for
-    its accelerations: M u'' + r in docs/numerics.md, zero along a free motion.
-    """
-
-    states: Floats
-    outputs: Floats | None
-    first: Floats | None
-    second: Floats | None
-    residual: Floats
-    correction: Floats
-    power_error: Floats | None
-    flags: NDArray[np.uint8]
-    loads: Floats | None = None
-    undefined: NDArray[np.uint8] | None = None
-    chart_forces: Floats | None = None
-
-    @property
-    def good(self) -> NDArray[np.bool_]:
-        """Rows that are closed."""
-        return np.equal(self.flags, RowFlag.GOOD)
-
-
-def run_precise(
-    plan: Plan,
-    inputs: Floats,
-    guess: Floats,
-    *,
-    rates: Floats | None = None,
-    accelerations: Floats | None = None,
-    ties: Floats | None = None,
-    jerks: Floats | None = None,
-    turned: Floats | None = None,
-    whole: Floats | None = None,
-    full: Floats | None = None,
-    time: Floats | None = None,
-    demand: Demand = Demand.POSITION,
-    outputs: Outputs | None = None,
-    constants: Floats | None = None,
-    output_constants: Floats | None = None,
-    derivatives: bool = False,
-    chart: Chart | None = None,
-    shift: int = 0,
-    iterations: int = tolerances.NEWTON_ITERATIONS,
-    tests: tuple[float, float, float] = PRECISE_TESTS,
-    lanes: int = 0,
-    threads: int = 0,
-) -> PreciseBatch:
-    """Closes all rows from their guesses and computes what is demanded.
-
-    Args as those of `solver.batch.run`, numbers in two parts, and besides:
-        guess: states (states, rows) of a run in doubles.
-        demand: without the condition, which that run tells.
-        constants: (constants, 2) of the plan, as `solver.precise.Precise.constants`; None for the
-            plan's own, which are doubles.
-        output_constants: (constants, 2) of the outputs, likewise.
-
-    Raises:
-        ValueError: shapes, codes or numbers that do not fit the plan or each other.
-    """
-    rows = inputs.shape[-1]
-    low = low_outputs = None
-    if constants is not None:
-        plan, low = plan.with_constants(constants[:, 0].copy()), constants[:, 1].copy()
-    if outputs is not None and output_constants is not None:
-        outputs = outputs.with_constants(output_constants[:, 0].copy())
-        low_outputs = output_constants[:, 1].copy()
-
-    def empty(*shape: int) -> Floats:
-        return np.empty((*shape, 2, rows))
-
-    states = empty(plan.states)
-    values = None if outputs is None else empty(outputs.slots)
-    moving, second_order = demand & Demand.VELOCITY, demand & Demand.ACCELERATION
-    first = empty(plan.columns) if derivatives and moving else None
-    second = empty(plan.columns) if derivatives and second_order else None
-    residual, correction = empty(), empty()
-    power_error = empty() if demand & Demand.POWER else None
-    flags = np.empty(rows, dtype=np.uint8)
-    varying = plan.load_values and demand & Demand.FORCES
-    loads = empty(plan.load_values) if varying else None
-    undefined = np.empty(rows, dtype=np.uint8) if varying else None
-    charted = NO_CHART if chart is None else chart.arguments(demand)
-    chart_forces = empty(plan.charts) if chart is not None and demand & Demand.FORCES else None
-    plan.run_precise(
-        inputs=in_parts(inputs, 1),
-        guess=in_parts(guess, 1),
-        rates=in_parts(rates, 1),
-        accelerations=in_parts(accelerations, 1),
-        jerks=in_parts(jerks, 1),
-        ties=in_parts(ties, 1),
-        turned=in_parts(turned, 1),
-        whole=in_parts(whole, 1),
-        chart=in_parts(charted.directions, 1),
-        friction_told=in_parts(charted.friction_told, 1),
-        chart_rates=in_parts(charted.rates, 1),
-        chart_accelerations=in_parts(charted.accelerations, 1),
-        full=in_parts(full, 1),
-        time=in_parts(time, 0),
-        outputs=outputs,
-        low=low,
-        low_outputs=low_outputs,
-        states=states,
-        values=values,
-        first=first,
-        second=second,
-        residual=residual,
-        correction=correction,
-        power_error=power_error,
-        loads=loads,
-        undefined=undefined,
-        chart_forces=chart_forces,
-        flags=flags,
-        demand=int(demand),
-        shift=shift,
-        iterations=iterations,
-        tests=tests,
-        lanes=width(lanes),
-        threads=threads_for(rows, threads),
-    )
-    measured = (residual, correction, power_error)
-    acting = (loads, undefined, chart_forces)
-    return PreciseBatch(states, values, first, second, *measured, flags, *acting)
-
-
-def in_parts(array: Floats | None, dimensions: int) -> Floats | None:
-    """Numbers in two parts: those that are given so, or doubles, of `dimensions` beside their rows,
-    with zero for their low parts."""
-    if array is None:
-        return None
-    given: Floats = np.ascontiguousarray(array, np.float64)
-    if given.ndim == dimensions + 2:
-        return given
-    return np.ascontiguousarray(np.stack([given, np.zeros_like(given)], axis=-2))

@@ -18,6 +18,7 @@ from mechkin_cli.diagnostics import Number
 from mechkin_cli.exact import PI
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.session.kernel_run import RowInputs
 from mechkin_cli.units import ANGLE
 
 if TYPE_CHECKING:
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import DrivenInput, Frame, Joint, Problem, Wanted
-    from mechkin_cli.plan import Layout, Slot
-    from mechkin_cli.session.session import Session
+    from mechkin_cli.plan import Layout
     from mechkin_cli.show import Floats
     from mechkin_cli.units import CompoundUnit
 
@@ -156,6 +156,18 @@ class KernelInputs(NamedTuple):
         still = np.zeros_like(self.rates)
         return self._replace(accelerations=still, jerks=still)
 
+    def at(
+        self,
+        states: Floats,
+        turned: Floats,
+        time: Floats | None = None,
+        ties: Floats | None = None,
+    ) -> RowInputs:
+        """All rows on their states (states, rows) and turns (turn slots, rows), as a run takes
+        them; time (rows,) in s, and the rates of ties (ties, rows)."""
+        moving = (self.rates, self.accelerations, self.jerks)
+        return RowInputs(self.reduced, states, *moving, ties, turned, self.whole, self.values, time)
+
     def part(self, rows: slice | Floats) -> KernelInputs:
         """Some of the rows."""
         return KernelInputs(*(np.ascontiguousarray(array[:, rows]) for array in self))
@@ -199,15 +211,6 @@ def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
 @cache
 def _turn(unit: CompoundUnit) -> Fraction:
     return 2 * PI / unit.factor
-
-
-def input_rest(session: Session, name: str) -> Floats | None:
-    """An input (rows,) without its whole turns in rad, None if it has none."""
-    for number, item in enumerate(session.problem.motion.inputs):
-        if name == item.name and session.inputs.whole[number].any():
-            rest: Floats = session.inputs.reduced[number]
-            return rest
-    return None
 
 
 def _reduced(problem: Problem, values: Floats) -> tuple[Floats, Floats]:
@@ -295,26 +298,6 @@ class TurnSlots(NamedTuple):
         if reference < 0:
             return self.closing.get((-1 - reference, freedom))
         return self.tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
-
-
-def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
-    """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
-    whether of a closing joint); of an input -2 - its number."""
-    known, layout = session.problem.quantities(), session.layout
-    inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
-    found = []
-    for name, slot in names.items():
-        quantity = known.get(name)
-        if quantity is None or quantity.kind != "coordinate" or quantity.order:
-            continue
-        of_closing = layout.joint_reference[quantity.owner] < 0
-        if name in inputs and not of_closing:
-            turn: int | None = -2 - inputs[name]
-        else:
-            turn = session.turn_slots.of_angle(layout, quantity)
-        if turn is not None:
-            found.append((slot.first, turn, of_closing))
-    return found
 
 
 def turn_count(plan: Plan) -> int:

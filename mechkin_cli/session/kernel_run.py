@@ -1,8 +1,14 @@
-"""One call of the kernel over many rows."""
+"""One call of the kernel over many rows, in doubles or in double-double (about 32 digits).
+
+In double-double Newton starts from converged doubles and goes on to the rounding of double-double;
+nothing is judged and no branch is followed. Its numbers have two parts, high and low, whose sum
+they are: arrays are (numbers, 2, rows), or (2, rows) for one number a row.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -11,39 +17,33 @@ from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.plan import Demand, RowFlag
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import Outputs, Plan
-    from mechkin_cli.session.inputs import KernelInputs
-    from mechkin_cli.session.session import Session
+    from mechkin_cli.plan import Readout
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep import SweepRows
 
+
+if TYPE_CHECKING:
+    Numbered = TypeVar("Numbered", Plan, Outputs)
+    _Charted = tuple[Floats | None, Floats | None, Floats | None, Floats | None]
 
 RESIDUAL_TESTS = (
     tolerances.RESIDUAL_TIGHT,
     tolerances.STEP_COARSE,
     tolerances.RESIDUAL_ACCEPT,
 )
-_VELOCITY, _ACCELERATION, _FORCES = (
-    int(part) for part in (Demand.VELOCITY, Demand.ACCELERATION, Demand.FORCES)
+PRECISE_TESTS = (
+    tolerances.PRECISE_RESIDUAL_TIGHT,
+    tolerances.PRECISE_STEP_COARSE,
+    tolerances.PRECISE_RESIDUAL_ACCEPT,
+)
+_VELOCITY, _ACCELERATION, _JERK, _FORCES = (
+    int(part) for part in (Demand.VELOCITY, Demand.ACCELERATION, Demand.JERK, Demand.FORCES)
 )
 _CONDITION, _POWER = int(Demand.CONDITION), int(Demand.POWER)
-
-
-class ChartArguments(NamedTuple):
-    """What a run is told of a chart, as far as it is demanded."""
-
-    directions: Floats | None = None
-    friction_told: Floats | None = None
-    rates: Floats | None = None
-    accelerations: Floats | None = None
-
-
-NO_CHART = ChartArguments()
 
 
 class Chart(NamedTuple):
@@ -56,30 +56,105 @@ class Chart(NamedTuple):
     accelerations: Floats
     friction: Floats
 
-    def at(self, rows: NDArray[np.intp] | slice) -> Chart:
+    def at(self, rows: NDArray[np.intp] | Sequence[int] | slice) -> Chart:
         """Some of the rows."""
-        return Chart(*(array[:, rows] for array in self))
+        return Chart(*(array[..., rows] for array in self))
 
-    def arguments(self, demand: Demand) -> ChartArguments:
-        """As `Plan.run` takes them."""
-        told = self.friction.size and demand & Demand.FORCES
-        return ChartArguments(
-            _contiguous(self.direction),
-            _contiguous(self.friction) if told else None,
-            _contiguous(self.rates) if demand & Demand.VELOCITY else None,
-            _contiguous(self.accelerations) if demand & Demand.ACCELERATION else None,
+
+_NO_CHART = (None, None, None, None)
+
+
+class RowInputs(NamedTuple):
+    """What a run is given for its rows; the last axis of every array is over rows.
+
+    In double-double each may have two parts, and time must. What is not demanded is not read.
+
+    Attributes:
+        inputs: (inputs, rows), rad and length units, without whole turns.
+        guess: (states, rows); in double-double the states of a run in doubles.
+        rates: (inputs, rows), needed for velocities.
+        accelerations: (inputs, rows), needed for accelerations.
+        jerks: (inputs, rows), needed for third derivatives.
+        ties: rates of tied inputs by those of their leaders (ties, rows), needed for forces where
+            there are any.
+        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
+            loads go by them.
+        whole: (inputs, rows) whole turns that the inputs are without, likewise.
+        full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
+        time: (rows,) s, likewise.
+        chart: of a plan with one.
+    """
+
+    inputs: Floats
+    guess: Floats
+    rates: Floats | None = None
+    accelerations: Floats | None = None
+    jerks: Floats | None = None
+    ties: Floats | None = None
+    turned: Floats | None = None
+    whole: Floats | None = None
+    full: Floats | None = None
+    time: Floats | None = None
+    chart: Chart | None = None
+
+    def at(self, rows: NDArray[np.intp] | Sequence[int]) -> RowInputs:
+        """Some of the rows, in this order."""
+        parts: Any = (
+            part if part is None else part.at(rows) if isinstance(part, Chart) else part[..., rows]
+            for part in self
         )
+        return RowInputs(*parts)
+
+
+class Ask(NamedTuple):
+    """What a run is asked for.
+
+    Attributes:
+        demand: what to compute beyond positions; the condition in doubles alone.
+        readout: quantities to write, of a plan of the same structure.
+        derivatives: return the columns' first and second derivatives, as far as they are demanded.
+        shift: 1 or 2 adds a fixed part of the null space to reactions that are not unique.
+        iterations: Newton steps at most.
+        tests: residual tests (tight, coarse, accept); None: those of the numbers.
+        only: the one block that is closed; the unknowns of the others stay as guessed and their
+            loops are not looked at. For positions and the condition alone, in doubles.
+    """
+
+    demand: Demand = Demand.POSITION
+    readout: Readout | None = None
+    derivatives: bool = False
+    shift: int = 0
+    iterations: int = tolerances.NEWTON_ITERATIONS
+    tests: tuple[float, float, float] | None = None
+    only: int | None = None
+
+
+POSITIONS = Ask()
+
+
+class PreciseConstants(NamedTuple):
+    """The constants (constants, 2) of a run in double-double, of its `plan` and of its `outputs`,
+    as `solver.precise.Precise` gives them; None: the doubles that they have."""
+
+    plan: Floats | None = None
+    outputs: Floats | None = None
 
 
 class Batch(NamedTuple):
-    """What the kernel found, row by row; arrays over rows, or (columns, rows).
+    """What the kernel found, row by row; arrays over rows, or (columns, rows); in double-double
+    with two parts each.
 
     `states` and `outputs` as planned; `first` and `second` are the derivatives of the columns
     (lengths in the kernel's unit); `correction` is the largest change of an unknown against its
     guess; `side` (blocks, rows) are the signs of the square blocks' determinants where more than
-    positions was demanded; `flags` are `RowFlag`s; `loads` (values, rows) are those of loads
-    that vary, in the kernel's units, and `undefined` tells rows in which one has none; what was not
-    asked for is None.
+    positions was demanded; `flags` (rows,) are `RowFlag`s; `loads` (values, rows) are those of
+    loads that vary, in the kernel's units, and `undefined` (rows,) tells rows in which one has
+    none; what was not asked for is None.
+
+    In double-double there is no `condition` and no `side`; a row that Newton could not bring to the
+    rounding of double-double is not converged, and its numbers are as good as its residual; and
+    `chart_forces` (charts, 2, rows), in kernel units, are what would have to act along a chart's
+    coordinates for its accelerations: M u'' + r in docs/numerics.md, zero along a free motion.
     """
 
     states: Floats
@@ -88,12 +163,13 @@ class Batch(NamedTuple):
     second: Floats | None
     residual: Floats
     correction: Floats
-    side: Floats
+    side: Floats | None
     condition: Floats | None
     power_error: Floats | None
     flags: NDArray[np.uint8]
     loads: Floats | None = None
     undefined: NDArray[np.uint8] | None = None
+    chart_forces: Floats | None = None
 
     @property
     def good(self) -> NDArray[np.bool_]:
@@ -103,92 +179,87 @@ class Batch(NamedTuple):
 
 def run(
     plan: Plan,
-    inputs: Floats,
-    guess: Floats,
+    rows: RowInputs,
+    ask: Ask = POSITIONS,
+    constants: PreciseConstants | None = None,
     *,
-    rates: Floats | None = None,
-    accelerations: Floats | None = None,
-    ties: Floats | None = None,
-    jerks: Floats | None = None,
-    turned: Floats | None = None,
-    whole: Floats | None = None,
-    full: Floats | None = None,
-    time: Floats | None = None,
-    demand: Demand = Demand.POSITION,
-    outputs: Outputs | None = None,
-    derivatives: bool = False,
-    chart: Chart | None = None,
-    shift: int = 0,
-    iterations: int = tolerances.NEWTON_ITERATIONS,
-    tests: tuple[float, float, float] = RESIDUAL_TESTS,
-    only: int | None = None,
     lanes: int = 0,
     threads: int = 0,
 ) -> Batch:
-    """Closes all rows from their guesses and computes what is demanded.
+    """Closes all rows from their guesses and computes what is asked for.
 
     Args:
         plan: the kernel's plan.
-        inputs: (inputs, rows), rad and length units; `rates`, `accelerations` likewise.
-        guess: (states, rows).
-        rates: needed for velocities.
-        accelerations: needed for accelerations.
-        jerks: needed for third derivatives.
-        ties: rates of tied inputs by those of their leaders (ties, rows), needed for forces where
-            there are any.
-        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
-            loads go by them.
-        whole: (inputs, rows) whole turns that the inputs are without, likewise.
-        chart: of a plan with one.
-        full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
-        time: (rows,) s, likewise.
-        demand: what to compute beyond positions.
-        outputs: quantities to write, of a plan of the same structure.
-        derivatives: return the columns' first and second derivatives, as far as they are demanded.
-        shift: 1 or 2 adds a fixed part of the null space to reactions that are not unique.
-        iterations: Newton steps at most.
-        tests: residual tests (tight, coarse, accept).
-        only: the one block that is closed; the unknowns of the others stay as guessed and their
-            loops are not looked at. For positions and the condition alone.
+        rows: what is given for each row.
+        ask: what is asked for.
+        constants: run in double-double with these; None: in doubles.
         lanes: width of the packs, 0 for the widest; the results do not depend on it.
         threads: how many split the rows, 0 for as many as pay; the results do not depend on it.
 
     Raises:
         ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
-    rows = inputs.shape[1]
-    asked = int(demand)  # flags of an enumeration are slow, and short calls are many
-    states = np.empty((plan.states, rows))
-    values = None if outputs is None else np.empty((outputs.slots, rows))
-    first = np.empty((plan.columns, rows)) if derivatives and asked & _VELOCITY else None
-    second = np.empty((plan.columns, rows)) if derivatives and asked & _ACCELERATION else None
-    residual, correction = np.empty(rows), np.empty(rows)
-    # signs are told with a demand, of the blocks that are closed
-    told = asked and only is None
-    side = np.empty((plan.blocks, rows)) if told else np.ones((plan.blocks, rows))
-    condition = np.empty(rows) if asked & _CONDITION else None
-    power_error = np.empty(rows) if asked & _POWER else None
-    flags = np.empty(rows, dtype=np.uint8)
-    varying = plan.load_values if asked & _FORCES else 0
-    loads = np.empty((plan.load_values, rows)) if varying else None
-    undefined = np.empty(rows, dtype=np.uint8) if varying else None
-    charted = NO_CHART if chart is None else chart.arguments(demand)
+    inputs, guess, rates, accelerations, jerks, ties, turned, whole, full, time, chart = rows
+    count = inputs.shape[-1]
+    demand = int(ask.demand)  # flags of an enumeration are slow, and short calls are many
+    outputs = None if ask.readout is None else ask.readout.outputs
+    call: Callable[..., None] = plan.run
+    if constants is None:
+        given, tests = _contiguous, RESIDUAL_TESTS
+        shape: tuple[int, ...] = (count,)
+        # signs are told with a demand, of the blocks that are closed
+        told = demand and ask.only is None
+        blocks = (plan.blocks, count)
+        side: Floats | None = np.empty(blocks) if told else np.ones(blocks)
+        condition = np.empty(count) if demand & _CONDITION else None
+        chart_forces = None
+        if ask.only is not None:
+            call = partial(call, only=ask.only)
+    else:
+        given, tests = _in_parts, PRECISE_TESTS
+        shape = (2, count)
+        side = condition = None
+        forces = chart is not None and demand & _FORCES
+        chart_forces = np.empty((plan.charts, *shape)) if forces else None
+        low = low_outputs = None
+        if constants.plan is not None:
+            plan, low = _split(plan, constants.plan)
+        if outputs is not None and constants.outputs is not None:
+            outputs, low_outputs = _split(outputs, constants.outputs)
+        call = partial(
+            plan.run_precise, low=low, low_outputs=low_outputs, chart_forces=chart_forces
+        )
+    moving, accelerating = demand & _VELOCITY, demand & _ACCELERATION
+    forced = demand & _FORCES
+    charted: _Charted = _NO_CHART if chart is None else chart
+    directions, chart_rates, chart_accelerations, friction = charted
+    rubbing = forced and friction is not None and friction.size
+    varying = plan.load_values if forced else 0
+    states = np.empty((plan.states, *shape))
+    values = None if outputs is None else np.empty((outputs.slots, *shape))
+    first = np.empty((plan.columns, *shape)) if ask.derivatives and moving else None
+    second = np.empty((plan.columns, *shape)) if ask.derivatives and accelerating else None
+    residual, correction = np.empty(shape), np.empty(shape)
+    power_error = np.empty(shape) if demand & _POWER else None
+    flags = np.empty(count, dtype=np.uint8)
+    loads = np.empty((varying, *shape)) if varying else None
+    undefined = np.empty(count, dtype=np.uint8) if varying else None
     # each by name: a mapping among the arguments would cost a short call a tenth
-    plan.run(
-        inputs=_contiguous(inputs),
-        guess=_contiguous(guess),
-        rates=None if rates is None else _contiguous(rates),
-        accelerations=None if accelerations is None else _contiguous(accelerations),
-        jerks=None if jerks is None else _contiguous(jerks),
-        ties=None if ties is None else _contiguous(ties),
-        turned=None if turned is None else _contiguous(turned),
-        whole=None if whole is None else _contiguous(whole),
-        chart=charted.directions,
-        friction_told=charted.friction_told,
-        chart_rates=charted.rates,
-        chart_accelerations=charted.accelerations,
-        full=None if full is None else _contiguous(full),
+    call(
+        inputs=given(inputs),
+        guess=given(guess),
+        rates=given(rates) if moving else None,
+        accelerations=given(accelerations) if accelerating else None,
+        jerks=given(jerks) if demand & _JERK else None,
+        ties=given(ties) if forced else None,
+        turned=None if turned is None else given(turned),
+        whole=None if whole is None else given(whole),
+        full=None if full is None else given(full),
         time=None if time is None else _contiguous(time),
+        chart=None if directions is None else given(directions),
+        chart_rates=given(chart_rates) if moving else None,
+        chart_accelerations=given(chart_accelerations) if accelerating else None,
+        friction_told=given(friction) if rubbing else None,
         outputs=outputs,
         states=states,
         values=values,
@@ -202,16 +273,16 @@ def run(
         loads=loads,
         undefined=undefined,
         flags=flags,
-        demand=asked,
-        shift=shift,
-        iterations=iterations,
-        tests=tests,
-        only=only,
+        demand=demand,
+        shift=ask.shift,
+        iterations=ask.iterations,
+        tests=ask.tests or tests,
         lanes=width(lanes),
-        threads=threads_for(rows, threads),
+        threads=threads_for(count, threads),
     )
     measured = (residual, correction, side, condition, power_error)
-    return Batch(states, values, first, second, *measured, flags, loads, undefined)
+    acting = (loads, undefined, chart_forces)
+    return Batch(states, values, first, second, *measured, flags, *acting)
 
 
 def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:
@@ -225,58 +296,17 @@ def assembly_size(plan: Plan, inputs: Floats, state: Floats) -> float:
     )
 
 
-def _contiguous(array: Floats) -> Floats:
-    return np.ascontiguousarray(array, np.float64)
+def _contiguous(array: Floats | None) -> Floats | None:
+    return None if array is None else np.ascontiguousarray(array, np.float64)
 
 
-# Places of a motion as the kernel takes them: all that a run is told beside what it is to find.
+def _in_parts(array: Floats | None) -> Floats | None:
+    """Numbers (numbers, 2, rows): those given so, or doubles with zero for their low parts."""
+    if array is None or array.ndim == 3:
+        return _contiguous(array)
+    return np.ascontiguousarray(np.stack([array, np.zeros_like(array)], axis=-2), np.float64)
 
 
-class RowPlaces(NamedTuple):
-    """Arguments of `Session.run` by their names there, the last axis of each over places."""
-
-    inputs: Floats
-    guess: Floats
-    rates: Floats | None
-    accelerations: Floats | None
-    jerks: Floats | None
-    turned: Floats
-    whole: Floats
-    full: Floats
-    time: Floats | None
-    ties: Floats | None
-
-    @classmethod
-    def of(
-        cls,
-        own: Session,
-        rows: SweepRows,
-        inputs: KernelInputs,
-        demand: Demand,
-        ties: Floats | None,
-    ) -> RowPlaces:
-        """The rows of a run of the session `own` on their states, with rates of `inputs` as far as
-        they are demanded."""
-        moments = own.problem.motion.time
-        return cls(
-            inputs=inputs.reduced,
-            guess=rows.states,
-            rates=inputs.rates if demand & Demand.VELOCITY else None,
-            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
-            jerks=inputs.jerks if demand & Demand.JERK else None,
-            turned=rows.turns,
-            whole=own.inputs.whole,
-            full=own.inputs.values,
-            time=None if moments is None else moments.values,
-            ties=ties if demand & Demand.FORCES else None,
-        )
-
-    def at(self, numbers: NDArray[np.intp] | Sequence[int]) -> RowPlaces:
-        """Some of the places, in this order."""
-        parts: Any = (None if part is None else part[..., numbers] for part in self)
-        return RowPlaces(*parts)
-
-    @property
-    def arguments(self) -> dict[str, Any]:
-        """As `Session.run` takes them."""
-        return self._asdict()
+def _split(of: Numbered, constants: Floats) -> tuple[Numbered, Floats]:
+    """A plan or outputs at the high parts of constants (constants, 2), and the low parts."""
+    return of.with_constants(constants[:, 0].copy()), constants[:, 1].copy()

@@ -12,33 +12,36 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.memo import Memo, remembered
-from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout
+from mechkin_cli.plan import Demand, Layout, Readout
+from mechkin_cli.session.assembled_places import solver_graph
 from mechkin_cli.session.following import (
     Followed,
     follow as follow_path,
     follow_way as follow_along,
 )
 from mechkin_cli.session.inputs import KernelInputs, TurnSlots, input_unit, kernel_inputs
-from mechkin_cli.session.kernel_run import RESIDUAL_TESTS, Batch, Chart, run as run_kernel
-from mechkin_cli.structure import SolverGraph, build_graph, is_redundant
+from mechkin_cli.session.kernel_run import (
+    POSITIONS,
+    Ask,
+    Batch,
+    PreciseConstants,
+    RowInputs,
+    run as run_kernel,
+)
+from mechkin_cli.session.structure import Coordinate, Structure
+from mechkin_cli.structure import SolverGraph, is_redundant
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
-    from mechkin_cli.search import Assemblies, Within
-    from mechkin_cli.session.double_double import Precise, PreciseBatch
-    from mechkin_cli.session.path import FollowedPath, InputTie, Route
+    from mechkin_cli.session.double_double import Precise
+    from mechkin_cli.session.path import FollowedPath, Route
     from mechkin_cli.show import Floats
-
-
-Coordinate = tuple[str, str]
-"""(joint, coordinate)."""
 
 
 @dataclass(frozen=True)
@@ -73,57 +76,6 @@ class ContinuedFrom:
 
 First = Continued | ContinuedFrom | None
 """How the first assembly is found; None: chosen as `problem.assembly` says (home, near or mode)."""
-
-
-@dataclass(frozen=True, eq=False)
-class Structure:
-    """A mechanism and its graph in the kernel: what depends neither on rows nor on the choice of
-    the first assembly.
-
-    Attributes:
-        layout: how the mechanism lies in the kernel.
-        driven: its inputs (joint, coordinate).
-        closed_at: cut joints that were asked for instead of the best ones.
-        built: the plan, where it is not that of the layout alone.
-        varied: the readout of some quantities, where their constants follow from those of another
-            structure.
-    """
-
-    layout: Layout
-    driven: tuple[Coordinate, ...]
-    closed_at: tuple[str, ...] | None = None
-    built: Plan | None = None
-    varied: Callable[[tuple[Wanted, ...]], Readout] | None = None
-    memo: Memo = field(default_factory=dict, init=False, repr=False)
-
-    @cached_property
-    def plan(self) -> Plan:
-        """The frozen plan; residual and condition in parts of the drawing's size."""
-        return self.layout.build() if self.built is None else self.built
-
-    @cached_property
-    def turn_slots(self) -> TurnSlots:
-        """Where the turns of angles stand among `Followed.turns`."""
-        return TurnSlots.of(self.plan)
-
-    @remembered
-    def readout(self, wanted: tuple[Wanted, ...], points: tuple[Attached, ...]) -> Readout:
-        """The outputs that give some quantities, and the places of some points."""
-        if self.varied is not None and not points:
-            return self.varied(wanted)
-        outputs = OutputPlan(self.layout, self.plan, self.driven)
-        for quantity in wanted:
-            outputs.add(quantity)
-        slots = [outputs.add_point(at, 0) for at in points]
-        return Readout(outputs.outputs, outputs.slots, slots)
-
-    @remembered
-    def search(self, inputs: Floats, turns: int, about: Floats, thorough: bool) -> Assemblies:
-        """All assemblies at some inputs (inputs,) that random starts find, threads within `turns`
-        to either side of `about` (states,); not `thorough`: most of them."""
-        from mechkin_cli.search import assemblies
-
-        return assemblies(self.layout, self.plan, inputs, turns, None, about, thorough)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +126,7 @@ class Session:
             UnsolvableGraph: the mechanism cannot be solved as it is driven.
         """
         inputs = list(problem.driven if driven is None else driven)
-        graph = graph or build_graph(problem.solved_mechanism, inputs, closed_at)
+        graph = graph or solver_graph(problem.solved_mechanism, inputs, closed_at)
         layout = Layout(problem.laid_mechanism, graph, laws=problem.laws)
         cuts = None if closed_at is None else tuple(closed_at)
         return cls(problem, Structure(layout, tuple(inputs), cuts), packing=packing)
@@ -229,18 +181,6 @@ class Session:
 
         units = [input_unit(self.layout, item) for item in self.problem.motion.inputs]
         return Route(course, self.inputs.values, np.array(units))
-
-    @remembered
-    def tie(self, number: int, row: int = 0) -> InputTie | None:
-        """What follows input `number` where all others stand as in a row; None where nothing
-        does."""
-        name = self.problem.motion.inputs[number].name
-        tapes = dict(self.problem.motion.ties)
-        if name not in tapes:
-            return None
-        from mechkin_cli.session.path import InputTie
-
-        return InputTie(self, tapes[name], number, row)
 
     @cached_property
     def tie_rates(self) -> Floats | None:
@@ -350,7 +290,7 @@ class Session:
 
     def close(self, inputs: Floats, guess: Floats, demand: Demand = Demand.POSITION) -> Batch:
         """Closes the loops at some inputs (inputs, places) from guesses (states, places)."""
-        return self.run(inputs, guess, demand=demand)
+        return self.run(RowInputs(inputs, guess), Ask(demand))
 
     def follow(
         self,
@@ -399,91 +339,13 @@ class Session:
         """Follows the branch through `start` (states,) along a way of all inputs."""
         return follow_along(self.plan, way, start, straight=self.problem.assembly.straight)
 
-    def search(
-        self, inputs: Floats, within: Within | None = None, *, thorough: bool = True
-    ) -> Assemblies:
-        """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
-        not `thorough`: most of them, where one is wanted."""
-        turns, about = self.problem.assembly.turns, self._named_turns()
-        if within is not None:
-            from mechkin_cli.search import assemblies
-
-            return assemblies(self.layout, self.plan, inputs, turns, within, about, thorough)
-        quick = self.structure.search(inputs, turns, about, False)
-        final = quick.complete or quick.cut or not thorough
-        return quick if final else self.structure.search(inputs, turns, about, True)
-
-    def _named_turns(self) -> Floats:
-        """States (states,): the turns of threads that the assembly's `near` names, else zero."""
-        states: Floats = np.zeros(self.layout.states)
-        for name, value in self.problem.assembly.near.items():
-            owner, _, coordinate = name.rpartition(".")
-            joint, edge = self.layout.mechanism.joints[owner], self.layout.edge_number.get(owner)
-            if edge is not None and joint.type.is_threaded:
-                number = self.layout.state(edge, joint.type.freedom_of[coordinate])
-                states[number] = value / joint.unit_of(coordinate, self.layout.length)
-        return states
-
     def run(
-        self,
-        inputs: Floats,
-        guess: Floats,
-        *,
-        readout: Readout | None = None,
-        demand: Demand = Demand.POSITION,
-        rates: Floats | None = None,
-        accelerations: Floats | None = None,
-        jerks: Floats | None = None,
-        ties: Floats | None = None,
-        turned: Floats | None = None,
-        whole: Floats | None = None,
-        chart: Chart | None = None,
-        full: Floats | None = None,
-        time: Floats | None = None,
-        derivatives: bool = False,
-        shift: int = 0,
-        iterations: int = tolerances.NEWTON_ITERATIONS,
-        tests: tuple[float, float, float] = RESIDUAL_TESTS,
+        self, rows: RowInputs, ask: Ask = POSITIONS, constants: PreciseConstants | None = None
     ) -> Batch:
-        """Closes all rows and computes what is demanded; arguments as those of
-        `solver.batch.run`."""
+        """Closes all rows and computes what is asked for; arguments as those of `solver.batch.run`,
+        the constants `session.precise.constants(session)` and
+        `session.precise.outputs(session, wanted)`."""
+        packing = self.packing
         return run_kernel(
-            self.plan,
-            inputs,
-            guess,
-            rates=rates,
-            accelerations=accelerations,
-            jerks=jerks,
-            ties=ties,
-            turned=turned,
-            whole=whole,
-            chart=chart,
-            full=full,
-            time=time,
-            demand=demand,
-            outputs=None if readout is None else readout.outputs,
-            derivatives=derivatives,
-            shift=shift,
-            iterations=iterations,
-            tests=tests,
-            lanes=self.packing.lanes,
-            threads=self.packing.threads,
-        )
-
-    def run_precise(
-        self, inputs: Floats, guess: Floats, *, readout: Readout | None = None, **given: Any
-    ) -> PreciseBatch:
-        """Closes rows that are closed in doubles, and computes what is demanded, in double-double;
-        arguments as those of `solver.precise_run.run_precise`, constants as
-        `session.precise.constants(session)` and `session.precise.outputs(session, wanted)`."""
-        from mechkin_cli.session.double_double import run_precise
-
-        return run_precise(
-            self.plan,
-            inputs,
-            guess,
-            outputs=None if readout is None else readout.outputs,
-            lanes=self.packing.lanes,
-            threads=self.packing.threads,
-            **given,
+            self.plan, rows, ask, constants, lanes=packing.lanes, threads=packing.threads
         )

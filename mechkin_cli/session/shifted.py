@@ -20,8 +20,7 @@ from mechkin_cli.tape import compiled, double_doubles, register, replay_precise
 if TYPE_CHECKING:
     from mechkin_cli.kernel import _kernel
     from mechkin_cli.mechanism import Attached, ExactMotion, Problem, Wanted
-    from mechkin_cli.session.double_double import PreciseInputs
-    from mechkin_cli.session.session import Session
+    from mechkin_cli.session.double_double import InDoubles, PreciseInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactTape, ShiftingRecorder
 
@@ -50,7 +49,7 @@ class ShiftingPrecise(Precise):
         super().__init__(recorder, problem, motion, base)
         self.leaves = leaves
         self._turned: dict[tuple[str, Fraction], bool] = {}
-        self._tapes: dict[Hashable, tuple[Session, ExactTape, _kernel.Tape | None]] = {}
+        self._tapes: dict[Hashable, tuple[InDoubles, ExactTape, _kernel.Tape | None]] = {}
 
     def is_turned(self, name: str, amount: Fraction) -> bool:
         """Whether anything that the building decides is decided otherwise for this shift of a
@@ -70,7 +69,7 @@ class ShiftingPrecise(Precise):
     def replayed(
         self,
         key: Hashable,
-        session: Session,
+        session: InDoubles,
         numbers: Callable[[], Iterable[Any]],
         shifts: Shifts,
     ) -> Floats:
@@ -101,12 +100,12 @@ class Shifted(Precise):
         self._layouts = own._layouts
         self.own, self.shifts = own, shifts
 
-    def constants(self, session: Session) -> Floats:
+    def constants(self, session: InDoubles) -> Floats:
         """As `Precise.constants`."""
         return self.own.replayed("plan", session, lambda: self._constants(session), self.shifts)
 
     def outputs(
-        self, session: Session, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
     ) -> Floats:
         """As `Precise.outputs`."""
         wanted, points = tuple(wanted), tuple(points)
@@ -115,7 +114,7 @@ class Shifted(Precise):
             key, session, lambda: self._outputs(session, wanted, points), self.shifts
         )
 
-    def inputs(self, session: Session) -> PreciseInputs:
+    def inputs(self, session: InDoubles) -> PreciseInputs:
         """As `Precise.inputs`."""
         with self.recorder.shifted(self.shifts):
             return super().inputs(session)

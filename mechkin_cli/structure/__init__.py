@@ -16,7 +16,6 @@ if TYPE_CHECKING:
         charted as charted,
         exchanged as exchanged,
         graph_of as graph_of,
-        left_free as left_free,
     )
     from mechkin_cli.structure.graph import (
         Block as Block,
@@ -28,15 +27,19 @@ if TYPE_CHECKING:
         listed as listed,
         structure_of as structure_of,
     )
-    from mechkin_cli.structure.network import whole_link as whole_link
+    from mechkin_cli.structure.network import (
+        connections_of as connections_of,
+        reduce as reduce,
+        whole_link as whole_link,
+    )
     from mechkin_cli.structure.random_starts import RandomStarts as RandomStarts
-    from mechkin_cli.structure.redundancy import equations_that_follow as equations_that_follow
+    from mechkin_cli.structure.rank import Rates as Rates, unit_of as unit_of
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "build": ["build_graph"],
-        "changed": ["charted", "exchanged", "graph_of", "left_free"],
+        "changed": ["charted", "exchanged", "graph_of"],
         "graph": [
             "Block",
             "CutJoint",
@@ -47,8 +50,8 @@ __getattr__, __dir__ = lazy_names(
             "listed",
             "structure_of",
         ],
-        "network": ["whole_link"],
+        "network": ["connections_of", "reduce", "whole_link"],
         "random_starts": ["RandomStarts"],
-        "redundancy": ["equations_that_follow"],
+        "rank": ["Rates", "unit_of"],
     },
 )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from itertools import combinations, groupby, product
 from math import comb, prod
 
-from mechkin_cli.mechanism import GROUND_NAME, Joint, Leg, Mechanism
+from mechkin_cli.mechanism import GROUND_NAME, Frame, Joint, Leg, Mechanism
 from mechkin_cli.structure import graph as errors
 from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
 from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge, UnsolvableGraph
@@ -29,6 +29,10 @@ from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
 # Blocks: groups with their closings, each after the groups that place the links it hangs on.
 
 Freedom = tuple[int, int]
+
+
+AssembledPlaces = Callable[[Mechanism, Callable[[], SolverGraph]], Iterator[Callable[[str], Frame]]]
+"""Gives where the links' drawings stand, place by place."""
 
 
 class NothingSolved(Exception):
@@ -390,24 +394,33 @@ def tree_depths(tree: Sequence[Connection], depth: Mapping[str, int]) -> dict[st
 def build_graph(
     mechanism: Mechanism,
     inputs: Sequence[tuple[str, str]],
+    assembled_places: AssembledPlaces,
     closed_at: Sequence[str] | None = None,
 ) -> SolverGraph:
     """The solver graph of a mechanism whose `inputs` (joint, coordinate) are driven.
 
-    `closed_at` forces the closing joints (one per independent loop).
+    `closed_at` forces the cut joints (one per independent loop). `assembled_places` gives places to
+    take ranks at, from the mechanism and a graph that closes all loops of a component at once.
 
     Raises:
         UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
             overconstrained loops.
     """
-    return _built(mechanism, inputs, closed_at, _AssembledRates(mechanism, inputs))
+    return _built(
+        mechanism, inputs, closed_at, _AssembledRates(mechanism, inputs, assembled_places)
+    )
 
 
 class _AssembledRates:
     """The rates at places where a mechanism is assembled, each found when it is asked for."""
 
-    def __init__(self, mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> None:
-        self._sought = self._seek(mechanism, inputs)
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        inputs: Sequence[tuple[str, str]],
+        assembled_places: AssembledPlaces,
+    ) -> None:
+        self._sought = self._seek(mechanism, inputs, assembled_places)
         self._found: list[Rates] = []
 
     def __iter__(self) -> Iterator[Rates]:
@@ -417,9 +430,11 @@ class _AssembledRates:
             yield rates
 
     @staticmethod
-    def _seek(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Rates]:
-        from mechkin_cli.session import assembled_places
-
+    def _seek(
+        mechanism: Mechanism,
+        inputs: Sequence[tuple[str, str]],
+        assembled_places: AssembledPlaces,
+    ) -> Iterator[Rates]:
         def coarse() -> SolverGraph:
             return _built(mechanism, inputs, None, ())
 

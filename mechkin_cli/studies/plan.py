@@ -408,7 +408,8 @@ class _Asking:
         way = way_of(self.problem)
         if way is None:
             return None
-        return _Along(Heading(way.name, label(known[way.name].dimension)), way.values)
+        name, values = way
+        return _Along(Heading(name, label(known[name].dimension)), values)
 
     def _dead_centre(self) -> Heading | None:
         if self.file.dead_centres is None:

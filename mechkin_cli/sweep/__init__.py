@@ -12,14 +12,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.sweep.branch_end import passed_straight_on as passed_straight_on
     from mechkin_cli.sweep.dead_centre import lost_rates as lost_rates
+    from mechkin_cli.sweep.following import follow_rows as follow_rows
     from mechkin_cli.sweep.friction import unfounded_in_motion as unfounded_in_motion
     from mechkin_cli.sweep.messages import stands_elsewhere as stands_elsewhere
     from mechkin_cli.sweep.result import Result as Result
-    from mechkin_cli.sweep.rows import (
-        SweepRows as SweepRows,
-        follow_rows as follow_rows,
-        has_turns as has_turns,
-    )
+    from mechkin_cli.sweep.rows import SweepRows as SweepRows, has_turns as has_turns
     from mechkin_cli.sweep.sweep import (
         analyze as analyze,
         at_once as at_once,
@@ -35,10 +32,11 @@ __getattr__, __dir__ = lazy_names(
     {
         "branch_end": ["passed_straight_on"],
         "dead_centre": ["lost_rates"],
+        "following": ["follow_rows"],
         "friction": ["unfounded_in_motion"],
         "messages": ["stands_elsewhere"],
         "result": ["Result"],
-        "rows": ["SweepRows", "follow_rows", "has_turns"],
+        "rows": ["SweepRows", "has_turns"],
         "sweep": [
             "analyze",
             "at_once",

@@ -8,14 +8,14 @@ the row: two places a little before it on its branch tell what grows towards it.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand, demand_of
-from mechkin_cli.session import precise_inputs
+from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.plan import Slot
-    from mechkin_cli.session import Batch, RowPlaces, Session
+    from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import SweepRows
 
@@ -135,19 +135,13 @@ def lost_rates(session: Session, rows: NDArray[np.intp], states: Floats) -> Bool
         (inputs, places), by each input in turn.
     """
     constants, values = _as_written(session, rows)
+    numbers, ask = PreciseConstants(constants), Ask(Demand.VELOCITY, derivatives=True, iterations=1)
     rounded = np.ascontiguousarray(session.inputs.reduced[:, rows])
     lost = np.zeros(rounded.shape, dtype=bool)
     for number, value in enumerate(rounded):
         own = at_unit_rate(session, rounded, states, number)
-        closer = session.run_precise(
-            values,
-            states,
-            constants=constants,
-            rates=unit_rates(rounded, number),
-            demand=Demand.VELOCITY,
-            derivatives=True,
-            iterations=1,
-        )
+        moving = RowInputs(values, states, unit_rates(rounded, number))
+        closer = session.run(moving, ask, numbers)
         assert own.first is not None
         assert own.second is not None
         assert closer.first is not None
@@ -198,50 +192,42 @@ def _is_lost(session: Session, rows: SweepRows, near: Bools) -> Bools:
 def _grows(session: Session, before: PlacesBefore) -> bool:
     """Whether rates along the way to a dead centre grow without bound."""
     way = before.inputs[:, 1] - before.inputs[:, 0]
-    batch = session.run(
-        before.inputs,
-        before.states,
-        demand=Demand.VELOCITY,
-        rates=np.repeat((way / np.abs(way).max())[:, None], 2, axis=1),
-        derivatives=True,
-        iterations=0,
-    )
+    rates = np.repeat((way / np.abs(way).max())[:, None], 2, axis=1)
+    rows = RowInputs(before.inputs, before.states, rates)
+    batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
     assert batch.first is not None
     far, close = np.abs(batch.first).max(axis=0)
     return bool(close >= GROWS_WITHOUT_BOUND * far > 0.0)
 
 
 def put_unbounded(
-    session: Session,
-    rows: SweepRows,
-    wanted: Sequence[Wanted],
-    batch: Batch,
-    places: RowPlaces,
-    asked: Mapping[str, Any],
+    session: Session, states: SweepRows, rows: RowInputs, ask: Ask, batch: Batch
 ) -> None:
     """Puts the infinite with its sign into a run's outputs, in place, where a quantity grows
     without bound towards a row at a dead centre; others that take rates or reactions have no value.
 
     Args:
         session: the one that ran.
-        rows: the run's.
-        wanted: what it read.
+        states: its rows.
+        rows: what it was given for them.
+        ask: what it was asked for.
         batch: what it found.
-        places: of its rows.
-        asked: what else it was told.
     """
     assert batch.outputs is not None
-    slots = session.readout(wanted).slots
+    assert ask.readout is not None
+    slots, wanted = ask.readout.slots, ask.readout.wanted
+    on_states = ask._replace(iterations=0)
+    moving = rows.rates if ask.demand & Demand.VELOCITY else None
     read = [quantity for quantity in wanted if demand_of(session.problem.mechanism, [quantity])]
     forces = [q for q in read if demand_of(session.problem.mechanism, [q]) & Demand.FORCES]
     rates = [q for q in read if q not in forces]
     alike = [_slots(slots, some) for some in (rates, forces) if some]
     put: set[int] = set()
-    for before in rows.dead_centres if alike else ():
-        there = places.at([before.row] * 2)._replace(inputs=before.inputs, guess=before.states)
-        outputs = session.run(**there.arguments, **asked, iterations=0).outputs
+    for before in states.dead_centres if alike else ():
+        there = rows.at([before.row] * 2)._replace(inputs=before.inputs, guess=before.states)
+        outputs = session.run(there, on_states).outputs
         assert outputs is not None
-        rests = _comes_to_rest(places.rates, before.row)
+        rests = _comes_to_rest(moving, before.row)
         for lost in alike:
             far, close = outputs[lost].T
             grows = np.abs(close) >= GROWS_WITHOUT_BOUND * np.abs(far)

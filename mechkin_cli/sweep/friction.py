@@ -17,7 +17,7 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, Rubbing, Wanted
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.result import Result
+    from mechkin_cli.sweep.rows import RunRows
     from mechkin_cli.units import Dimension
 
 
@@ -68,7 +68,7 @@ def _holding(problem: Problem) -> list[Wanted]:
     return [known[name] for name in dict.fromkeys(i.holding for i in idle_freedoms(problem))]
 
 
-def friction_verdict(result: Result) -> FrictionVerdict:
+def friction_verdict(result: RunRows) -> FrictionVerdict:
     """The verdict on the friction of a result, whose verdict quantities have been read."""
     rows, problem = result.row_states, result.problem
     unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
@@ -91,7 +91,7 @@ def friction_verdict(result: Result) -> FrictionVerdict:
 Finding = Iterator[tuple["Bools", Diagnostic]]
 
 
-def _undecided(result: Result, judged: Bools) -> Finding:
+def _undecided(result: RunRows, judged: Bools) -> Finding:
     frictions = result.problem.mechanism.frictions
     states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
     for code, (why, cure) in _WHY.items():
@@ -109,7 +109,7 @@ def _list(named: Sequence[Rubbing]) -> str:
     return ", ".join(one.joint for one in named)
 
 
-def _not_unique(result: Result, judged: Bools) -> Finding:
+def _not_unique(result: RunRows, judged: Bools) -> Finding:
     """Friction by a reaction that redundant constraints leave arbitrary."""
     known = result.problem.quantities()
     frictions = result.problem.mechanism.frictions if result.shifts else ()
@@ -153,7 +153,7 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     )
 
 
-def _spinning(result: Result, judged: Bools) -> Finding:
+def _spinning(result: RunRows, judged: Bools) -> Finding:
     """Friction that would drive an idle freedom."""
     from mechkin_cli.idle import idle_freedoms
 
@@ -212,7 +212,7 @@ def _self_locking(problem: Problem, locking: Bools) -> Diagnostic:
     )
 
 
-def uncounted_notes(result: Result) -> list[Diagnostic]:
+def uncounted_notes(result: RunRows) -> list[Diagnostic]:
     """Loads of joints that rub which their friction does not go by, for lack of a length."""
     notes: list[Diagnostic] = []
     problem, known = result.problem, result.problem.quantities()
@@ -303,7 +303,7 @@ class FrictionRows:
         """What `judged_by` names, until the rows are judged."""
         return [] if self.verdict is not None else judged_by(problem, wanted, demand)
 
-    def judge(self, result: Result, wanted: Iterable[Wanted], demand: Demand) -> None:
+    def judge(self, result: RunRows, wanted: Iterable[Wanted], demand: Demand) -> None:
         """Judges the rows once; empties forces, new and known, that have no ground."""
         if not (demand & Demand.FORCES and result.problem.mechanism.frictions):
             return

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Joint, Problem, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.result import Result
-    from mechkin_cli.sweep.rows import SweepRows
+    from mechkin_cli.sweep.rows import RunRows, SweepRows
 
 
 LOADS_NAMED = 4
@@ -112,7 +111,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     return found
 
 
-def redundancy_note(result: Result, asked: Sequence[Wanted]) -> Diagnostic:
+def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
     are unique nevertheless."""
     graph = result.graph
@@ -135,7 +134,7 @@ def redundancy_note(result: Result, asked: Sequence[Wanted]) -> Diagnostic:
     )
 
 
-def _unique_loads(result: Result, asked: Sequence[Wanted]) -> list[str]:
+def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
     """The bearing loads of the reactions asked for that are unique in every row, where the
     reactions are not; along a slide there is none."""
     known, joints = result.problem.quantities(), result.problem.mechanism.joints
@@ -151,11 +150,11 @@ def _unique_loads(result: Result, asked: Sequence[Wanted]) -> list[str]:
     return found
 
 
-def _is_unique(result: Result, text: str) -> bool:
+def _is_unique(result: RunRows, text: str) -> bool:
     """Whether an expression of reactions is in every row that has a position."""
     expression, reached = parse(text), result.row_states.reached
 
-    def values(source: Result) -> Floats:
+    def values(source: RunRows) -> Floats:
         found = np.broadcast_to(
             np.asarray(expression.evaluate(source.quantity).value), reached.shape
         )
@@ -233,7 +232,7 @@ def middle_turn(joint: Joint) -> str | None:
     return None
 
 
-def locked_in(result: Result, rows: Bools) -> str | None:
+def locked_in(result: RunRows, rows: Bools) -> str | None:
     """The middle turn of a pose that is a quarter turn in some of the rows."""
     for joint in result.problem.mechanism.joints.values():
         name = middle_turn(joint)
@@ -246,7 +245,7 @@ def locked_in(result: Result, rows: Bools) -> str | None:
     return None
 
 
-def locked_pose_notes(result: Result) -> list[Diagnostic]:
+def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
     """Says of poses whose turns are not given that rows may be lost through them alone."""
     if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
         return []
@@ -280,7 +279,7 @@ def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
     return [ACTUATION] if demand_of(problem.mechanism, asked) & Demand.FORCES else []
 
 
-def unheld(result: Result) -> Bools | None:
+def unheld(result: RunRows) -> Bools | None:
     """Rows (rows,) in which the set is singular; None where that was not looked at."""
     if ACTUATION.name not in result.columns:
         return None
@@ -288,13 +287,13 @@ def unheld(result: Result) -> Bools | None:
     return np.asarray(result.solved & ~(least > tolerances.ACTUATORS_AT_REST))
 
 
-def is_held(result: Result) -> bool:
+def is_held(result: RunRows) -> bool:
     """Whether the actuators hold the mechanism in every row, as far as that was looked at."""
     lost = unheld(result)
     return lost is None or not lost.any()
 
 
-def actuation_notes(result: Result) -> list[Diagnostic]:
+def actuation_notes(result: RunRows) -> list[Diagnostic]:
     """Names the set and the rows where it is singular, or next to that."""
     lost, drives = unheld(result), result.problem.mechanism.drives
     if lost is None or drives is None:
@@ -319,7 +318,7 @@ def actuation_notes(result: Result) -> list[Diagnostic]:
     return notes
 
 
-def _note(code: str, result: Result, rows: Bools, text: str, limit: float) -> Diagnostic:
+def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> Diagnostic:
     least = float(np.min(result.columns[ACTUATION.name][0][rows]))
     hint = "put an actuator elsewhere, add one, or keep away from that position"
     turn = locked_in(result, rows)
@@ -350,7 +349,7 @@ def _rows(rows: Bools) -> str:
 # Loads that vary where one has no value: which, and what to say.
 
 
-def undefined_loads(result: Result, lost: Bools) -> list[Diagnostic]:
+def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
     """What to say of the rows (rows,) of a result in which some load has no value.
 
     The laws are evaluated once more, from the same quantities as in the kernel and with the same

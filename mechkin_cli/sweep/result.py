@@ -6,27 +6,27 @@ later; nothing is searched or followed again. What was read is kept.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
-from mechkin_cli.plan import WRENCH_KINDS, Demand, Slot, demand_of, forces_demand
-from mechkin_cli.session import RowPlaces, input_number, input_rest
+from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of, forces_demand
+from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held
 from mechkin_cli.sweep.rounding import error_bound
-from mechkin_cli.sweep.rows import make_continuous
+from mechkin_cli.sweep.rows import Columns, make_continuous
 from mechkin_cli.sweep.uniqueness import (
     DISTURBANCES,
     SHIFTS,
     disturbed,
     reaction_rounding,
-    told_anew,
 )
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
 from mechkin_cli.verdict import Proof, Status, has_solution
@@ -35,10 +35,12 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import AssemblyStart
+    from mechkin_cli.derived import OtherMoments
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Mechanism, Problem, Wanted
+    from mechkin_cli.plan import Readout
     from mechkin_cli.proofs import DeadCentreProof, SweepProofs
-    from mechkin_cli.session import Batch, Chart, KernelInputs, Session
+    from mechkin_cli.session import Batch, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.structure import SolverGraph
     from mechkin_cli.sweep.rows import SweepRows
@@ -108,9 +110,8 @@ class Proven:
 def read_off(
     rows: SweepRows,
     mechanism: Mechanism,
-    wanted: Sequence[Wanted],
+    readout: Readout,
     batch: Batch,
-    slots: Mapping[str, Slot],
 ) -> dict[str, Floats]:
     """Quantities (width, rows); nan in rows without a position, and what depends on a rank that is
     unclear."""
@@ -121,17 +122,14 @@ def read_off(
     unclear = rows.status == Status.rank_unclear
     some_unclear = bool(unclear.any())
     columns = {}
-    for quantity in wanted:
-        slot = slots[quantity.name]
+    for quantity in readout.wanted:
+        slot = readout.slots[quantity.name]
         column = values[slot.first : slot.first + slot.width]
         if some_unclear and demand_of(mechanism, [quantity]):
             column[:, unclear] = np.nan
         columns[quantity.name] = column
     return columns
 
-
-Columns = dict[str, "Floats"]
-"""Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
 
 ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "error_bound")}
 """Verdicts that are numbers, by the names of their quantities."""
@@ -144,9 +142,17 @@ class Result(Proven):
         session: the part of the mechanism that was followed, in parts of the first row's size.
         start: the first assembly.
         rows: the rows, closed.
+        between: the motion between the rows, where it is known.
     """
 
-    def __init__(self, session: Session, start: AssemblyStart, rows: SweepRows) -> None:
+    def __init__(
+        self,
+        session: Session,
+        start: AssemblyStart,
+        rows: SweepRows,
+        between: Callable[[Result], OtherMoments | None] | None = None,
+    ) -> None:
+        self._between = between
         self.session = session
         self.start = start
         self.row_states = rows
@@ -279,10 +285,10 @@ class Result(Proven):
     def _verdict(self, name: str) -> Floats:
         """A number of the row by its name, computed now if it was not."""
         if name == "condition" and self._condition is None and self.graph.blocks:
-            self._store_verdicts(self._evaluated(Demand.CONDITION))
+            self._store_verdicts(self.run(Ask(Demand.CONDITION, iterations=0)))
         if name == "power_error" and self._power_error is None:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
-            self._store_verdicts(self._evaluated(demand))
+            self._store_verdicts(self.run(Ask(demand, iterations=0)))
         found: Floats = error_bound(self) if name == "error_bound" else getattr(self, name)
         return found
 
@@ -364,9 +370,9 @@ class Result(Proven):
             self._read_plain(plain)
         if derived:
             from mechkin_cli.derived import BasisQuantities, derived_columns
-            from mechkin_cli.sweep.sweep import Between
 
-            run = BasisQuantities(self, self._columns, self.session.inputs, Between.of(self))
+            between = None if self._between is None else self._between(self)
+            run = BasisQuantities(self, self._columns, self.session.inputs, between)
             self._columns |= derived_columns(run, derived)
 
     def _read_plain(self, wanted: list[Wanted]) -> None:
@@ -374,29 +380,28 @@ class Result(Proven):
         wanted += self.friction.beside(self.problem, wanted, demand)
         if demand & Demand.FORCES and demand & Demand.VELOCITY and self._power_error is None:
             demand |= Demand.POWER
-        self._keep_read(self._evaluated(demand, wanted), wanted, demand)
+        ask = Ask(demand, self.session.readout(wanted), iterations=0)
+        self._keep_read(self.run(ask), ask)
 
-    def keep(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
+    def keep(self, batch: Batch, ask: Ask) -> None:
         """Keeps what the run that closed the rows found."""
         self.residual = np.where(self.row_states.reached, batch.residual, np.nan)
-        self._keep_read(batch, wanted, demand)
+        self._keep_read(batch, ask)
 
-    def _keep_read(self, batch: Batch, wanted: Sequence[Wanted], demand: Demand) -> None:
-        self.demand |= demand
+    def _keep_read(self, batch: Batch, ask: Ask) -> None:
+        self.demand |= ask.demand
         self._store_verdicts(batch)
-        if not wanted:
+        if ask.readout is None:
             return
-        columns, outputs = self._split(wanted, batch, self.session), batch.outputs
+        columns, outputs = self._split(ask.readout, batch), batch.outputs
         assert outputs is not None
+        wanted = ask.readout.wanted
         self._rests |= make_continuous(self, wanted, outputs)
         self._columns |= columns
-        self.friction.judge(self, wanted, demand)
+        self.friction.judge(self, wanted, ask.demand)
         reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
             others |= self.evaluated(reactions, shift=shift)
-
-    def _evaluated(self, demand: Demand, wanted: Sequence[Wanted] = ()) -> Batch:
-        return self.run(wanted, demand)
 
     def evaluated(
         self,
@@ -409,46 +414,37 @@ class Result(Proven):
     ) -> Columns:
         """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
         differs in masses and loads alone, or with the reactions of a `shift`."""
-        demand |= demand_of((session or self.session).problem.mechanism, wanted)
-        batch = self.run(wanted, demand, session=session, inputs=inputs, shift=shift)
-        return self._split(wanted, batch, session or self.session)
+        own = session or self.session
+        demand |= demand_of(own.problem.mechanism, wanted)
+        readout = own.readout(wanted)
+        ask = Ask(demand, readout, shift=shift, iterations=0)
+        return self._split(readout, self.run(ask, session=session, inputs=inputs))
 
     def run(
-        self,
-        wanted: Sequence[Wanted],
-        demand: Demand,
-        *,
-        session: Session | None = None,
-        inputs: KernelInputs | None = None,
-        shift: int = 0,
-        iterations: int = 0,
-        chart: Chart | None = None,
+        self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None
     ) -> Batch:
         """One call of the kernel over all rows on their states; rows without a state repeat
         another's."""
-        session = session or self.session
-        rows = self.row_states
-        inputs = inputs or self.session.inputs
-        places = RowPlaces.of(self.session, rows, inputs, demand, session.tie_rates)
-        if not rows.reached.all():
-            stand_in = np.where(rows.reached, np.arange(rows.reached.size), rows.reached.argmax())
-            places = places.at(stand_in)
-            chart = None if chart is None else chart.at(stand_in)
-        asked: dict[str, Any] = {
-            "readout": session.readout(wanted) if wanted else None,
-            "demand": demand,
-            "shift": shift,
-        }
-        batch = session.run(**places.arguments, **asked, chart=chart, iterations=iterations)
-        if rows.dead_centres and wanted:
+        session, states = session or self.session, self.row_states
+        rows = self._row_inputs(inputs or self.session.inputs, session.tie_rates)
+        if not states.reached.all():
+            reached = states.reached
+            rows = rows.at(np.where(reached, np.arange(reached.size), reached.argmax()))
+        batch = session.run(rows, ask)
+        if states.dead_centres and ask.readout is not None:
             from mechkin_cli.sweep.dead_centre import put_unbounded
 
-            put_unbounded(session, rows, wanted, batch, places, asked)
+            put_unbounded(session, states, rows, ask, batch)
         return batch
 
-    def _split(self, wanted: Sequence[Wanted], batch: Batch, session: Session) -> Columns:
-        slots = session.readout(wanted).slots
-        return read_off(self.row_states, self.problem.mechanism, wanted, batch, slots)
+    def _row_inputs(self, inputs: KernelInputs, ties: Floats | None) -> RowInputs:
+        """What a run is given for the rows."""
+        moments = self.problem.motion.time
+        time = None if moments is None else moments.values
+        return inputs.at(self.row_states.states, self.row_states.turns, time, ties)
+
+    def _split(self, readout: Readout, batch: Batch) -> Columns:
+        return read_off(self.row_states, self.problem.mechanism, readout, batch)
 
     def _store_verdicts(self, batch: Batch) -> None:
         missing = ~self.row_states.reached
@@ -463,3 +459,14 @@ class Result(Proven):
                 from mechkin_cli.sweep.messages import undefined_loads
 
                 self.row_states.diagnostics += undefined_loads(self, lost)
+
+
+def told_anew(result: Result, name: str, count: int) -> tuple[Result, ...]:
+    """The same rows with other reactions, told apart by the numbers in an attribute."""
+    found = []
+    for number in range(count):
+        other = copy(result)  # of the same rows, with what has been read of them
+        other.alternatives = other.disturbed = ()
+        setattr(other, name, number)
+        found.append(other)
+    return tuple(found)

@@ -21,7 +21,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.plan import ClosingJoint, Demand, PlanLeg, TreeJoint, flatten, plan_records
+from mechkin_cli.plan import ClosingJoint, PlanLeg, TreeJoint, flatten, plan_records
+from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
 
 if TYPE_CHECKING:
@@ -29,13 +30,13 @@ if TYPE_CHECKING:
 
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.result import Result
+    from mechkin_cli.sweep.rows import RunRows
 
 
 _ROUNDING = ldexp(1.0, -53)
 
 
-def error_bound(result: Result) -> Floats:
+def error_bound(result: RunRows) -> Floats:
     """The bound (rows,); nan in rows without a position, and where none is known."""
     rows = result.row_states
     if not rows.reached.any():
@@ -52,7 +53,7 @@ def error_bound(result: Result) -> Floats:
     return found
 
 
-def largest_move(result: Result) -> Floats:
+def largest_move(result: RunRows) -> Floats:
     """The largest move of any state (rows,) in some runs with constants and inputs slightly off;
     nan where one of them did not close."""
     session, rows = result.session, result.row_states
@@ -67,11 +68,7 @@ def largest_move(result: Result) -> Floats:
         inputs = session.inputs
         off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
-            (),
-            Demand.POSITION,
-            session=other,
-            inputs=inputs._replace(reduced=inputs.reduced + off),
-            iterations=tolerances.NEWTON_ITERATIONS,
+            POSITIONS, session=other, inputs=inputs._replace(reduced=inputs.reduced + off)
         )
         move = np.max(np.abs(batch.states - rows.states), axis=0)
         # of a row far from its place the move says nothing

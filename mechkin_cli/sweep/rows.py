@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import TrackEnd
-from mechkin_cli.session import ORIENTATION, continuous_angle, turn_count
+from mechkin_cli.plan import Demand
+from mechkin_cli.session import continuous_angle
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import Any
+
     from numpy.typing import NDArray
 
-    from mechkin_cli.assembly import AssemblyStart, PlacesBefore
+    from mechkin_cli.assembly import PlacesBefore
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.session import EndOfRows, Followed, Session
+    from mechkin_cli.expressions import Quantity
+    from mechkin_cli.mechanism import Problem, Wanted
+    from mechkin_cli.session import Ask, Batch, EndOfRows, Followed, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.result import Columns, Result
+    from mechkin_cli.structure import SolverGraph
 
 
 def sections(found: Followed, rows: int) -> NDArray[np.int64]:
@@ -117,78 +120,6 @@ class SweepRows:
 # Following the branch of the first assembly along all rows: a guess for every row it reaches.
 
 
-def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = False) -> SweepRows:
-    """Guesses for the rows on the branch through the start, onward and backward from its row.
-
-    With `every_row` each row is a careful step instead of a place filled in between two.
-    """
-    values = session.inputs.values
-    count = values.shape[1]
-    if start.state is None:
-        rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        rows.status[:] = start.status
-        return rows
-    first = _first_row(session, start, every_row)
-    if first is not None:
-        followed = session.follow_rows(first, every_row=every_row)
-        rows = SweepRows.followed(followed)
-        _explain(session, values, followed, rows)
-    else:
-        rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        for step in (-1, 1):
-            way = slice(start.row, None, step)
-            followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
-            part = rows.part(way)
-            part.take(followed, 0)
-            part.section *= step
-            rows.nodes += followed.steps
-            _explain(session, np.ascontiguousarray(values[:, way]), followed, part)
-    _count_from_first(session, rows)
-    return rows
-
-
-def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Floats | None:
-    """The states of the first row where all rows are followed from it: where it is the start, and
-    where a way of whole turns leads back to it, so that one turn serves them all."""
-    if start.row == 0 or start.state is None:
-        return start.state
-    if session.route is not None or not np.ptp(session.inputs.whole, axis=1).any():
-        return None
-    back = session.follow_rows(start.state, start.row, -1, every_row=every_row)
-    return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
-
-
-def _explain(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
-    """Says which branch points a way passed, and what ended it, if it ended."""
-    if followed.crossings:
-        from mechkin_cli.sweep.branch_end import crossing_note
-
-        rows.diagnostics.append(crossing_note(session, followed))
-    if followed.end != TrackEnd.FINISHED and not rows.reached.all():
-        from mechkin_cli.sweep.branch_end import explain_end
-
-        explain_end(session, path, followed, rows)
-
-
-def _count_from_first(session: Session, rows: SweepRows) -> None:
-    """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
-    if not rows.reached.any():
-        return
-    first = int(np.argmax(rows.reached))
-    # half a turn is +180, whichever side of it rounding has
-    for state, slot in session.turn_slots.tree.items():
-        below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
-        turns = rows.turns[slot, first] - (1.0 if below else 0.0)
-        if turns:
-            rows.turns[slot] -= turns
-    for (_, freedom), slot in session.turn_slots.closing.items():
-        if freedom != ORIENTATION:
-            beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
-            turns = float(np.ceil(beyond / (2.0 * pi)))
-            if turns:
-                rows.turns[slot] -= turns * (2.0 * pi)
-
-
 # Continuous angles: the kernel gives them within a turn, following counts whole turns
 # (`solver.closing_turns`).
 
@@ -217,7 +148,77 @@ class _Angles:
     closing: _Turning = field(default_factory=_Turning)
 
 
-def make_continuous(result: Result, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
+class RunRows(Protocol):
+    """What is read of a run of rows; `Result` is one."""
+
+    row_states: SweepRows
+    residual: Floats
+    shifts: tuple[int, ...]
+
+    @property
+    def session(self) -> Session:
+        """The part of the mechanism that was followed."""
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly of that part."""
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, cut joints and blocks."""
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """Verdict of every row, codes of `Status` (rows,)."""
+
+    @property
+    def solved(self) -> Bools:
+        """Rows that have a position (rows,)."""
+
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+
+    @property
+    def power_error(self) -> Floats:
+        """|sum of powers| / sum of |powers| of every row (rows,)."""
+
+    @property
+    def columns(self) -> Mapping[str, Floats]:
+        """What has been read."""
+
+    @property
+    def alternatives(self) -> Sequence[RunRows]:
+        """The same rows with other reactions in equilibrium."""
+
+    @property
+    def disturbed(self) -> Sequence[RunRows]:
+        """The same rows with reactions off by their rounding."""
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI."""
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+
+    def evaluated(self, wanted: Sequence[Wanted], *, shift: int = 0) -> Columns:
+        """Quantities on the stored states, not kept, with the reactions of a `shift`."""
+
+    def run(
+        self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None
+    ) -> Batch:
+        """One call of the kernel over all rows on their states."""
+
+
+Columns = dict[str, "Floats"]
+"""Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
+
+
+def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
     """Makes the angles among some outputs (outputs, rows) continuous from the first row, in place.
 
     Returns:
@@ -262,3 +263,53 @@ def _angles(session: Session, wanted: tuple[Wanted, ...]) -> _Angles:
 def has_turns(quantity: Wanted) -> bool:
     """Whether a quantity is an angle, which may have whole turns."""
     return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
+
+
+class RowPlaces(NamedTuple):
+    """Arguments of `Session.run` by their names there, the last axis of each over places."""
+
+    inputs: Floats
+    guess: Floats
+    rates: Floats | None
+    accelerations: Floats | None
+    jerks: Floats | None
+    turned: Floats
+    whole: Floats
+    full: Floats
+    time: Floats | None
+    ties: Floats | None
+
+    @classmethod
+    def of(
+        cls,
+        own: Session,
+        rows: SweepRows,
+        inputs: KernelInputs,
+        demand: Demand,
+        ties: Floats | None,
+    ) -> RowPlaces:
+        """The rows of a run of the session `own` on their states, with rates of `inputs` as far as
+        they are demanded."""
+        moments = own.problem.motion.time
+        return cls(
+            inputs=inputs.reduced,
+            guess=rows.states,
+            rates=inputs.rates if demand & Demand.VELOCITY else None,
+            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
+            jerks=inputs.jerks if demand & Demand.JERK else None,
+            turned=rows.turns,
+            whole=own.inputs.whole,
+            full=own.inputs.values,
+            time=None if moments is None else moments.values,
+            ties=ties if demand & Demand.FORCES else None,
+        )
+
+    def at(self, numbers: NDArray[np.intp] | Sequence[int]) -> RowPlaces:
+        """Some of the places, in this order."""
+        parts: Any = (None if part is None else part[..., numbers] for part in self)
+        return RowPlaces(*parts)
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """As `Session.run` takes them."""
+        return self._asdict()

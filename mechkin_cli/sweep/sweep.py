@@ -23,7 +23,8 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.session import assembly_size, moves_freely, places_at
+from mechkin_cli.session import Ask, assembly_size, moves_freely, places_at
+from mechkin_cli.sweep.following import follow_rows
 from mechkin_cli.sweep.friction import judged_by
 from mechkin_cli.sweep.messages import (
     actuation_notes,
@@ -35,7 +36,6 @@ from mechkin_cli.sweep.messages import (
     watched,
 )
 from mechkin_cli.sweep.result import Result
-from mechkin_cli.sweep.rows import follow_rows
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status
 
@@ -58,14 +58,12 @@ class SweepQuantities:
 
     Attributes:
         asked: those asked for, and those by which the rows are judged beside them.
-        wanted: of these, what the run that closes the rows reads off: no derived quantities.
-        demand: what that run computes.
+        ask: what the run that closes the rows computes and reads off: no derived quantities.
         rests_on_reactions: whether some are not unique where reactions are not.
     """
 
     asked: tuple[Wanted, ...]
-    wanted: tuple[Wanted, ...]
-    demand: Demand
+    ask: Ask
     rests_on_reactions: bool
 
 
@@ -77,12 +75,9 @@ def question(session: Session, asked: tuple[Wanted, ...], *, verdicts: bool) -> 
     everything += held_moments(problem, everything)
     everything += watched(problem, everything)
     wanted, demand = at_once(session, everything, verdicts)
-    return SweepQuantities(
-        tuple(everything),
-        (*wanted, *judged_by(problem, wanted, demand)),
-        demand,
-        rest_on_reactions(problem, everything),
-    )
+    wanted += judged_by(problem, wanted, demand)
+    ask = Ask(demand, session.readout(wanted) if wanted else None)
+    return SweepQuantities(tuple(everything), ask, rest_on_reactions(problem, everything))
 
 
 def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -203,10 +198,10 @@ def _closed_once(
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
     rows = follow_rows(session, start, every_row=every_row)
-    result = Result(session, start, rows)
+    result = Result(session, start, rows, Between.of)
     if not rows.reached.any():
         return result
-    batch = result.run(asked.wanted, asked.demand, iterations=tolerances.NEWTON_ITERATIONS)
+    batch = result.run(asked.ask)
     slow = rows.reached & ~batch.good
     if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
         batch = _closed_on_fold(result, asked)
@@ -224,9 +219,10 @@ def _closed_once(
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         judge_condition(session, rows, batch)
         _judge_inputs(session, rows)
-        if rows.dead_centres and asked.wanted:
-            batch = batch._replace(outputs=result.run(asked.wanted, asked.demand).outputs)
-    result.keep(batch, asked.wanted, asked.demand)
+        if rows.dead_centres and asked.ask.readout is not None:
+            on_states = asked.ask._replace(iterations=0)
+            batch = batch._replace(outputs=result.run(on_states).outputs)
+    result.keep(batch, asked.ask)
     return result
 
 
@@ -241,8 +237,8 @@ def _is_near_singular(batch: Batch) -> Bools:
 def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
     """The run with so many steps that rows on a fold close, too, where each only halves what is
     left; and with conditions, which tell that they do."""
-    demand = asked.demand | Demand.CONDITION
-    return result.run(asked.wanted, demand, iterations=tolerances.FOLD_ITERATIONS)
+    demand = asked.ask.demand | Demand.CONDITION
+    return result.run(asked.ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
 
 
 def _failed(batch: Batch, rows: SweepRows) -> Bools:
@@ -262,6 +258,7 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
         on_fold = batch.condition > tolerances.CONDITION_SIDE_UNCLEAR
         limit = np.where(on_fold, tolerances.FOLD_CORRECTION * limit, limit)
     failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
+    assert batch.side is not None
     if not (batch.side != batch.side[:, :1]).any():
         return failed
     # on a fold or a branch point a sign is rounding

@@ -7,7 +7,6 @@ the latter (mechkin_cli/uniqueness.py).
 
 from __future__ import annotations
 
-from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +18,7 @@ from mechkin_cli.units import FORCE
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.result import Result
+    from mechkin_cli.sweep.rows import RunRows
 
 
 SHIFTS = (1, 2)
@@ -31,18 +30,7 @@ DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
 leave an expression unchanged by chance."""
 
 
-def told_anew(result: Result, name: str, count: int) -> tuple[Result, ...]:
-    """The same rows with other reactions, told apart by the numbers in an attribute."""
-    found = []
-    for number in range(count):
-        other = copy(result)  # of the same rows, with what has been read of them
-        other.alternatives = other.disturbed = ()
-        setattr(other, name, number)
-        found.append(other)
-    return tuple(found)
-
-
-def reaction_rounding(result: Result) -> Floats:
+def reaction_rounding(result: RunRows) -> Floats:
     """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
     unit.
 
@@ -57,7 +45,7 @@ def reaction_rounding(result: Result) -> Floats:
     return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
 
 
-def _level(result: Result, shift: int) -> Floats:
+def _level(result: RunRows, shift: int) -> Floats:
     """The largest reaction of each row (rows,), of those of a `shift`."""
     level: Floats = result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0]
     return level

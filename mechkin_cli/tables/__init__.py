@@ -11,14 +11,12 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.tables.columns import (
-        Columns as Columns,
         FloatArray as FloatArray,
         TableColumn as TableColumn,
         Words as Words,
         column_of as column_of,
         column_of_numbers as column_of_numbers,
         component_text as component_text,
-        evaluate as evaluate,
         row_words as row_words,
         run_parameter as run_parameter,
         solved_rows as solved_rows,
@@ -31,11 +29,8 @@ if TYPE_CHECKING:
         report as report,
         stale_in as stale_in,
     )
-    from mechkin_cli.tables.csv import (
-        COMMITTED_DIGITS as COMMITTED_DIGITS,
-        column_texts as column_texts,
-        csv_bytes as csv_bytes,
-    )
+    from mechkin_cli.tables.csv import COMMITTED_DIGITS as COMMITTED_DIGITS, csv_bytes as csv_bytes
+    from mechkin_cli.tables.decimals import column_texts as column_texts
     from mechkin_cli.tables.errata import (
         MARK as MARK,
         NAME as NAME,
@@ -89,6 +84,7 @@ if TYPE_CHECKING:
         rows_table as rows_table,
     )
     from mechkin_cli.tables.print import read_table_text as read_table_text
+    from mechkin_cli.tables.results import Results as Results
     from mechkin_cli.tables.summary import (
         OVER_THE_WAY as OVER_THE_WAY,
         REDUCTIONS as REDUCTIONS,
@@ -101,13 +97,16 @@ if TYPE_CHECKING:
         row_weights as row_weights,
         statistics as statistics,
         summary_of as summary_of,
-        summary_table as summary_table,
         written_notes as written_notes,
+    )
+    from mechkin_cli.tables.table import (
+        Columns as Columns,
+        evaluate as evaluate,
+        summary_table as summary_table,
     )
     from mechkin_cli.tables.writers import (
         USUAL_FORMATS as USUAL_FORMATS,
         WRITERS as WRITERS,
-        Results as Results,
         written_files as written_files,
     )
 
@@ -115,14 +114,12 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": [
-            "Columns",
             "FloatArray",
             "TableColumn",
             "Words",
             "column_of",
             "column_of_numbers",
             "component_text",
-            "evaluate",
             "row_words",
             "run_parameter",
             "solved_rows",
@@ -130,7 +127,8 @@ __getattr__, __dir__ = lazy_names(
             "words_of",
         ],
         "compare": ["compare_files", "read_committed", "report", "stale_in"],
-        "csv": ["COMMITTED_DIGITS", "column_texts", "csv_bytes"],
+        "csv": ["COMMITTED_DIGITS", "csv_bytes"],
+        "decimals": ["column_texts"],
         "errata": [
             "MARK",
             "NAME",
@@ -177,6 +175,7 @@ __getattr__, __dir__ = lazy_names(
         ],
         "markdown": ["markdown_bytes", "rows_table"],
         "print": ["read_table_text"],
+        "results": ["Results"],
         "summary": [
             "Extreme",
             "OVER_THE_WAY",
@@ -189,9 +188,9 @@ __getattr__, __dir__ = lazy_names(
             "row_weights",
             "statistics",
             "summary_of",
-            "summary_table",
             "written_notes",
         ],
-        "writers": ["Results", "USUAL_FORMATS", "WRITERS", "written_files"],
+        "table": ["Columns", "evaluate", "summary_table"],
+        "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],
     },
 )

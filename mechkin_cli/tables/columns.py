@@ -14,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
-from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout, TableLayout
+from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout
 from mechkin_cli.tolerances import UNIQUE_CELL
 from mechkin_cli.units import DIMENSIONLESS
 from mechkin_cli.verdict import Proof, Status, has_solution
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
-    from mechkin_cli.tables.summary import Summary
     from mechkin_cli.units import UnitSystem
 
 
@@ -254,33 +253,6 @@ def column_of_numbers(
     return TableColumn(label, unit, np.where(infinite, np.nan, numbers), decimals, unbounded)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
-    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
-    below it."""
-
-    name: str
-    title: str
-    columns: tuple[TableColumn, ...]
-    of_rows: bool = True
-    summary: Summary | None = None
-
-
-def evaluate(table: TableLayout, source: TableSource) -> Columns:
-    """All columns of a table, in file units.
-
-    Raises:
-        ExpressionError: a column is no number per row, or names what the source does not have.
-    """
-    columns = tuple(column_of(layout, source) for layout in table.columns)
-    summary = None
-    if table.summary:
-        from mechkin_cli.tables.summary import summary_of
-
-        summary = summary_of(table.summary, table.columns, columns, source)
-    return Columns(table.name, table.title, columns, summary=summary)
-
-
 def status_words(source: TableSource) -> Words:
     """The status label of every row."""
     codes = source.status.astype(np.int32)
@@ -395,3 +367,6 @@ def run_parameter(source: TableSource) -> RunParameter | None:
             unit = source.units.label(source.quantity(name).dimension)
             return RunParameter(name, values, unit)
     return None
+
+
+AT = "at"

@@ -3,25 +3,26 @@
 Numbers have the shortest digits that read back as the same double, or, for tables kept under
 version control, the shortest of the value rounded to a number of significant digits; an empty cell
 is a missing value, in quotes where it is alone in its line, as many readers skip blank lines.
-Labels that a spreadsheet would take for formulas begin with an apostrophe (`tables/neutral.py`).
+Labels that a spreadsheet would take for formulas begin with an apostrophe (`tables/layout.py`).
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Columns, TableColumn, Words, words_of
+from mechkin_cli.tables.columns import TableColumn, Words, words_of
+from mechkin_cli.tables.decimals import number_column
 from mechkin_cli.tables.layout import csv_text
+from mechkin_cli.tables.table import Columns
 from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.show import Floats
     from mechkin_cli.tables.columns import FloatArray
 
 
@@ -34,11 +35,6 @@ if TYPE_CHECKING:
 def word_column(words: Words, written: Callable[[str], str] = str) -> WordColumn:
     """Codes and texts; `written` makes of each text what is to stand in the file."""
     return np.ascontiguousarray(words.codes, np.int32), [written(word) for word in words.words]
-
-
-def number_column(values: Floats) -> Floats:
-    """The numbers without gaps in memory, shape (rows,)."""
-    return np.ascontiguousarray(values, np.float64)
 
 
 def threads_for(columns: Columns | Iterable[TableColumn], threads: int = 0) -> int:
@@ -112,41 +108,3 @@ def _header(column: TableColumn, units: bool) -> str:
 # largest value, less the zeros that would end every number; a column whose largest value is below
 # 1e-6 or from 1e9 on is written with exponents. Every text is the exact binary value rounded once,
 # ties to even, so it is the same on every machine; zero has no sign.
-
-SIGNIFICANT_DIGITS = 6
-PLAIN_EXPONENTS = range(-6, 9)
-
-
-class DecimalColumn(NamedTuple):
-    """A column with the layout of its numbers, in the kernel's order; `trimmed` leaves out the
-    zeros that end every one of them."""
-
-    values: Floats
-    scientific: bool
-    decimals: int
-    trimmed: bool = False
-
-
-def decimal_column(values: Floats, decimals: int | None = None) -> DecimalColumn:
-    """The layout of an array of shape (rows,); `decimals` as declared, None to choose them."""
-    values = number_column(values)
-    if decimals is not None:
-        return DecimalColumn(values, False, decimals)
-    largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
-    exponent = _decimal_exponent(float(largest))
-    if exponent not in PLAIN_EXPONENTS:
-        return DecimalColumn(values, True, SIGNIFICANT_DIGITS - 1)
-    return DecimalColumn(values, False, max(0, SIGNIFICANT_DIGITS - 1 - exponent), True)
-
-
-def column_texts(values: Floats, decimals: int | None = None) -> list[str]:
-    """One text per value of an array of shape (rows,); a value that is not finite has none."""
-    from mechkin_cli.kernel import _kernel
-
-    texts: list[str] = _kernel.decimal_texts(decimal_column(values, decimals))
-    return texts
-
-
-def _decimal_exponent(magnitude: float) -> int:
-    """The exponent of ten in front of which the value, rounded, has one digit."""
-    return int(f"{magnitude:.{SIGNIFICANT_DIGITS - 1}e}".partition("e")[2])

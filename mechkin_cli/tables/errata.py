@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError, whole
-from mechkin_cli.tables.columns import Columns, TableColumn, words_of
+from mechkin_cli.tables.columns import TableColumn, words_of
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.layout import (
     ROW_NUMBER,
@@ -29,6 +29,7 @@ from mechkin_cli.tables.layout import (
     markdown_text,
 )
 from mechkin_cli.tables.print import PrintedCell, TableAgreement, agreement, read_printed
+from mechkin_cli.tables.table import Columns
 
 PAGE = "errata.md"
 _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
@@ -223,8 +224,8 @@ MARK = "<!-- written by `mechkin tables` -->"
 
 
 class OverviewRow(NamedTuple):
-    """What the page says of one file; `stem` names the file, `picture` that of its drawing in the
-    folder of its tables, other cells are words."""
+    """What the page says of one file; `stem` is its path from the page without its ending,
+    `picture` the name of its drawing in the folder of its tables, other cells are words."""
 
     stem: str
     name: str

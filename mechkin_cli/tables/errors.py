@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Columns, TableColumn, Words, words_of
+from mechkin_cli.tables.columns import TableColumn, Words, words_of
+from mechkin_cli.tables.table import Columns
 from mechkin_cli.tape import DoubleDoubles, difference
 from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
 from mechkin_cli.verdict import SWEEP

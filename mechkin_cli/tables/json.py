@@ -14,16 +14,18 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import SURROGATES, Diagnostic, escape
-from mechkin_cli.tables.columns import Columns, FloatArray, TableSource, Words
-from mechkin_cli.tables.csv import number_column, threads_for, word_column
+from mechkin_cli.tables.columns import FloatArray, TableSource, Words
+from mechkin_cli.tables.csv import threads_for, word_column
+from mechkin_cli.tables.decimals import number_column
 from mechkin_cli.tables.errors import least_digits
 from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.errors import ColumnErrors
+    from mechkin_cli.tables.results import Results
     from mechkin_cli.tables.summary import Extreme, Summary
-    from mechkin_cli.tables.writers import Results
 
 
 Plain = dict[str, object]

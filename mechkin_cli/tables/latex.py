@@ -13,9 +13,10 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.diagnostics import legible
-from mechkin_cli.tables.columns import INFINITE, Columns, TableColumn, Words
-from mechkin_cli.tables.csv import column_texts
+from mechkin_cli.tables.columns import INFINITE, TableColumn, Words
+from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.markdown import footnotes
+from mechkin_cli.tables.table import Columns
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.columns import TableSource

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.tables.columns import (
-    Columns,
     RunParameter,
     TableColumn,
     TableSource,
@@ -25,12 +24,15 @@ from mechkin_cli.tables.columns import (
     status_words,
     words_of,
 )
-from mechkin_cli.tables.csv import column_texts, decimal_column, threads_for, word_column
+from mechkin_cli.tables.csv import threads_for, word_column
+from mechkin_cli.tables.decimals import column_texts, decimal_column
 from mechkin_cli.tables.layout import markdown_text
+from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.csv import DecimalColumn, WordColumn
+    from mechkin_cli.tables.csv import WordColumn
+    from mechkin_cli.tables.decimals import DecimalColumn
     from mechkin_cli.tables.summary import Summary
 
 

@@ -21,9 +21,10 @@ from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
 from mechkin_cli.reading import read_regular
-from mechkin_cli.tables.columns import Columns, TableColumn, Words
+from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS
 from mechkin_cli.tables.layout import ROW_NUMBER
+from mechkin_cli.tables.table import Columns
 
 # Reading table files back as text: labels, cells and the lines around them.
 #

@@ -15,15 +15,14 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.tables.columns import (
-    Columns,
+    AT,
     FloatArray,
     TableColumn,
     TableSource,
     column_of_numbers,
     run_parameter,
-    words_of,
 )
-from mechkin_cli.tables.csv import column_texts
+from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
 from mechkin_cli.verdict import Status
 
@@ -153,11 +152,6 @@ OVER_THE_WAY: tuple[Reduction, ...] = (mean, root_mean_square)
 """Those that take the places of the rows, too."""
 
 
-AT = "at"
-ROWS = "rows"
-"""Words of the rows below a table that no reduction has."""
-
-
 class Extreme(NamedTuple):
     """A value and its place: what the run's parameter is there, in the file's units."""
 
@@ -181,60 +175,6 @@ class Statistics(NamedTuple):
     range: float
     rows: int
     infinite: int = 0
-
-
-class SummaryColumn(NamedTuple):
-    """A column that is summed up: its place among the table's columns."""
-
-    number: int
-    label: str
-    unit: str
-    decimals: int | None
-    statistics: Statistics
-
-
-class Summary(NamedTuple):
-    """The rows below a table: which, of what parameter the places are (with its unit), and the
-    numbers of each column; `notes` say what does not count or is doubtful."""
-
-    words: tuple[str, ...]
-    parameter: str
-    unit: str
-    columns: tuple[SummaryColumn, ...]
-    notes: tuple[str, ...]
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """Words in front of the rows."""
-        found: list[str] = []
-        for word in self.words:
-            found += [word, AT] if word in _WITH_PLACE else [word]
-        return (*found, ROWS)
-
-    @property
-    def places(self) -> str:
-        """What places are values of, with the unit."""
-        return f"{self.parameter} [{self.unit}]" if self.unit else self.parameter
-
-    def numbers(self, column: SummaryColumn) -> list[float]:
-        """The numbers of a column, one for each of the lines."""
-        found: list[float] = []
-        for word in self.words:
-            value = getattr(column.statistics, word)
-            found += [*value] if word in _WITH_PLACE else [value]
-        return [*found, float(column.statistics.rows)]
-
-    def texts(self, column: SummaryColumn) -> list[str]:
-        """The same as people read them: with the column's decimals, places with nine digits."""
-        numbers = np.array(self.numbers(column))
-        is_value = np.array([line not in (AT, ROWS) for line in self.lines])
-        own = column_of_numbers("", "", numbers[is_value])
-        values = iter(own.texts(column_texts(numbers[is_value], column.decimals)))
-        others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
-        return [next(values) if mine else next(others) for mine in is_value]
-
-
-_WITH_PLACE = ("max", "min", "peak")
 
 
 def statistics(values: FloatArray, source: TableSource) -> Statistics:
@@ -292,18 +232,6 @@ def written_notes(summary: Summary, written: Callable[[str], str] = str) -> list
     return [written(text) for text in (*said, *summary.notes)]
 
 
-def summary_table(name: str, title: str, summary: Summary) -> Columns:
-    """The rows as a table of its own, `NAME.summary`."""
-    words: list[str] = []
-    for line in summary.lines:
-        words.append(f"{words[-1]} {AT}" if line == AT else line)
-    columns = [TableColumn("summary", "", words_of(words))]
-    for each in summary.columns:
-        numbers = np.array(summary.numbers(each))
-        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
-    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
-
-
 def _notes(
     words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
 ) -> list[str]:
@@ -340,3 +268,61 @@ def _infinite(
 
 def _verb(count: int, one: str, many: str) -> str:
     return one if count == 1 else many
+
+
+class Summary(NamedTuple):
+    """The rows below a table: which, of what parameter the places are (with its unit), and the
+    numbers of each column; `notes` say what does not count or is doubtful."""
+
+    words: tuple[str, ...]
+    parameter: str
+    unit: str
+    columns: tuple[SummaryColumn, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """Words in front of the rows."""
+        found: list[str] = []
+        for word in self.words:
+            found += [word, AT] if word in _WITH_PLACE else [word]
+        return (*found, ROWS)
+
+    @property
+    def places(self) -> str:
+        """What places are values of, with the unit."""
+        return f"{self.parameter} [{self.unit}]" if self.unit else self.parameter
+
+    def numbers(self, column: SummaryColumn) -> list[float]:
+        """The numbers of a column, one for each of the lines."""
+        found: list[float] = []
+        for word in self.words:
+            value = getattr(column.statistics, word)
+            found += [*value] if word in _WITH_PLACE else [value]
+        return [*found, float(column.statistics.rows)]
+
+    def texts(self, column: SummaryColumn) -> list[str]:
+        """The same as people read them: with the column's decimals, places with nine digits."""
+        numbers = np.array(self.numbers(column))
+        is_value = np.array([line not in (AT, ROWS) for line in self.lines])
+        own = column_of_numbers("", "", numbers[is_value])
+        values = iter(own.texts(column_texts(numbers[is_value], column.decimals)))
+        others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
+        return [next(values) if mine else next(others) for mine in is_value]
+
+
+ROWS = "rows"
+"""Words of the rows below a table that no reduction has."""
+
+
+class SummaryColumn(NamedTuple):
+    """A column that is summed up: its place among the table's columns."""
+
+    number: int
+    label: str
+    unit: str
+    decimals: int | None
+    statistics: Statistics
+
+
+_WITH_PLACE = ("max", "min", "peak")

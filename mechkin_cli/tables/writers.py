@@ -7,35 +7,12 @@ the table.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from mechkin_cli.verdict import SWEEP
+from mechkin_cli.tables.results import Results
 
 if TYPE_CHECKING:
-    from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.tables.columns import Columns, TableSource
-    from mechkin_cli.tables.errors import ColumnErrors
-
-
-class Results(NamedTuple):
-    """What there is to write of one run of a mechanism; `threads` 0: as many as a table is
-    worth; `errors` of all columns, None where they were not asked for; `units` says that headers of
-    CSV have them."""
-
-    name: str
-    tables: tuple[Columns, ...]
-    source: TableSource
-    diagnostics: tuple[Diagnostic, ...] = ()
-    threads: int = 0
-    run: str = SWEEP
-    errors: tuple[ColumnErrors, ...] | None = None
-    units: bool = False
-
-    def csv(self, table: Columns) -> bytes:
-        """A table of the run as CSV."""
-        from mechkin_cli.tables.csv import csv_bytes
-
-        return csv_bytes(table, threads=self.threads, units=self.units)
+    pass
 
 
 File = tuple[str, bytes]
@@ -47,7 +24,7 @@ def _csv(runs: Sequence[Results]) -> Iterator[File]:
         for table in results.tables:
             yield f"{table.name}.csv", results.csv(table)
             if table.summary is not None:
-                from mechkin_cli.tables.summary import summary_table
+                from mechkin_cli.tables.table import summary_table
 
                 below = summary_table(table.name, table.title, table.summary)
                 yield f"{below.name}.csv", results.csv(below)

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from mechkin_cli.tape.exact import (
         ExactRecorder as ExactRecorder,
         ExactRows as ExactRows,
-        ExactTape as ExactTape,
         Picked as Picked,
         ShiftingRecorder as ShiftingRecorder,
     )
@@ -74,6 +73,7 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.tape.tape import (
         CONDITIONS as CONDITIONS,
+        ExactTape as ExactTape,
         Operation as Operation,
         Tape as Tape,
         Verdict as Verdict,
@@ -95,7 +95,7 @@ __getattr__, __dir__ = lazy_names(
             "joined",
             "stacked",
         ],
-        "exact": ["ExactRecorder", "ExactRows", "ExactTape", "Picked", "ShiftingRecorder"],
+        "exact": ["ExactRecorder", "ExactRows", "Picked", "ShiftingRecorder"],
         "identities": ["Identities"],
         "recorder": [
             "Filling",
@@ -134,6 +134,7 @@ __getattr__, __dir__ = lazy_names(
         ],
         "tape": [
             "CONDITIONS",
+            "ExactTape",
             "Operation",
             "Tape",
             "Verdict",

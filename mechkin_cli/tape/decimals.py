@@ -21,8 +21,7 @@ from mechkin_cli.tape.tape import ARITY, Operation
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
-    from mechkin_cli.tape.exact import ExactTape
-    from mechkin_cli.tape.tape import Tape
+    from mechkin_cli.tape.tape import ExactTape, Tape
 
 
 # Elementary functions of decimal numbers to some 60 digits, by their series.

@@ -26,6 +26,7 @@ from mechkin_cli.tape.scalars import Undecided
 from mechkin_cli.tape.tape import (
     ARITY,
     CONDITIONS,
+    ExactTape,
     Operation,
     Tape,
     compiled,
@@ -45,16 +46,6 @@ DECIDED = (*CONDITIONS, Operation.SIGN, Operation.POWER_OF_TWO, Operation.WHOLE)
 
 _LARGEST_POWER = 64
 """Whole exponents up to this one are products."""
-
-
-class ExactTape(NamedTuple):
-    """A tape without guards, the exact numbers that are its inputs, these as double-doubles
-    (inputs, 2), and the registers in which they are recorded."""
-
-    tape: Tape
-    numbers: tuple[Fraction, ...]
-    values: Floats
-    given: tuple[int, ...]
 
 
 class ExactStep(NamedTuple):

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -276,3 +277,13 @@ def replay_precise(
     """
     low = None if second is None else np.ascontiguousarray(second, dtype=np.float64)
     return tape.replay_precise(np.ascontiguousarray(values, dtype=np.float64), low, width(lanes))
+
+
+class ExactTape(NamedTuple):
+    """A tape without guards, the exact numbers that are its inputs, these as double-doubles
+    (inputs, 2), and the registers in which they are recorded."""
+
+    tape: Tape
+    numbers: tuple[Fraction, ...]
+    values: Floats
+    given: tuple[int, ...]

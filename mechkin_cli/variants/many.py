@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -103,21 +103,15 @@ def _by(reduction: Reduction, text: str, values: Floats, places: Floats | None) 
 # What a sweep goes along: the way over which means are taken and that places are values of.
 
 
-class ValuesOfRows(NamedTuple):
-    """A quantity, and its values over the rows (rows,), in the file's units as written."""
-
-    name: str
-    values: Floats
-
-
-def way_of(problem: Problem) -> ValuesOfRows | None:
-    """Time where the sweep has one, else its first input that moves; None where nothing moves."""
+def way_of(problem: Problem) -> tuple[str, Floats] | None:
+    """The name of time where the sweep has one, else of its first input that moves, and its values
+    over the rows (rows,) in the file's units as written; None where nothing moves."""
     motion = problem.motion
     if motion.time is not None:
-        return ValuesOfRows("time", motion.time.written)
+        return "time", motion.time.written
     for driven in motion.inputs:
         if np.ptp(driven.written) > 0.0:
-            return ValuesOfRows(driven.name, driven.written)
+            return driven.name, driven.written
     return None
 
 
@@ -166,10 +160,11 @@ class VariantRun:
         self.kept = tuple(asked)
         self.lanes, self.threads = lanes, threads
         self.problem = base.model.problem
-        self.way = way_of(self.problem) if need_places(reductions) else None
-        if self.way is not None and self.way.name not in asked:
+        way = way_of(self.problem) if need_places(reductions) else None
+        self.along = None if way is None else way[0]
+        if self.along is not None and self.along not in asked:
             parse = self.problem.definitions.parse
-            self.asked = {**asked, self.way.name: parse(self.way.name)}
+            self.asked = {**asked, self.along: parse(self.along)}
         self.rows = self.problem.motion.rows
         known = self.problem.quantities()
         used = (name for expression in self.asked.values() for name in sorted(expression.names))
@@ -289,7 +284,7 @@ class VariantRun:
             alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | _doubtful(runs))
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
-        places = None if self.way is None else found[self.way.name]
+        places = None if self.along is None else found[self.along]
         return {t: reduced(t, found[t], self.reductions[t], places) for t in self.kept}
 
     def _evaluated(

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         mechanism_picture as mechanism_picture,
     )
     from mechkin_cli.view.page import PAGE_NAME as PAGE_NAME
-    from mechkin_cli.view.scene import Readable as Readable
+    from mechkin_cli.view.shown import Readable as Readable
     from mechkin_cli.view.write import (
         analyses_of as analyses_of,
         view_page as view_page,
@@ -28,7 +28,7 @@ __getattr__, __dir__ = lazy_names(
         "branch": ["run_marks"],
         "drawing": ["PICTURE_NAME", "mechanism_picture"],
         "page": ["PAGE_NAME"],
-        "scene": ["Readable"],
+        "shown": ["Readable"],
         "write": ["analyses_of", "view_page", "write_view"],
     },
 )

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, Number
     from mechkin_cli.show import Floats
     from mechkin_cli.view.page import Lengths, Plain, Share
-    from mechkin_cli.view.scene import Readable, ShownBranch
+    from mechkin_cli.view.shown import Readable, ShownBranch
 
 
 # Places that are marked on the axis of a run: dead centres, branch points, and what ended or

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.show import Floats
     from mechkin_cli.units import UnitSystem
-    from mechkin_cli.view.scene import ShownRun
+    from mechkin_cli.view.shown import ShownRun
 
 
 # Data of a page as JSON that stands in an HTML file: arrays in base64, nothing that is markup.

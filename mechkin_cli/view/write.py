@@ -17,7 +17,8 @@ from mechkin_cli.tables import write_files
 from mechkin_cli.verdict import SWEEP, version
 from mechkin_cli.view.arrows import has_forces, reactions
 from mechkin_cli.view.page import MOST_MODE_ROWS, MOST_MODES, filled, shares, template
-from mechkin_cli.view.scene import Scene, ShownBranch, ShownRun
+from mechkin_cli.view.scene import Scene
+from mechkin_cli.view.shown import ShownBranch, ShownRun
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -6,7 +6,7 @@ from functools import cache
 
 from mechanisms.runs import run
 from oracle import Mechanism, Solution, document, mp, read, solve, to_text
-from references import MECHANISMS
+from references import FILE_OF
 
 DEGREE = mp.pi / 180
 
@@ -14,7 +14,7 @@ DEGREE = mp.pi / 180
 @cache
 def mechanism(name: str) -> Mechanism:
     units = {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"}
-    return read(to_text(document(MECHANISMS / f"{name}.yaml") | {"units": units}))
+    return read(to_text(document(FILE_OF[name]) | {"units": units}))
 
 
 @cache

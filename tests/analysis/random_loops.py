@@ -10,11 +10,12 @@ import numpy as np
 
 import mechkin_cli as mk
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.plan.outputs import OutputPlan, Readout
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.search.search import Assemblies, assemblies
+from mechkin_cli.session.assembled_places import solver_graph
 from mechkin_cli.session.inputs import kernel_inputs
-from mechkin_cli.session.kernel_run import run
-from mechkin_cli.structure.build import build_graph
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 
 FREEDOMS = {"R": 1, "P": 1, "C": 2, "S": 3, "Sg": 4, "Sp": 5}
 MARKS = np.array([[0.3, 0.1, -0.2], [-0.4, 0.5, 0.1], [0.2, -0.3, 0.6]])
@@ -110,18 +111,19 @@ def random_loop(rng: random.Random) -> Loop:
 def search(text: str, closed_at: list[str] | None = None) -> tuple[Assemblies, np.ndarray]:
     """The random starts' assemblies alone, and their marks (assemblies, marks, 3)."""
     problem = mk.loads(text).problem
-    graph = build_graph(problem.mechanism, problem.motion.driven, closed_at)
+    graph = solver_graph(problem.mechanism, problem.motion.driven, closed_at)
     layout = Layout(problem.mechanism, graph)
-    plan = layout.build()
+    plan = build_plan(layout)
     inputs = kernel_inputs(problem, layout).values[:, 0]
     found = assemblies(layout, plan, inputs, thorough=False)
-    plan = layout.build()
+    plan = build_plan(layout)
     outputs = OutputPlan(layout, plan, problem.motion.driven)
     slots = [outputs.add_point(at, 0) for at in problem.mechanism.points.values()]
     if found.number == 0:
         return found, np.empty((0, len(slots), 3))
     values = np.repeat(inputs[:, None], found.number, axis=1)
-    places = run(plan, values, found.states, outputs=outputs.outputs).outputs
+    ask = Ask(readout=Readout(outputs.outputs, {}, slots))
+    places = run(plan, RowInputs(values, found.states), ask).outputs
     assert places is not None
     return found, np.stack([places[s : s + 3] for s in slots]).transpose(2, 0, 1)
 

@@ -14,11 +14,11 @@ from properties.answers import EPS, at_row, errors, kind, within
 from properties.case import Case
 from properties.cases import case
 from properties.expected import expected
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.derived import COEFFICIENT_KINDS
-from mechkin_cli.mechanism.response import response_problem
+from mechkin_cli.mechanism.runs import response_problem
 
 SOME = [*(f"loop {seed}" for seed in range(0, 24, 4)), *(f"structure {s}" for s in range(2, 14, 3))]
 
@@ -98,7 +98,7 @@ COHERENT = {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"
 
 @pytest.mark.parametrize("name", ["rcsr", "rcsr_csr", "sevenr"])
 def test_reduced_inertia_of_files_is_twice_the_kinetic_energy_at_unit_rate(name):
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     axes = {"x": ["1", "0", "0"], "y": ["0", "1", "0"], "z": ["0", "0", "1"]}
     data |= {"units": COHERENT, "tables": [], "points": {}, "directions": {}}
     for k, link in enumerate(data["links"]):

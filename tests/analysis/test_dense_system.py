@@ -13,11 +13,11 @@ import pytest
 from mechanisms.actuated import platform
 from mechanisms.runs import model
 from oracle import document, to_text
-from references import MECHANISMS, committed
+from references import FILE_OF, committed
 
 import mechkin_cli as mk
-from mechkin_cli.derived.dense import borne_wrenches, row_motion
-from mechkin_cli.derived.newton_euler import dense_system, solved
+from mechkin_cli.balances.dense import borne_wrenches, row_motion
+from mechkin_cli.balances.newton_euler import dense_system, solved
 from mechkin_cli.diagnostics import InvalidFile
 
 LIMIT = 1e-11
@@ -139,7 +139,7 @@ LOADS = [
 
 @pytest.mark.parametrize("load", LOADS, ids=[f"{n}-{load['type']}" for n, load in enumerate(LOADS)])
 def test_every_load_counts(load):
-    data = document(MECHANISMS / "rcsr.yaml")
+    data = document(FILE_OF["rcsr"])
     data.pop("coefficients")
     run = mk.loads(to_text(data | {"loads": [load]}), "rcsr").analyze([], tables=["table_18"])
     assert balance(run, 5) <= LIMIT
@@ -196,11 +196,11 @@ WRONG = {
 
 @pytest.mark.parametrize("text", WRONG)
 def test_what_cannot_be_is_told_with_its_place(text):
-    written = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    written = FILE_OF["rcsr"].read_text(encoding="utf-8")
     head = written[: written.index("coefficients:")]
     name = "" if text.startswith("name") else "name: table_14, "
     with pytest.raises(InvalidFile) as error:
-        mk.loads(f"{head}coefficients:\n  - {{{name}{text}}}\n", str(MECHANISMS / "rcsr.yaml"))
+        mk.loads(f"{head}coefficients:\n  - {{{name}{text}}}\n", str(FILE_OF["rcsr"]))
     (found,) = error.value.diagnostics
     assert WRONG[text] in found.message
     assert found.place is not None
@@ -209,7 +209,7 @@ def test_what_cannot_be_is_told_with_its_place(text):
 
 def test_a_joint_written_the_other_way_round():
     """Its reactions change their sign, all others and the count stay."""
-    data = document(MECHANISMS / "sevenr.yaml")
+    data = document(FILE_OF["sevenr"])
     data.pop("coefficients")
     turned = data | {"joints": data["joints"] | {}}
     turned["joints"]["J3"] = data["joints"]["J3"] | {"links": ["three", "two"]}
@@ -228,19 +228,19 @@ def test_a_joint_written_the_other_way_round():
 
 
 def test_what_holds_idle_freedoms_has_no_coefficients():
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8") + "\nidle: hold\n"
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8") + "\nidle: hold\n"
     with pytest.raises(InvalidFile, match="cannot be told where idle freedoms are held"):
-        mk.loads(text, str(MECHANISMS / "rcsr.yaml"))
+        mk.loads(text, str(FILE_OF["rcsr"]))
 
 
 def test_responses_alone_have_no_coefficients():
-    text = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr_response"].read_text(encoding="utf-8")
     with pytest.raises(InvalidFile, match="the file has responses alone"):
-        mk.loads(f"{text}\ncoefficients: [{{name: t}}]\n", str(MECHANISMS / "rcsr_response.yaml"))
+        mk.loads(f"{text}\ncoefficients: [{{name: t}}]\n", str(FILE_OF["rcsr_response"]))
 
 
 def test_loads_of_responses_do_not_count_in_the_sweep():
-    data = document(MECHANISMS / "rcsr.yaml")
+    data = document(FILE_OF["rcsr"])
     data.pop("coefficients")
     start = {"start": {"O1.theta": "150"}, "time": {"from": "0", "to": "1", "step": "1"}}
     load = {"type": "torque", "joint": "O4", "value": "10"}
@@ -275,7 +275,7 @@ def test_the_two_turns_of_a_universal_joint(axis):
 
 
 def test_efforts_that_act_at_actuators():
-    data = document(MECHANISMS / "sevenr.yaml")
+    data = document(FILE_OF["sevenr"])
     data.pop("coefficients")
     data |= {"actuators": ["J3.theta"], "tables": []}
     run = mk.loads(to_text(data), "sevenr").analyze(["J3.effort"], tables=[])
@@ -297,7 +297,7 @@ def test_a_pose_that_is_driven():
 
 
 def test_joints_that_rub_have_no_coefficients():
-    data = document(MECHANISMS / "rcsr.yaml")
+    data = document(FILE_OF["rcsr"])
     rub = {"type": "friction", "joint": "O1", "coefficient": "0.1", "radius": "0.2"}
     with pytest.raises(InvalidFile, match="cannot be told where joints rub"):
         mk.loads(to_text(data | {"loads": [rub]}), "rcsr")

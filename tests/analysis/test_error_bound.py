@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from analysis.exact_rows import mechanism, solution
 from oracle import mp
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -19,7 +19,7 @@ INCH = mp.mpf("0.0254")
 
 @cache
 def rcsr() -> mk.Analysis:
-    return mk.load(MECHANISMS / "rcsr.yaml").analyze(tables=[])
+    return mk.load(FILE_OF["rcsr"]).analyze(tables=[])
 
 
 def errors(r: mk.Analysis) -> np.ndarray:
@@ -52,14 +52,14 @@ def test_it_is_true_and_close():
 def test_it_would_notice(monkeypatch):
     """A bound of the rounding of constants alone is no bound of what closing leaves."""
     monkeypatch.setattr(tolerances, "ERROR_FACTOR", 0.25)
-    r = mk.load(MECHANISMS / "rcsr.yaml").analyze(tables=[])
+    r = mk.load(FILE_OF["rcsr"]).analyze(tables=[])
     assert (errors(rcsr()) > r["row.error_bound"]).any()
 
 
 @pytest.mark.parametrize("name", ["bennett", "stewart", "rchch", "rcsr_csr", "parallelogram"])
 def test_every_row_has_one(name):
     """Loops of legs, threads, several blocks, redundant constraints, a branch point passed."""
-    bound = mk.load(MECHANISMS / f"{name}.yaml").analyze(tables=[])["row.error_bound"]
+    bound = mk.load(FILE_OF[name]).analyze(tables=[])["row.error_bound"]
     assert (bound > 1e-16).all()
     assert (bound < 1e-12).all()
 
@@ -107,7 +107,7 @@ def test_a_row_has_the_same_beside_any_others():
 
 
 def test_it_depends_neither_on_lanes_nor_on_threads():
-    m = mk.load(MECHANISMS / "rcsr_csr.yaml")
+    m = mk.load(FILE_OF["rcsr_csr"])
     bounds = [
         m.analyze(["row.error_bound"], tables=[], lanes=lanes, threads=threads)["row.error_bound"]
         for lanes, threads in ((2, 1), (0, 2))
@@ -117,4 +117,4 @@ def test_it_depends_neither_on_lanes_nor_on_threads():
 
 def test_a_response_has_none():
     with pytest.raises(mk.UsageError, match=r"row\.error_bound"):
-        mk.load(MECHANISMS / "rcsr_response.yaml").respond("response", ["row.error_bound"])
+        mk.load(FILE_OF["rcsr_response"]).respond("response", ["row.error_bound"])

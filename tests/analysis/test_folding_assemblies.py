@@ -21,7 +21,7 @@ import mechkin_cli as mk
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import home_state
 from mechkin_cli.search.starts import unknown_states
-from mechkin_cli.session.kernel_run import run
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 
 HEAD = "format: 1\nunits: {length: m, angle: deg, force: N}\n"
 Z = (0, 0, 1)
@@ -138,7 +138,7 @@ def test_a_block_is_closed_alone() -> None:
     is that of the mechanism."""
     session = mk.loads(scissors(3)).session
     inputs, home = session.inputs.values[:, :1], home_state(session.layout)[:, None]
-    whole = run(session.plan, inputs, home, demand=Demand.CONDITION)
+    whole = run(session.plan, RowInputs(inputs, home), Ask(Demand.CONDITION))
     assert whole.good.all()
     assert whole.condition is not None
     conditions = []
@@ -147,7 +147,7 @@ def test_a_block_is_closed_alone() -> None:
         given = whole.states.copy()
         for other in range(number, len(session.graph.blocks)):
             given[unknown_states(session.layout, other)] += 1e-3 if other == number else 0.5
-        alone = run(session.plan, inputs, given, demand=Demand.CONDITION, only=number)
+        alone = run(session.plan, RowInputs(inputs, given), Ask(Demand.CONDITION, only=number))
         others = np.setdiff1d(np.arange(given.shape[0]), own)
         assert alone.good.all()
         assert alone.condition is not None
@@ -158,4 +158,4 @@ def test_a_block_is_closed_alone() -> None:
     assert min(conditions) < max(conditions)
     rates = np.ones_like(inputs)
     with pytest.raises(ValueError, match="one block alone"):
-        run(session.plan, inputs, home, rates=rates, demand=Demand.VELOCITY, only=0)
+        run(session.plan, RowInputs(inputs, home, rates), Ask(Demand.VELOCITY, only=0))

@@ -6,6 +6,7 @@ import numpy as np
 from mechanisms.runs import model
 
 from mechkin_cli.search.clusters import pose_keys, same_poses
+from mechkin_cli.search.search import all_assemblies
 from mechkin_cli.sweep.messages import open_turn_note
 
 
@@ -19,7 +20,7 @@ def test_a_turn_that_ends_at_another_assembly_is_told() -> None:
     """The two assemblies of an RSSR put at either end of its turn."""
     session = model("rssr").session
     layout, inputs = session.layout, session.inputs.values
-    found = session.search(inputs[:, 0])
+    found = all_assemblies(session, inputs[:, 0])
     assert found.number == 2
     keys = pose_keys(layout, found.states)
     assert not same_poses(keys[:, :1], keys[:, 1:])[0, 0]

@@ -21,7 +21,7 @@ from analysis.overconstrained import (
     sarrus,
     stretched,
 )
-from references import RCSR
+from references import FILE_OF
 
 import mechkin_cli as mk
 
@@ -54,7 +54,7 @@ def test_count_truth_and_redundancy(text: str, count: int, mobility: int, redund
 
 @pytest.mark.parametrize("name", ["bennett", "parallelogram", "hooke", "slider_crank"])
 def test_committed_overconstrained_mechanisms(name: str) -> None:
-    found = mk.load(RCSR.with_name(f"{name}.yaml")).mobility()
+    found = mk.load(FILE_OF[name]).mobility()
     assert (found.count, found.mobility) == (-2, 1)
     assert [item.number for item in found.redundant] == [3]
     assert "3 constraints are redundant" in found.verdict

@@ -16,7 +16,7 @@ from analysis.random_loops import (
     same,
     search,
 )
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 
@@ -188,12 +188,12 @@ def test_rows_of_an_assembled_drawing_carry_the_letter_of_their_mode() -> None:
     """Where a short search proves that it knows all modes `rows.csv` has it at once; else
     `row.mode` has it when it is asked for."""
     for name, short in (("rssr", True), ("rccc", True), ("stewart", False)):
-        model = mk.load(MECHANISMS / f"{name}.yaml")
+        model = mk.load(FILE_OF[name])
         picked = model.modes().picked
         assert picked is not None
-        result = mk.load(MECHANISMS / f"{name}.yaml").analyze(["row.mode"])
+        result = mk.load(FILE_OF[name]).analyze(["row.mode"])
         assert set(result["row.mode"]) == {picked}
-        fresh = mk.load(MECHANISMS / f"{name}.yaml").analyze([])
+        fresh = mk.load(FILE_OF[name]).analyze([])
         assert "home" in fresh.result.how
         assert fresh.result.mode == (picked if short else "home")
         assert model.analyze([], mode=picked).result.how == "by name"

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from references import FILE_OF
 from scipy.optimize import brentq
 
 import mechkin_cli as mk
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 SLIDER = """
 format: 1
 units: {{length: m, angle: deg}}
@@ -106,7 +104,7 @@ def test_a_turn_that_the_universal_joint_does_not_let_through_is_no_assembly() -
 
 def test_what_a_run_left_out_is_not_read_from_another_assembly() -> None:
     """The second loop does not close on the branch of the first that the file names."""
-    model = mk.load(MECHANISMS / "rcsr_csr_loop_one.yaml")
+    model = mk.load(FILE_OF["rcsr_csr_loop_one"])
     alone = model.analyze()
     with pytest.raises(mk.UsageError, match=r'ask for it in analyze\(\["O5.theta"\]\)'):
         alone["O5.theta"]

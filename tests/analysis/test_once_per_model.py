@@ -8,10 +8,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from mechanisms.runs import NAMES
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.scenes import texts
+from benchmarks.scenes import texts
 
 MOST_CALLS = 450
 """Of Python functions in one sweep of positions; before it was worked out once: 1009 (RCSR), 5400
@@ -47,7 +47,7 @@ def test_a_second_run_only_runs(name: str) -> None:
 
 
 def test_rows_and_tables_cost_no_calls() -> None:
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     long = text.replace("step: 2,", "step: 0.02,")
     assert long != text
     few, many = mk.loads(text), mk.loads(long)
@@ -74,7 +74,7 @@ def answers(model: mk.Model, **choice: object) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("stem", NAMES)
 def test_answers_do_not_depend_on_what_was_asked_before(stem: str) -> None:
-    path = MECHANISMS / f"{stem}.yaml"
+    path = FILE_OF[stem]
     if "sweep" not in mk.load(path).runs:
         pytest.skip("no sweep")
     first = answers(mk.load(path))
@@ -89,7 +89,7 @@ def test_answers_do_not_depend_on_what_was_asked_before(stem: str) -> None:
 
 def test_each_mode_keeps_its_own() -> None:
     """Runs of two modes in turns, and of a variant, are those of fresh models."""
-    path = MECHANISMS / "rcsr.yaml"
+    path = FILE_OF["rcsr"]
     fresh = {mode: answers(mk.load(path), mode=mode) for mode in ("A", "B")}
     varied = answers(mk.load(path).with_parameters({"P1": "0.52 in"}))
     assert fresh["A"] != fresh["B"]

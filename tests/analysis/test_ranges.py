@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 import pytest
-from mechanisms.runs import MECHANISMS, edited, model
+from mechanisms.runs import edited, model
 from mpmath import mp, mpf
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.modes.ranges import Range
@@ -138,7 +139,7 @@ def assert_full_turns_have_no_limits(item: Range) -> None:
 
 
 def test_unknown_names_are_told() -> None:
-    rcsr = mk.load(MECHANISMS / "rcsr.yaml")
+    rcsr = mk.load(FILE_OF["rcsr"])
     with pytest.raises(mk.UsageError, match=r"there is no input O2\.theta; inputs are O1\.theta"):
         rcsr.ranges("O2.theta")
     with pytest.raises(mk.UsageError, match=r"there is no coordinate O9\.theta"):

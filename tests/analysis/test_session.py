@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mechanisms.runs import LECTURES, NAMES
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.session.session import Session
 
 
 def fresh(stem: str) -> mk.Model:
-    return mk.load(MECHANISMS / f"{stem}.yaml")
+    return mk.load(FILE_OF[stem])
 
 
 class Calls:

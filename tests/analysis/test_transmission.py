@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mechanisms.runs import closings, edited, model, run
 from oracle import mp
-from references import MECHANISMS, exact
+from references import FILE_OF, exact
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
@@ -227,7 +227,7 @@ def test_the_closing_joint_does_not_matter(name):
 def test_where_it_is_not_defined_the_message_says_so():
     with pytest.raises(UsageError, match="exactly one other joint, of type S, Sp or Sg"):
         model("hooke").analyze(["B.theta.transmission_angle"], tables=[])
-    text = (MECHANISMS / "sevenr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["sevenr"].read_text(encoding="utf-8")
     joint = next(iter(model("sevenr").problem.mechanism.joints))
     table = f"tables:\n  - {{name: t, columns: [{{label: m, value: {joint}.turn}}]}}\n"
     with pytest.raises(mk.InvalidFile, match="joints of type S, Sp, Sg have an orientation"):
@@ -239,7 +239,7 @@ def test_nothing_is_loaded_where_nothing_is_asked_for():
         "import sys, mechkin_cli as mk; mk.load(sys.argv[1]).analyze(); "
         "print(any(name.startswith('mechkin_cli.analysis.derived') for name in sys.modules))"
     )
-    path = str(MECHANISMS / "rcsr.yaml")
+    path = str(FILE_OF["rcsr"])
     done = subprocess.run(
         [sys.executable, "-P", "-c", code, path], capture_output=True, text=True, check=True
     )

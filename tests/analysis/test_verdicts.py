@@ -73,12 +73,12 @@ def test_a_near_singular_row_is_a_diagnostic(tmp_path: Path) -> None:
 def test_strict_makes_it_an_exit_code(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], code: int
 ) -> None:
-    from mechkin_cli.cli.analyze import analyze_files
+    from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
     path = near_singular(tmp_path)
     strict = bool(options)
     for more in ({"quiet": True}, {"json": True}):
-        found = analyze_files([path], tmp_path / "out", strict=strict, **more)
+        found = analyze_files(AnalyzeCommand([path], tmp_path / "out", strict=strict, **more))
         said = capsys.readouterr()
         assert found == code
         assert "near-singular" in said.err
@@ -88,11 +88,11 @@ def test_strict_makes_it_an_exit_code(
 
 
 def test_strict_does_not_mind_sound_rows(tmp_path: Path) -> None:
-    from mechkin_cli.cli.analyze import analyze_files
+    from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
     path = tmp_path / "sound.yaml"
     path.write_text(FOUR_BAR.replace("VALUES", "5"), encoding="utf-8")
-    assert analyze_files([path], tmp_path / "out", quiet=True, strict=True) == 0
+    assert analyze_files(AnalyzeCommand([path], tmp_path / "out", quiet=True, strict=True)) == 0
 
 
 def test_what_a_joint_leaves_free_is_zero_and_does_not_blink() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import random
 
 import pytest
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.start import HOME, NEAR, choose_start, far_notes
+from mechkin_cli.assembly.distances import far_notes
+from mechkin_cli.assembly.start import HOME, NEAR, choose_start
+from mechkin_cli.search.search import all_assemblies
 from mechkin_cli.search.starts import is_in_reach
 
 PROVEN = ("rcsr", "rcsr_csr", "rssr", "slider_crank", "swash_plate", "rspr")
@@ -22,13 +24,13 @@ def searches(session) -> list[object]:
 
 @pytest.mark.parametrize("name", [*PROVEN, *OPEN])
 def test_no_search_is_left_out_that_would_have_told_the_letter(name: str) -> None:
-    analysis = mk.load(MECHANISMS / f"{name}.yaml").analyze()
+    analysis = mk.load(FILE_OF[name]).analyze()
     session, result = analysis.result.session, analysis.result
     mode = result.mode
     left_out = mode in (HOME, NEAR) and not searches(session)
     assert left_out == (name in OPEN)
     first = session.inputs.reduced[:, 0]
-    found = session.search(first, thorough=False)
+    found = all_assemblies(session, first, thorough=False)
     if left_out:
         assert not found.complete
     else:
@@ -39,7 +41,7 @@ def test_no_search_is_left_out_that_would_have_told_the_letter(name: str) -> Non
 
 def test_a_sweep_of_positions_lists_no_quantities() -> None:
     for name in ("rcsr", "sevenr", "stewart"):
-        model = mk.load(MECHANISMS / f"{name}.yaml")
+        model = mk.load(FILE_OF[name])
         model.analyze(tables=[])
         assert "_quantities" not in model.problem.__dict__
 
@@ -47,7 +49,7 @@ def test_a_sweep_of_positions_lists_no_quantities() -> None:
 @pytest.mark.parametrize("number", range(24))
 def test_a_distance_within_the_limit_leaves_no_coordinate_far(number: int) -> None:
     rng = random.Random(number)
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     (line,) = (row for row in text.splitlines() if row.startswith("assembly:"))
     near = f"O2.theta: {rng.uniform(-180, 180):.6f}, O4.theta: {rng.uniform(-180, 180):.6f}"
     session = mk.loads(text.replace(line, f"assembly: {{near: {{{near}}}}}")).session

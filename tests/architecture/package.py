@@ -46,3 +46,13 @@ def is_import_call(node: ast.AST) -> bool:
         and ast.unparse(node.func).split(".")[-1] == "import_module"
         and isinstance(node.args[0], ast.Constant)
     )
+
+
+def imported_names(path: Path) -> list[tuple[str, str]]:
+    """(dotted module, name) of all imports of names, of every kind."""
+    return [
+        (node.module or "", alias.name)
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+    ]

@@ -8,7 +8,7 @@ import tomllib
 
 from architecture.package import FILES, ROOT, imports
 
-DISTRIBUTIONS = {"yaml": "pyyaml", "pydantic_core": "pydantic-core", "pinocchio": "pin"}
+DISTRIBUTIONS = {"yaml": "pyyaml", "pydantic_core": "pydantic-core"}
 """Libraries whose distribution has another name."""
 
 BY_HAND = {}

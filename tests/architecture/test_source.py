@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 from architecture.package import FILES, NAMES, ROOT, tree
 
-MOST_LINES = 400
+MOST_LINES = 640
+MORE_LINES = {"model/model.py": 900}
+"""Files that hold one class with the text of its manual."""
 SOURCES = sorted([*FILES, *ROOT.rglob("*.hpp"), *ROOT.rglob("*.cpp")])
 Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
@@ -43,7 +45,8 @@ def is_overload(node: Definition) -> bool:
 
 @pytest.mark.parametrize("path", SOURCES, ids=[str(path.relative_to(ROOT)) for path in SOURCES])
 def test_files_are_short(path: Path) -> None:
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= MOST_LINES
+    most = MORE_LINES.get(str(path.relative_to(ROOT)), MOST_LINES)
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= most
 
 
 @pytest.mark.parametrize(

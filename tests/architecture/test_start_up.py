@@ -74,15 +74,14 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize(
     ("module", "needed_by"),
     [
-        ("mechanism.response", "responses"),
-        ("mechanism.balance", "balances"),
-        ("building.quantities", "named expressions"),
-        ("tables.json_writer", "JSON"),
+        ("response.runs", "responses"),
+        ("balances.runs", "balances"),
+        ("tables.json", "JSON"),
         ("tables.summary", "summaries"),
-        ("interface.fits", "fits"),
-        ("interface.sensitivities", "sensitivities"),
-        ("interface.studies", "studies"),
-        ("view.html", "the page of a view"),
+        ("fit.result", "fits"),
+        ("sensitivities.first_order", "sensitivities"),
+        ("studies.study", "studies"),
+        ("view.page", "the page of a view"),
     ],
 )
 def test_a_sweep_leaves_out_what_its_file_does_not_ask_for(

@@ -15,24 +15,12 @@ SMALL, LARGE = 1e-3, 1e6
 """Floats nearer to zero, or larger, are limits of something; others are numbers of a formula."""
 
 ACCEPTED = {
-    ("expressions/scalar_functions.py", 1.2556659146019252e-06): "the lower part of 2 pi",
-    ("benchmark/measurement.py", 1e6): "microseconds",
-    ("benchmark/measurement.py", 1e-18): "what is zero by its nature",
-    ("benchmark/timing.py", 1e-9): "seconds, against a division by zero",
-    ("benchmark/stress/certify.py", 1e-28): "roundings of a closed form in double-double",
-    ("benchmark/stress/followed.py", 1e-26): "the last step of a refinement in double-double",
-    ("benchmark/stress/followed.py", 1e-30): "an entry that makes an inverse large",
-    ("benchmark/stress/families/dead_centres.py", 1e-9): "degrees beyond a dead centre",
-    ("benchmark/stress/families/dead_centres.py", 1e-6): "degrees beyond a dead centre",
-    ("benchmark/stress/judge.py", 1e-9): "nine digits of a row, which its reason tells",
-    ("benchmark/stress/judge.py", 1e-10): "the tolerance of responses, as the file format says",
-    ("benchmark/stress/linkages/train.py", 1e-9): "where the sign of a turn says nothing",
-    ("benchmark/stress/reach.py", 1e-12): "of an extreme in double-double",
-    ("benchmark/stress/reach.py", 1e-17): "of a polynomial's leading coefficient",
-    ("benchmark/sevenr.py", 0.0009): "a tensor's entry",
-    ("benchmark/sevenr.py", 0.0006): "a tensor's entry",
-    ("benchmark/sevenr.py", 0.0004): "a tensor's entry",
-    ("benchmark/sevenr.py", 0.0001): "a tensor's entry",
+    ("expressions/operations.py", 1.2556659146019252e-06): "the lower part of 2 pi",
+    ("bench/measurement.py", 1e6): "microseconds",
+    ("bench/measurement.py", 1e-18): "what is zero by its nature",
+    ("bench/measurement.py", 1e-9): "seconds, against a division by zero",
+    ("bench/stress.py", 1e-9): "nine digits of a row, which its reason tells",
+    ("bench/stress.py", 1e-10): "the tolerance of responses, as the file format says",
 }
 """(file, number) -> what it is."""
 

@@ -16,16 +16,16 @@ from subprocess import CalledProcessError
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark import demand_steps, routes, stress, targets
 from benchmark.exact import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.report import Table, plain_text
+from mechkin_cli.bench.report import Table, machine, plain_text
 from mechkin_cli.tables.json import json_text
 
-RCSR_FILE = HERE.parents[1] / "mechanisms" / "rcsr.yaml"
+RCSR_FILE = HERE.parents[1] / "mechanisms" / "dissertation" / "rcsr.yaml"
 
 
 def timing_tables() -> Iterator[Table]:

@@ -24,7 +24,7 @@ from benchmark.matrices import (
     turning,
 )
 
-from mechkin_cli.benchmark.rcsr import ACCELERATION, ALPHA1, ALPHA4, RATE, Dimensions
+from benchmarks.rcsr import ACCELERATION, ALPHA1, ALPHA4, RATE, Dimensions
 
 NEWTON_STEPS = 8
 """From a guess of 1e-3, quadratic convergence passes 40 digits in five steps."""

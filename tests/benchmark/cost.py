@@ -20,6 +20,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark.specimens import sevenr_specimen
 from change_points.four_bars import FourBar, file_of, joints_of
@@ -27,8 +28,7 @@ from mpmath import mp, mpf
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.case import drawn
 
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
+from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
 from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
@@ -74,7 +74,7 @@ class Version:
 
 def generic() -> Iterator[tuple[str, str]]:
     for name, stem in GENERIC.items():
-        yield name, (MECHANISMS / f"{stem}.yaml").read_text(encoding="utf-8")
+        yield name, (next(MECHANISMS.glob(f"*/{stem}.yaml"))).read_text(encoding="utf-8")
     yield "7R", sevenr_specimen().text("from: 0 deg, to: 360 deg, count: 361")
 
 

@@ -13,8 +13,8 @@ from benchmark.kernel_case import (
 )
 from benchmark.specimen import Specimen
 
-from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.timing import ROUNDS, in_turns
+from mechkin_cli.bench.measurement import ROUNDS, in_turns
+from mechkin_cli.bench.report import Cell, Column, Table
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.plan.codes import Demand
 

@@ -25,7 +25,7 @@ from benchmark.matrices import (
     transpose,
 )
 
-from mechkin_cli.benchmark.rcsr import MASSES, Dimensions
+from benchmarks.rcsr import MASSES, Dimensions
 
 UNKNOWNS = 24
 F41, M41, FA1, F12, M12, FB, FC, FD, F43, M43, FA4, MIN = 0, 3, 6, 7, 10, 13, 14, 15, 16, 19, 22, 23
@@ -166,7 +166,7 @@ def _added(a: Iterable[Any], b: Iterable[Any]) -> Vector:
 
 def _pair_axes(d: Arithmetic, link: str) -> Matrix:
     """Axes of a link's tensor and mass centre in the home drawing, as columns."""
-    from mechkin_cli.benchmark.rcsr import ALPHA1, ALPHA4
+    from benchmarks.rcsr import ALPHA1, ALPHA4
 
     angle = {"crank": 0, "coupler": ALPHA1, "rocker": -ALPHA4}[link]
     c, n, zero = d.cos(d.radians(angle)), d.sin(d.radians(angle)), d.number(0)

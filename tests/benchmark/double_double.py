@@ -18,14 +18,15 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.plan.codes import Demand
-from mechkin_cli.session.double_double import run_precise
-from mechkin_cli.session.kernel_run import run
+from mechkin_cli.plan.outputs import Readout
+from mechkin_cli.session.kernel_run import Ask, PreciseConstants, RowInputs, run
 
 
 def seconds(work: Callable[[], Any]) -> float:
@@ -43,22 +44,18 @@ class Case:
         self.inputs = repeated(case.inputs, rows)
         self.guess = repeated(case.second_order_guesses(), rows)
         rates, accelerations = driven(specimen, rows)
-        self.asked: dict[str, Any] = {
-            "rates": rates,
-            "accelerations": accelerations,
-            "outputs": self.planned.outputs.outputs,
-            "threads": 1,
-        }
-        self.states = self.doubles().states
+        self.rows = RowInputs(self.inputs, self.guess, rates, accelerations)
+        readout = Readout(self.planned.outputs.outputs, self.planned.outputs.slots, ())
+        self.ask = Ask(self.planned.demand, readout)
+        self.closed = self.rows._replace(guess=self.doubles().states)
 
     def doubles(self) -> Any:
-        plan, demand = self.planned.plan, self.planned.demand
-        return run(plan, self.inputs, self.guess, demand=demand, **self.asked)
+        return run(self.planned.plan, self.rows, self.ask, threads=1)
 
     def precise(self, lanes: int) -> Any:
-        plan, demand = self.planned.plan, self.planned.demand & ~Demand.CONDITION
-        given = self.asked | {"demand": demand, "lanes": lanes}
-        return run_precise(plan, self.inputs, self.states, **given)
+        ask = self.ask._replace(demand=self.planned.demand & ~Demand.CONDITION)
+        constants = PreciseConstants()
+        return run(self.planned.plan, self.closed, ask, constants, lanes=lanes, threads=1)
 
 
 def main(rows: int = 2048, pairs: int = 21) -> None:

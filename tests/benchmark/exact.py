@@ -11,7 +11,7 @@ from benchmark import loop_loads, reference, specimens
 from benchmark.arithmetic import Arithmetic
 from benchmark.specimen import Specimen
 
-from mechkin_cli.benchmark import rcsr, sevenr
+from benchmarks import rcsr, sevenr
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from time import perf_counter
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark.chains import chain_text
 from benchmark.kernel_case import (
@@ -33,9 +34,8 @@ from benchmark.process import command
 from benchmark.specimens import sevenr_specimen
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.benchmark.timing import Timing, in_turns
+from mechkin_cli.bench.measurement import Timing, in_turns
+from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.tables.json import json_text
 
@@ -83,7 +83,7 @@ def timed(calls: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, T
 
 def with_rows(file: str, pattern: str, replacement: str) -> str:
     """A mechanism's text with another number of rows."""
-    text = (MECHANISMS / file).read_text(encoding="utf-8")
+    text = next(MECHANISMS.glob(f"*/{file}")).read_text(encoding="utf-8")
     changed, count = re.subn(pattern, replacement, text)
     assert count == 1, f"{file}: {pattern} is there {count} times"
     return changed
@@ -91,7 +91,7 @@ def with_rows(file: str, pattern: str, replacement: str) -> str:
 
 def platform_text(rows: int) -> str:
     """The Stewart platform whose legs move by laws of time, along a curved path."""
-    text = (MECHANISMS / "stewart.yaml").read_text(encoding="utf-8")
+    text = (MECHANISMS / "classics" / "stewart.yaml").read_text(encoding="utf-8")
     laws = {"1": "harmonic", "0": "cycloidal"}
     text, legs = re.subn(
         r"L(\d)\.s: \{from: 0, to: (\S+), count: 21, rate: \S+\}",
@@ -123,7 +123,7 @@ def million(rounds: int, _: int) -> Table:
         file = Path(folder) / "rcsr.yaml"
         file.write_text(text[: text.index("\ntables:")], encoding="utf-8")
         line = [*command(), "analyze", str(file), "--format", "csv", "--quiet", "--out", folder]
-        short = [*command(), "analyze", str(MECHANISMS / "rcsr.yaml"), *line[3:]]
+        short = [*command(), "analyze", str(MECHANISMS / "dissertation" / "rcsr.yaml"), *line[3:]]
 
         run = partial(subprocess.run, check=True, capture_output=True)
         write_again = (Path(folder) / "copy").write_bytes

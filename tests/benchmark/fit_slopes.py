@@ -61,7 +61,7 @@ def measured(model: mk.Model, target: Any, bounds: Any, held: Any) -> tuple[Meas
 def main() -> int:
     """One line for each case."""
     for name, target, bounds, held in CASES:
-        model = mk.load(MECHANISMS / f"{name}.yaml")
+        model = mk.load(next(MECHANISMS.glob(f"*/{name}.yaml")))
         told = []
         for kind in ("differences", "exact_slopes"):
             for _ in range(2):  # the first records what the model keeps

@@ -22,6 +22,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 from benchmark.demand_steps import steps
 from benchmark.kernel_case import (
@@ -38,7 +39,7 @@ from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.targets import YARDSTICK_NAMES
 from benchmark.yardstick_kernel import LEVELS, Yardstick
 
-from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
+from mechkin_cli.bench.report import Cell, Column, Table, plain_text
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.session.following import follow
 from mechkin_cli.tables.json import json_text

@@ -13,9 +13,10 @@ from mechkin_cli import tolerances
 from mechkin_cli.model.model import loads
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.outputs import OutputPlan, demand_of
+from mechkin_cli.plan.outputs import OutputPlan, Readout, demand_of
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.session.following import follow
-from mechkin_cli.session.kernel_run import Batch, run
+from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
@@ -39,7 +40,7 @@ class PlannedRun:
         known = problem.quantities()
         wanted = [known[name] for name in self.names]
         self.demand = demand_of(problem.mechanism, wanted) | more
-        self.plan: Plan = case.layout.build()
+        self.plan: Plan = build_plan(case.layout)
         self.outputs = OutputPlan(case.layout, self.plan, problem.motion.driven)
         for quantity in wanted:
             self.outputs.add(quantity)
@@ -53,15 +54,11 @@ class PlannedRun:
     ) -> Batch:
         """Runs all rows; inputs (1, rows), guess (states, rows)."""
         rates, accelerations = driven(self.specimen, inputs.shape[1])
+        readout = Readout(self.outputs.outputs, self.outputs.slots, ())
         return run(
             self.plan,
-            inputs,
-            guess,
-            rates=rates,
-            accelerations=accelerations,
-            demand=self.demand,
-            outputs=self.outputs.outputs,
-            iterations=iterations,
+            RowInputs(inputs, guess, rates, accelerations),
+            Ask(self.demand, readout, iterations=iterations),
             lanes=lanes,
             # times are those of this thread
             threads=1,
@@ -95,7 +92,7 @@ class KernelCase:
 
     def _states(self, coordinates: list[Floats]) -> Floats:
         """The kernel's states (states, rows) for given coordinates."""
-        states = np.zeros((self.layout.build().states, self.positions.size))
+        states = np.zeros((build_plan(self.layout).states, self.positions.size))
         known = dict(zip(self.specimen.coordinates, coordinates, strict=True))
         known[self.specimen.driven] = self.positions
         for k, edge in enumerate(self.layout.graph.edges):

@@ -25,7 +25,7 @@ from benchmark.matrices import (
 )
 from benchmark.vector_equations import solve_columns
 
-from mechkin_cli.benchmark.sevenr import ACCELERATION, RATE, Loop
+from benchmarks.sevenr import ACCELERATION, RATE, Loop
 
 NEWTON_STEPS = 4
 """From a guess of 1e-9, quadratic convergence passes 40 digits in three steps."""

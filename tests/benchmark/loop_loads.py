@@ -15,7 +15,7 @@ from benchmark.dense_forces import inertia_wrench
 from benchmark.loop import Lines, LoopKinematics, lines_of, loop_kinematics
 from benchmark.matrices import Matrix, Vector, cross, dot, image, rotation
 
-from mechkin_cli.benchmark.sevenr import GRAVITY, JOINTS, Body, Loop
+from benchmarks.sevenr import GRAVITY, JOINTS, Body, Loop
 from mechkin_cli.tape.double_double import eliminate
 
 

@@ -2,7 +2,7 @@
 
     python -P tests/benchmark/page.py [--quick] [--out FOLDER]
 
-`mechkin bench` on the known mechanisms, then the yardstick at every width (needs gcc), whole
+`python -m benchmarks` on the known mechanisms, then the yardstick at every width (needs gcc), whole
 processes, and the same 7R table by a script with Pinocchio where it is installed. Run it on an
 otherwise idle machine; it takes about five minutes.
 """
@@ -19,22 +19,21 @@ from subprocess import CalledProcessError
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark import targets
 from benchmark.script_table import script_table
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.outputs import figure
-from mechkin_cli.benchmark.page import page
-from mechkin_cli.benchmark.report import Table
-from mechkin_cli.benchmark.runs import FULL, QUICK, bench, tables
-from mechkin_cli.benchmark.scene import Scene
-from mechkin_cli.benchmark.scenes import subjects
-from mechkin_cli.benchmark.tables import csv_text
+from benchmarks.peers import FAMILIES
+from benchmarks.scenes import subjects
+from benchmarks.suite import whole_tables
+from mechkin_cli.bench.outputs import figure, page
+from mechkin_cli.bench.report import Table, csv_text, machine
+from mechkin_cli.bench.runs import FULL, QUICK, bench
 
-RCSR_FILE = ROOT / "mechanisms" / "rcsr.yaml"
+RCSR_FILE = ROOT / "mechanisms" / "dissertation" / "rcsr.yaml"
 PINOCCHIO = HERE / "pinocchio_7r.py"
 COMMAND = "python -P tests/benchmark/page.py"
 
@@ -66,13 +65,13 @@ def main() -> None:
     options = parser.parse_args()
     rounds = QUICK if options.quick else FULL
     known = subjects()
-    scenes, benches = [Scene(each.name, each.model) for each in known], []
-    for scene in scenes:
-        print(scene.name, file=sys.stderr, flush=True)
-        benches.append(bench(scene, rounds))
+    benches = []
+    for subject in known:
+        print(subject.name, file=sys.stderr, flush=True)
+        benches.append(bench(subject.scene, rounds, FAMILIES))
     print("settings, variants, responses, yardstick, processes", file=sys.stderr, flush=True)
     found = [
-        *tables(known, scenes, rounds, whole=True),
+        *whole_tables(known, rounds),
         *against(QUICK_RUNS if options.quick else SCRIPT_RUNS),
     ]
     text = page(machine(), benches, found, "bench.svg", COMMAND)

@@ -10,7 +10,7 @@ import numpy as np
 from benchmark.closure import Drawing, Kinematics
 from benchmark.dense_forces import equations, wrenches
 
-from mechkin_cli.benchmark.rcsr import ACCELERATION, COORDINATES, RATE, Dimensions
+from benchmarks.rcsr import ACCELERATION, COORDINATES, RATE, Dimensions
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats

@@ -2,7 +2,7 @@
 
     python tests/benchmark/pinocchio_7r.py FILE DIR [CSV]
 
-FILE is the general 7R of `mechkin_cli/benchmark/sevenr.py`. Pinocchio places the
+FILE is the general 7R of `benchmarks/sevenr.py`. Pinocchio places the
 links, and gives the Jacobian, the accelerations and, by its recursive Newton-Euler algorithm, the
 joint forces of the open chain; the loop is closed here by Newton's method row by row, the reaction
 at the end by a 6x6 system. DIR/pinocchio.csv has the columns of the file's table; with CSV, a

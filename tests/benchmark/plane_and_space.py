@@ -15,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
+sys.path.append(str(ROOT))
 
 import yaml
 from planar.space import Data, in_space
@@ -22,7 +23,7 @@ from planar.space import Data, in_space
 import mechkin_cli as mk
 
 ROWS = 20_000
-FILES = sorted((ROOT / "mechanisms").glob("planar_*.yaml"))
+FILES = sorted((ROOT / "mechanisms" / "plane").glob("planar_*.yaml"))
 
 
 def least(run: Callable[[], object], times: int = 7) -> float:

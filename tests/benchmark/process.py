@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 import mechkin_cli
-from mechkin_cli.benchmark.timing import Timing, in_turns
+from mechkin_cli.bench.measurement import Timing, in_turns
 
 RUNS = 21
 

@@ -15,14 +15,15 @@ from tempfile import TemporaryDirectory
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark.process import command
 from benchmark.targets import process_table
 
-from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.report import plain_text
+from benchmarks import sevenr
+from mechkin_cli.bench.report import plain_text
 
-RCSR = HERE.parents[1] / "mechanisms" / "rcsr.yaml"
+RCSR = HERE.parents[1] / "mechanisms" / "dissertation" / "rcsr.yaml"
 PINOCCHIO = HERE / "pinocchio_7r.py"
 
 

@@ -13,7 +13,7 @@ from benchmark.arithmetic import Arithmetic, extended
 from benchmark.closure import Drawing, Kinematics, drawing, kinematics
 from benchmark.dense_forces import equations, wrenches
 
-from mechkin_cli.benchmark.rcsr import COORDINATES, Dimensions
+from benchmarks.rcsr import COORDINATES, Dimensions
 from mechkin_cli.tape.double_double import eliminate
 
 POSITIONS = COORDINATES

@@ -23,6 +23,7 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
+sys.path.append(str(HERE.parents[1]))
 
 from benchmark.accuracy import relative_error
 from benchmark.kernel_case import (
@@ -36,12 +37,12 @@ from benchmark.specimens import rcsr_specimen
 from references import exact
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.report import Cell, Column, Table, plain_text
-from mechkin_cli.benchmark.timing import in_turns
+from benchmarks import sevenr
+from mechkin_cli.bench.measurement import in_turns
+from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
 from mechkin_cli.response.integration import MotionRows, MotionStart, integrate
 from mechkin_cli.response.runs import Prepared, prepare, read, rows_of
+from mechkin_cli.session.kernel_run import Ask, RowInputs
 from mechkin_cli.session.session import Packing, Session
 from mechkin_cli.show import Floats
 from mechkin_cli.sweep.sweep import analyze, at_once
@@ -217,7 +218,7 @@ def of_spring(case: Case) -> Floats:
 
 
 def cases() -> tuple[Case, ...]:
-    rcsr = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
+    rcsr = (MECHANISMS / "dissertation" / "rcsr_response.yaml").read_text(encoding="utf-8")
     rcsr = rcsr[: rcsr.index("\ntables:")].replace("step: 0.1}", "step: 1}")
     both = {"explicit": EXPLICIT, "implicit": IMPLICIT}
     return (
@@ -384,7 +385,12 @@ def sweep_cases() -> dict[str, tuple[str, str]]:
     lines = SLIDER_CRANK.splitlines(keepends=True)
     rubbing = [line for line in lines if "friction" in line]
     bare = "".join(line for line in lines if line not in rubbing)
-    rcsr = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8").partition("\ntables:")[0].rstrip()
+    rcsr = (
+        (MECHANISMS / "dissertation" / "rcsr.yaml")
+        .read_text(encoding="utf-8")
+        .partition("\ntables:")[0]
+        .rstrip()
+    )
     return {
         "crank, none": (bare, "A.effort"),
         "crank, two joints": (bare + "".join(rubbing[:2]), "A.effort"),
@@ -401,15 +407,14 @@ def sweep_call(text: str, effort: str) -> Callable[[], object]:
     wanted, demand = at_once(session, [known[effort]], verdicts=True)
     wanted += result.friction.beside(result.problem, wanted, demand)
     inputs = session.inputs
-    return partial(
-        session.packed(Packing(0, 1)).run,
+    rows = RowInputs(
         repeated(inputs.reduced),
         repeated(result.row_states.states),
-        readout=session.readout(wanted),
-        demand=demand,
-        rates=repeated(inputs.rates),
-        accelerations=repeated(inputs.accelerations),
+        repeated(inputs.rates),
+        repeated(inputs.accelerations),
     )
+    ask = Ask(demand, session.readout(wanted))
+    return partial(session.packed(Packing(0, 1)).run, rows, ask)
 
 
 FIGURES = {f.__name__: f for f in (speed, accuracy, slopes, lanes, friction)}

@@ -24,9 +24,9 @@ from benchmark.kernel_case import (
 from benchmark.peers import Closure, dense_loads, differences, fsolve_positions
 from benchmark.reference import POSITIONS
 
-from mechkin_cli.benchmark.rcsr import Dimensions, dimensions
-from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.timing import Timing, in_turns
+from benchmarks.rcsr import Dimensions, dimensions
+from mechkin_cli.bench.measurement import Timing, in_turns
+from mechkin_cli.bench.report import Cell, Column, Table
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats

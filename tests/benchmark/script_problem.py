@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.scenes import texts
+from benchmarks.scenes import texts
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.vectors import Vector

@@ -14,8 +14,8 @@ from time import perf_counter
 from benchmark.process import command, environment
 from benchmark.script_problem import Script, scripts
 
-from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.timing import in_turns
+from mechkin_cli.bench.measurement import in_turns
+from mechkin_cli.bench.report import Cell, Column, Table
 
 FOLDER = Path(__file__).resolve().parent / "scripts"
 LIBRARIES = {"Pinocchio": "pinocchio", "MuJoCo": "mujoco", "CasADi": "casadi"}

@@ -6,7 +6,7 @@ from functools import partial
 
 from benchmark.specimen import Specimen
 
-from mechkin_cli.benchmark import rcsr, sevenr
+from benchmarks import rcsr, sevenr
 
 
 def rcsr_specimen(scale: float = 1.0) -> Specimen:

@@ -19,8 +19,8 @@ from benchmark.exact import ExactSpecimen, rcsr_specimen, sevenr_specimen
 from benchmark.kernel_case import sweep_rows
 from benchmark.specimen import values
 
-from mechkin_cli.benchmark.rcsr import SPAN, dimensions
-from mechkin_cli.benchmark.report import Cell, Column, Table
+from benchmarks.rcsr import SPAN, dimensions
+from mechkin_cli.bench.report import Cell, Column, Table
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.model.model import loads
 from mechkin_cli.verdict import Status

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import resource
+import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,9 +25,11 @@ from typing import Any
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[2]))
+
 import mechkin_cli as mk
-from mechkin_cli.benchmark import rcsr, sevenr
-from mechkin_cli.benchmark.scene import Scene
+from benchmarks import rcsr, sevenr
+from mechkin_cli.bench.scene import Scene
 
 ROWS = 361
 ROUNDS = 3
@@ -86,7 +89,7 @@ def peer(case: Case) -> Callable[[], None] | None:
     """Some variants by CasADi."""
     if find_spec("casadi") is None:
         return None
-    from mechkin_cli.benchmark.methods.with_casadi import methods
+    from benchmarks.peers.with_casadi import methods
 
     scene = Scene(case.name, mk.loads(case.text, case.name), most_places=ROWS)
     assert scene.rows == ROWS

@@ -21,9 +21,9 @@ from benchmark.process import bare_imports, process_times
 from benchmark.specimen import Specimen
 from benchmark.yardstick_kernel import LEVELS, Yardstick
 
-from mechkin_cli.benchmark import sevenr
-from mechkin_cli.benchmark.report import Cell, Column, Table
-from mechkin_cli.benchmark.timing import Timing, in_turns
+from benchmarks import sevenr
+from mechkin_cli.bench.measurement import Timing, in_turns
+from mechkin_cli.bench.report import Cell, Column, Table
 from mechkin_cli.kernel.functions import widths
 
 KERNEL_LIMIT = 1.6

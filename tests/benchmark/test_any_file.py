@@ -12,18 +12,17 @@ from subprocess import DEVNULL, PIPE, Popen, run
 
 import pytest
 from cli.test_bench import MECHANISM, command
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.machine import machine
-from mechkin_cli.benchmark.outputs import write
-from mechkin_cli.benchmark.runs import Rounds, bench
-from mechkin_cli.benchmark.scene import Scene
-from mechkin_cli.benchmark.tables import bench_table
+from mechkin_cli.bench.outputs import write
+from mechkin_cli.bench.report import bench_table, machine
+from mechkin_cli.bench.runs import Rounds, bench
+from mechkin_cli.bench.scene import Scene
 from mechkin_cli.diagnostics import UsageError
 
 ONCE = Rounds(1, 1)
-FILES = sorted(MECHANISMS.glob("*.yaml"))
+FILES = list(FILE_OF.values())
 REFUSED = ("has no sweep", "nothing that is solved for", "nothing by which errors", "no row of")
 
 
@@ -38,7 +37,7 @@ def test_a_kept_mechanism_is_measured_or_refused_in_words(path: Path, tmp_path: 
     assert any(words in why for words in REFUSED) == bool(why)
     if scene is None:
         return
-    found = bench(scene, ONCE, ())
+    found = bench(scene, ONCE, {})
     write(tmp_path, machine(), [found], [bench_table(found)], "mechkin bench")
     text = (tmp_path / "bench.json").read_text(encoding="utf-8")
     record = json.loads(text, parse_constant=lambda word: pytest.fail(f"{word} in bench.json"))

@@ -23,9 +23,9 @@ from benchmark.stress import NEAR_DEAD_CENTRE, SIZES, dead_centre_table, size_ta
 from benchmark.yardstick_kernel import load
 from oracle import fold, mp, read
 
-from mechkin_cli.benchmark.rcsr import COORDINATES, dimensions
-from mechkin_cli.benchmark.report import Column, Table, cell_text, plain_text, width
-from mechkin_cli.benchmark.timing import SHORTEST, Timing, in_turns
+from benchmarks.rcsr import COORDINATES, dimensions
+from mechkin_cli.bench.measurement import SHORTEST, Timing, in_turns
+from mechkin_cli.bench.report import Column, Table, cell_text, plain_text, width
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.tape.double_double import eliminate
 

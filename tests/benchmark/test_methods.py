@@ -9,30 +9,40 @@ import jsonschema
 import numpy as np
 import pytest
 from benchmark.schema import SCHEMA
-from references import MECHANISMS, RCSR, exact
+from references import FILE_OF, RCSR, exact
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark import runs, scenes
-from mechkin_cli.benchmark.chain import Body
-from mechkin_cli.benchmark.figure import CURVES, Panel, svg
-from mechkin_cli.benchmark.measurement import Measurement, Skipped, errors_of
-from mechkin_cli.benchmark.methods import FAMILIES, methods_of
-from mechkin_cli.benchmark.methods.kernel import ANALYZED
-from mechkin_cli.benchmark.outputs import NAMES, record, write
-from mechkin_cli.benchmark.page import best_table, summary
-from mechkin_cli.benchmark.report import Table
-from mechkin_cli.benchmark.responses.pendulum import exact_motion
-from mechkin_cli.benchmark.runs import Rounds, bench
-from mechkin_cli.benchmark.scene import Scene
-from mechkin_cli.benchmark.tables import bench_table, csv_text, markdown
-from mechkin_cli.benchmark.truth import true_values
-from mechkin_cli.benchmark.wide import TEXT, exact_values
+from benchmarks import scenes
+from benchmarks.peers import FAMILIES
+from benchmarks.responses.pendulum import exact_motion
+from mechkin_cli.bench import runs
+from mechkin_cli.bench.chain import Body
+from mechkin_cli.bench.measurement import Bench, Measurement, Skipped, errors_of
+from mechkin_cli.bench.methods import ANALYZED
+from mechkin_cli.bench.outputs import (
+    CURVES,
+    NAMES,
+    Panel,
+    best_table,
+    record,
+    summary,
+    svg,
+    write,
+)
+from mechkin_cli.bench.report import Table, bench_table, csv_text, markdown
+from mechkin_cli.bench.runs import Rounds, bench, methods_of
+from mechkin_cli.bench.scene import Scene
+from mechkin_cli.bench.truth import TEXT, exact_values, true_values
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import widths
 
 ONCE = Rounds(1, 1)
 HAND = ("dense", "scipy", "stepping", "Pinocchio")
 """Families whose making takes no compiler."""
+
+
+def chosen(*families: str) -> dict[str, runs.Family]:
+    return {family: FAMILIES[family] for family in families}
 
 
 def short(text: str) -> str:
@@ -51,8 +61,8 @@ def platform() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def measured(rcsr: Scene) -> runs.Bench:
-    return bench(rcsr, ONCE, HAND)
+def measured(rcsr: Scene) -> Bench:
+    return bench(rcsr, ONCE, chosen(*HAND))
 
 
 def errors(scene: Scene, values: dict, true: dict) -> dict:
@@ -91,7 +101,7 @@ def test_double_double_and_the_closure_of_another_formula_agree(name: str) -> No
     assert worst["position"] > 0.0
 
 
-def test_reactions_have_errors_too(measured: runs.Bench) -> None:
+def test_reactions_have_errors_too(measured: Bench) -> None:
     everything = [m for m in measured.measurements if m.level == "everything"]
     assert {m.family for m in everything} == {"mechkin", "dense"}
     assert all(0.0 < m.loads < 1e-12 for m in everything)
@@ -121,17 +131,17 @@ def test_the_exact_closure_holds_for_every_kind_of_loop(name: str) -> None:
 
 
 def test_a_train_of_loops_with_redundant_constraints_is_measured() -> None:
-    from mechkin_cli.benchmark import train
+    from benchmarks import train
 
     motion = "{from: 0 deg, to: 40 deg, step: 10 deg}"
     scene = Scene("train", mk.loads(train.text(3, motion)))
-    found = bench(scene, ONCE, ("CasADi",) if "casadi" in sys.modules else ())
+    found = bench(scene, ONCE, chosen(*(("CasADi",) if "casadi" in sys.modules else ())))
     assert all(s.family == "CasADi" and "redundant" in s.reason for s in found.skipped)
     exact_enough = [m for m in found.measurements if m.curve == ANALYZED and m.level == "motion"]
     assert max(m.acceleration for m in exact_enough) < 1e-12
 
 
-def points(found: runs.Bench, curve: str) -> list[Measurement]:
+def points(found: Bench, curve: str) -> list[Measurement]:
     return [m for m in found.measurements if m.curve == curve]
 
 
@@ -147,7 +157,7 @@ def points(found: runs.Bench, curve: str) -> list[Measurement]:
         ("Euler's method", 1e-1),
     ],
 )
-def test_a_curve_is_a_trade_off(measured: runs.Bench, curve: str, last: float) -> None:
+def test_a_curve_is_a_trade_off(measured: Bench, curve: str, last: float) -> None:
     found = points(measured, curve)
     if not found and curve.endswith("Jacobians"):
         pytest.skip("Pinocchio is not installed")
@@ -156,21 +166,21 @@ def test_a_curve_is_a_trade_off(measured: runs.Bench, curve: str, last: float) -
     assert found[-1].position < found[0].position
 
 
-def test_differences_are_best_at_a_middle_step(measured: runs.Bench) -> None:
+def test_differences_are_best_at_a_middle_step(measured: Bench) -> None:
     found = points(measured, "fsolve, differences")
     best = min(m.acceleration for m in found)
     assert found[0].acceleration > best < found[-1].acceleration
     assert found[1].velocity < 0.02 * found[0].velocity
 
 
-def test_every_measurement_has_a_time_and_a_ratio(measured: runs.Bench) -> None:
+def test_every_measurement_has_a_time_and_a_ratio(measured: Bench) -> None:
     for m in measured.measurements:
         assert m.microseconds > 0.0, m
         assert 0.0 < m.least <= m.microseconds
         assert m.ratio > 0.0
 
 
-def test_levels_find_what_they_say(measured: runs.Bench) -> None:
+def test_levels_find_what_they_say(measured: Bench) -> None:
     for m in (m for m in measured.measurements if m.family != "dense"):
         assert m.position is not None
         assert (m.acceleration is not None) == (m.level != "position")
@@ -198,21 +208,22 @@ def test_a_library_that_is_missing_is_named(rcsr: Scene, monkeypatch: pytest.Mon
         ("Pinocchio", "pinocchio"),
         ("MuJoCo", "mujoco"),
     ):
-        (found,) = methods_of(rcsr, family)
+        (found,) = methods_of(rcsr, family, FAMILIES[family])
         assert isinstance(found, Skipped)
-        assert f"{library} is not installed (pip install 'mechkin[bench]')" in found.reason
+        how = "'mechkin[bench]'" if family == "scipy" else "-r benchmarks/requirements.txt"
+        assert f"{library} is not installed (pip install {how})" in found.reason
 
 
 def test_a_mechanism_that_a_method_cannot_take_is_named(platform: Scene) -> None:
     pytest.importorskip("mujoco")
-    (found,) = methods_of(platform, "MuJoCo")
+    (found,) = methods_of(platform, "MuJoCo", FAMILIES["MuJoCo"])
     assert isinstance(found, Skipped)
     assert "joints S in the tree" in found.reason
 
 
 @pytest.mark.parametrize("family", ["CasADi", "MuJoCo", "Pinocchio"])
 def test_peers_that_are_here_are_sound(rcsr: Scene, family: str) -> None:
-    found = bench(rcsr, ONCE, (family,))
+    found = bench(rcsr, ONCE, chosen(family))
     if found.skipped:
         pytest.skip(found.skipped[0].reason)
     own = [m for m in found.measurements if m.family == family]
@@ -223,7 +234,7 @@ def test_peers_that_are_here_are_sound(rcsr: Scene, family: str) -> None:
 
 def test_a_file_that_cannot_be_measured_says_why() -> None:
     with pytest.raises(UsageError, match="has no sweep to measure"):
-        Scene("response", mk.load(MECHANISMS / "rcsr_response.yaml"))
+        Scene("response", mk.load(FILE_OF["rcsr_response"]))
     pendulum = (
         "format: 1\nname: crank\nlinks: {bar: {}}\njoints:\n"
         "  A: {type: R, links: [ground, bar], point: [0, 0, 0], axis: [0, 0, 1]}\n"
@@ -233,7 +244,7 @@ def test_a_file_that_cannot_be_measured_says_why() -> None:
         Scene("crank", mk.loads(pendulum))
 
 
-def test_the_record_has_its_schema(measured: runs.Bench, tmp_path) -> None:
+def test_the_record_has_its_schema(measured: Bench, tmp_path) -> None:
     paths = write(
         tmp_path, {"processor": "this"}, [measured], [bench_table(measured)], "mechkin bench"
     )
@@ -247,7 +258,7 @@ def test_the_record_has_its_schema(measured: runs.Bench, tmp_path) -> None:
     assert record({}, [], [])["mechanisms"] == []
 
 
-def test_csv_has_a_line_for_each_measurement(measured: runs.Bench) -> None:
+def test_csv_has_a_line_for_each_measurement(measured: Bench) -> None:
     lines = csv_text([measured]).splitlines()
     assert lines[0].startswith("scene,family,curve,setting,level,rows,microseconds")
     assert len(lines) == 1 + len(measured.measurements)
@@ -295,7 +306,7 @@ def test_points_lie_as_their_numbers_do() -> None:
     assert y1 > y0  # less time further down
 
 
-def test_the_best_of_the_others_is_as_exact(measured: runs.Bench) -> None:
+def test_the_best_of_the_others_is_as_exact(measured: Bench) -> None:
     rows = best_table([measured]).rows
     assert [row["level"] for row in rows] == ["position", "motion"]
     assert rows[0]["peer"] != "none"
@@ -314,7 +325,7 @@ def test_the_page_sums_up_what_its_table_says() -> None:
 
 
 def test_tables_become_markdown() -> None:
-    from mechkin_cli.benchmark.report import Column
+    from mechkin_cli.bench.report import Column
 
     columns = (Column("a", "posi-\ntion"), Column("t", "+-\n%", "time"))
     text = markdown(Table("t", "title", columns, [{"a": "x|y", "t": 1.5}], ("note",)))
@@ -322,7 +333,7 @@ def test_tables_become_markdown() -> None:
 
 
 def test_the_pendulum_beside_which_responses_are_held_is_mechkins() -> None:
-    from mechkin_cli.benchmark.responses.pendulum import TEXT
+    from benchmarks.responses.pendulum import TEXT
 
     found = mk.loads(TEXT.format(tolerance="1e-12")).respond("run")
     for name, wanted in zip(("A.theta", "B.theta"), exact_motion(), strict=True):
@@ -332,7 +343,7 @@ def test_the_pendulum_beside_which_responses_are_held_is_mechkins() -> None:
 def test_known_mechanisms_are_those_that_are_kept() -> None:
     """The package's copies differ from the kept files in their rows and tables alone."""
     for name, file in (("RSSR", "rssr"), ("RCSR-CSR", "rcsr_csr"), ("RCHCH", "rchch")):
-        ours, kept = mk.loads(scenes.texts()[name]()), mk.load(MECHANISMS / f"{file}.yaml")
+        ours, kept = mk.loads(scenes.texts()[name]()), mk.load(FILE_OF[file])
         assert ours.problem.mechanism == kept.problem.mechanism, name
 
 

@@ -9,13 +9,13 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
-from mechkin_cli.benchmark.page import responses_summary
-from mechkin_cli.benchmark.report import Table
-from mechkin_cli.benchmark.responses import pendulum
-from mechkin_cli.benchmark.responses.cases import RUN, Case, cases
-from mechkin_cli.benchmark.responses.extrapolation import extrapolated
-from mechkin_cli.benchmark.responses.table import OWN, response_table
-from mechkin_cli.benchmark.responses.tree import Tree
+from benchmarks.responses import pendulum
+from benchmarks.responses.cases import RUN, Case, cases
+from benchmarks.responses.extrapolation import extrapolated
+from benchmarks.responses.table import OWN, response_table
+from benchmarks.responses.tree import Tree
+from mechkin_cli.bench.outputs import responses_summary
+from mechkin_cli.bench.report import Table
 
 NAMES = ("double pendulum", "three hinges in space", "RCSR", "stiff spring and damper")
 

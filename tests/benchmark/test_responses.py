@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from benchmark import responses
 
-from mechkin_cli.benchmark.report import Cell, width
+from mechkin_cli.bench.report import Cell, width
 
 
 def ordered(lines: Sequence[Mapping[str, Cell]], key: str) -> list[float]:

@@ -13,7 +13,7 @@ import pytest
 from benchmark.script_problem import Script, scripts
 from benchmark.script_table import FOLDER, LIBRARIES, script_table
 
-from mechkin_cli.cli.analyze import analyze_files
+from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
 SAME = 1e-11
 """Both stop at rounding, which accelerations a quarter of a degree apart keep but for a few
@@ -37,7 +37,8 @@ def test_a_script_finds_the_same_table(name: str, library: str, tmp_path: Path) 
         pytest.skip(f"{library} is not installed")
     script = scripts()[name]()
     (tmp_path / "m.yaml").write_text(script.text, encoding="utf-8")
-    assert analyze_files([tmp_path / "m.yaml"], tmp_path, ["csv"], quiet=True) == 0
+    command = AnalyzeCommand([tmp_path / "m.yaml"], tmp_path, ["csv"], quiet=True)
+    assert analyze_files(command) == 0
     assert difference(library, script, tmp_path) < SAME
     # another mechanism is seen
     if script.problem["lengths"]:

@@ -14,7 +14,7 @@ from oracle import document, mp, newton_euler, read, solve
 from properties.expected import expected
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark import sevenr
+from benchmarks import sevenr
 
 SEVENR = sevenr_specimen()
 THETA1 = [0.75, 4.5]

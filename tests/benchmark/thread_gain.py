@@ -15,12 +15,14 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, sweep_rows
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.session.kernel_run import run
+from mechkin_cli.plan.outputs import Readout
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 
 
 def timed(planned: PlannedRun, inputs: Any, guess: Any, threads: int, repeats: int = 1) -> float:
@@ -30,12 +32,8 @@ def timed(planned: PlannedRun, inputs: Any, guess: Any, threads: int, repeats: i
     for _ in range(repeats):
         run(
             planned.plan,
-            inputs,
-            guess,
-            rates=rates,
-            accelerations=accelerations,
-            demand=planned.demand,
-            outputs=planned.outputs.outputs,
+            RowInputs(inputs, guess, rates, accelerations),
+            Ask(planned.demand, Readout(planned.outputs.outputs, planned.outputs.slots, ())),
             threads=threads,
         )
     return (perf_counter() - before) / repeats

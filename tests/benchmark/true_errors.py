@@ -44,10 +44,10 @@ def costs(text: str, name: str, run: str) -> tuple[float, float, float]:
 
 def scenes() -> list[tuple[str, str, str]]:
     """(name, text, run)."""
-    rcsr = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    rcsr = (MECHANISMS / "dissertation" / "rcsr.yaml").read_text(encoding="utf-8")
     dense = rcsr.replace("step: 2, rate", "step: 0.1, rate")
     assert dense != rcsr
-    response = (MECHANISMS / "rcsr_response.yaml").read_text(encoding="utf-8")
+    response = (MECHANISMS / "dissertation" / "rcsr_response.yaml").read_text(encoding="utf-8")
     return [
         ("rcsr", rcsr, "sweep"),
         ("rcsr, fine", dense, "sweep"),
@@ -58,7 +58,7 @@ def scenes() -> list[tuple[str, str, str]]:
 def main() -> int:
     print(f"{'':16}{'run':>10}{'text':>10}{'errors':>10}{'errors/run':>12}")
     for name, text, run in scenes():
-        once, read, errors = costs(text, str(MECHANISMS / name), run)
+        once, read, errors = costs(text, str(MECHANISMS / "dissertation" / name), run)
         print(f"{name:16}{once:10.4f}{read:10.4f}{errors:10.4f}{errors / once:12.1f}")
     return 0
 

@@ -43,7 +43,7 @@ parameters: {x2: 0.8 in, y2: 1.9 in, z2: 0.5 in, x3: 2.3 in, y3: 3 in, z3: 1.2 i
 
 def text_of(stem: str) -> str:
     """A mechanism with 361 rows, and with parameters."""
-    text = (MECHANISMS / f"{stem}.yaml").read_text(encoding="utf-8")
+    text = (next(MECHANISMS.glob(f"*/{stem}.yaml"))).read_text(encoding="utf-8")
     for spacing in ("to: 202, step: 2", "to: 60, step: 5", "to: 55, step: 5"):
         text = text.replace(spacing, spacing.partition(" step")[0] + f" count: {ROWS}")
     if stem == "rcsr":

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 import yaml
 from building.denavit_hartenberg import Row, frames, rows_of
-from references import RCSR
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.model.analysis import Analysis
 
-MECHANISMS = RCSR.parent
-BENNETT = (MECHANISMS / "bennett.yaml").read_text()
-SEVEN = yaml.safe_load((MECHANISMS / "sevenr.yaml").read_text())
+BENNETT = FILE_OF["bennett"].read_text()
+SEVEN = yaml.safe_load(FILE_OF["sevenr"].read_text())
 BENNETT_CHAIN = """\
 chain:
   - {joint: A, type: R, link: one, alpha: alpha, a: a}
@@ -56,7 +55,7 @@ with mp.workdps(40):
 def test_a_loop_of_seven_revolutes_moves_as_the_file_with_joints() -> None:
     law = "J1.theta: {values: [0, 0.2, 0.7], rate: 0.5, acceleration: 0.2}"
     found = mk.loads(chain_file(ROWS, "R" * 7, law)).analyze()
-    original = (MECHANISMS / "sevenr.yaml").read_text()
+    original = FILE_OF["sevenr"].read_text()
     swept = re.compile(r"J1.theta: {.*}")
     expected = mk.loads(swept.sub(law, original).replace("angle: deg", "angle: rad")).analyze()
     for i in range(1, 8):

@@ -10,13 +10,13 @@ import pytest
 import yaml
 from building.named_places import with_named_places
 from building.sound import SOUND
-from references import MECHANISMS
+from references import FILE_OF, MECHANISMS
 
 import mechkin_cli as mk
 from mechkin_cli import templates
 
 LOADED = SOUND.replace("columns: [O.theta]", "columns: [D.s, O.effort, p.position.y]")
-KEPT = sorted([*MECHANISMS.glob("*.yaml"), *Path(templates.__file__).parent.glob("*.yaml")])
+KEPT = sorted([*FILE_OF.values(), *Path(templates.__file__).parent.glob("*.yaml")])
 Data = dict[str, Any]
 
 

@@ -14,8 +14,8 @@ from mechkin_cli.mechanism.response import (
     ResponseProblem,
     StartValue,
     TurnsEnd,
-    response_problem,
 )
+from mechkin_cli.mechanism.runs import response_problem
 from mechkin_cli.tape.tape import evaluate
 
 LINKS = """\
@@ -242,7 +242,7 @@ def test_a_start_of_too_few_coordinates_says_which_are_free(start: str, words: s
 
 
 def test_a_start_of_too_many_coordinates_names_one_that_follows() -> None:
-    rcsr = Path("mechanisms/rcsr.yaml").read_text()
+    rcsr = Path("mechanisms/dissertation/rcsr.yaml").read_text()
     more = (
         "responses: {go: {start: {O1.theta: 150, O4.theta: 37}, time: {from: 0, to: 1, step: 1}}}\n"
     )

@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 import yaml
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 
-FILES = ["rcsr.yaml", "bennett.yaml", "rchch.yaml"]
+FILES = ["rcsr", "bennett", "rchch"]
 Data = dict[str, Any]
 
 
 def read(name: str) -> Data:
-    data: Data = yaml.load((MECHANISMS / name).read_text(encoding="utf-8"), yaml.BaseLoader)
+    data: Data = yaml.load(FILE_OF[name].read_text(encoding="utf-8"), yaml.BaseLoader)
     for table in data.get("tables", ()):
         table.pop("published", None)
     return data

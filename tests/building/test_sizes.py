@@ -2,16 +2,15 @@
 
 import time
 import tracemalloc
-from pathlib import Path
 
 import pytest
 from building.sound import SOUND
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.tolerances import MOST_EQUATIONS, MOST_NUMBERS
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 SECONDS = 5.0
 """Far above what each takes, far below what an exponential search or a quadratic one would."""
 
@@ -194,7 +193,7 @@ def test_long_names_are_compared_in_their_beginning_only() -> None:
 @pytest.mark.parametrize("size", ["1e-101", "1e-160", "1e-300", "1e-320", "-1e-200"])
 def test_a_mechanism_too_small_to_compute_with_is_refused(size: str) -> None:
     parameters = ["P1", "P2", "P3", "P4", "s1", "s4"]
-    path = MECHANISMS / "rcsr.yaml"
+    path = FILE_OF["rcsr"]
     with pytest.raises(mk.InvalidFile, match=r"too small to compute with.*limit 1e-100 m"):
         mk.load(path, dict.fromkeys(parameters, f"{size} m")).analyze()
     with pytest.raises(mk.UsageError, match="is a length below 1e-100 m; write another value"):

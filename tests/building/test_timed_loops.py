@@ -5,14 +5,14 @@ import re
 import mpmath as mp
 import numpy as np
 import pytest
-from references import RCSR
+from references import FILE_OF
 
 import mechkin_cli as mk
 
 TEXT = re.sub(
     r"motion:\n.*?\n(?=loads:)",
     "motion: {time: {from: 0, to: 2, step: 0.1}, inputs: {A.theta: LAW}}\n",
-    (RCSR.parent / "slider_crank.yaml").read_text(),
+    FILE_OF["slider_crank"].read_text(),
     flags=re.DOTALL,
 )
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from subprocess import run
 
 import pytest
+from references import FILE_OF
 
 TRAP = "from pathlib import Path\nPath(r'{mark}').write_text('ran')\nraise SystemExit(3)\n"
 NAMES = ("run", "prep", "mechs", "numpy", "yaml", "typer", "json", "mechkin_cli", "sitecustomize")
@@ -74,7 +75,7 @@ def test_nothing_of_the_current_folder_runs(trapped: Path, file: Path) -> None:
 def test_files_that_cannot_be_measured_are_told(file: Path, tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text("format: 1\nname: x\n", encoding="utf-8")
-    response = Path(__file__).parents[2] / "mechanisms" / "rcsr_response.yaml"
+    response = FILE_OF["rcsr_response"]
     files = [str(path) for path in (response, wrong)]
     done = run([*command(), "bench", *files, "--quick"], capture_output=True, text=True)
     assert done.returncode == 3
@@ -102,3 +103,22 @@ def test_folders_of_code_are_no_option(trapped: Path) -> None:
     done = run([*command(), "bench", "--yardstick", "."], cwd=trapped, capture_output=True)
     assert done.returncode == 2
     assert not (trapped.parent / "mark").exists()
+
+
+def test_without_a_file_templates_are_measured() -> None:
+    done = run([*command(), "bench", "--quick", "--json"], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    record = json.loads(done.stdout)
+    assert [one["name"] for one in record["mechanisms"]] == ["rssr", "rcsr", "platform"]
+    assert {m["family"] for one in record["mechanisms"] for m in one["measurements"]} == {
+        *("mechkin", "dense", "scipy", "stepping")
+    }
+
+
+def test_no_other_command_loads_its_room() -> None:
+    code = (
+        "import sys, mechkin_cli.cli.app, mechkin_cli.model.model; "
+        "print([m for m in sys.modules if m.startswith('mechkin_cli.bench')])"
+    )
+    done = run([sys.executable, "-P", "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from cli import files
 
-FOUR_BAR = Path(__file__).parents[2] / "mechanisms" / "planar_four_bar.yaml"
+FOUR_BAR = Path(__file__).parents[2] / "mechanisms" / "plane" / "planar_four_bar.yaml"
 RESPONSE = "responses: {swing: {start: {O.theta: 0}, time: {from: 0, to: 1, step: 0.5}}}\n"
 
 

@@ -70,7 +70,7 @@ def test_the_rcsr_tables_are_the_ones_kept(mechkin) -> None:
 
 def test_an_internal_error_asks_for_a_report(mechkin, monkeypatch) -> None:
     monkeypatch.delenv("MECHKIN_DEBUG", raising=False)
-    monkeypatch.setattr("mechkin_cli.model.model.load", lambda *_: 1 / 0)
+    monkeypatch.setattr("mechkin_cli.model.load", lambda *_: 1 / 0)
     run = mechkin("analyze", "crank.yaml")
     assert run.code == 70
     assert run.err.startswith("mechkin: internal error, ZeroDivisionError")
@@ -81,7 +81,7 @@ def test_an_interrupt_ends_with_130(mechkin, monkeypatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("mechkin_cli.model.model.load", interrupted)
+    monkeypatch.setattr("mechkin_cli.model.load", interrupted)
     run = mechkin("analyze", "crank.yaml")
     assert (run.code, run.out) == (130, "")
     assert "interrupted" in run.err

@@ -59,7 +59,7 @@ def interrupted(module: str, folder: Path, *arguments: str) -> subprocess.Comple
         ("typer", ["check", "crank.yaml"]),
         ("typer", ["--help"]),
         ("mechkin_cli.schema.json_schema", ["schema"]),
-        ("mechkin_cli.analysis.modes", ["modes", "crank.yaml"]),
+        ("mechkin_cli.modes.modes", ["modes", "crank.yaml"]),
         ("mechkin_cli.schema.loads", ["mobility", "crank.yaml"]),
     ],
 )

@@ -10,11 +10,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from references import RCSR
+from references import FILE_OF, RCSR
 
 from mechkin_cli.kernel.functions import INSTRUCTIONS, check_width, force_width, width, widths
 
-MECHANISMS = RCSR.parent
 FILES = ("rcsr", "bennett", "rcsr_csr", "stewart")
 """A loop, an overconstrained loop, two loops, and a platform on legs."""
 
@@ -27,7 +26,7 @@ MACHINES = {
 @cache
 def written(lanes: int, machine: str | None = None) -> dict[str, bytes]:
     """Every file that a process of its own writes for all mechanisms, by path."""
-    files = [str(MECHANISMS / f"{name}.yaml") for name in FILES]
+    files = [str(FILE_OF[name]) for name in FILES]
     formats = ["--format", "csv", "--format", "md", "--format", "json"]
     with TemporaryDirectory() as folder:
         options = ["--out", folder, "--lanes", str(lanes), "--quiet", *formats]

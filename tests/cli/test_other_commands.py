@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 import yaml
 from cli import files
-from references import MECHANISMS, RCSR
+from references import FILE_OF, MECHANISMS, RCSR
 
 COMMANDS = ("analyze", "check", "tables", "schema", "bench")
 
@@ -49,11 +49,12 @@ def test_check_json(mechkin, write) -> None:
 @pytest.fixture
 def committed(folder: Path) -> Path:
     """A copy of the RCSR tables beside their file, in `mechanisms/`, with the overview of it."""
-    shutil.copytree(MECHANISMS / "rcsr", folder / "mechanisms/rcsr")
+    shutil.copytree(RCSR.with_suffix(""), folder / "mechanisms/rcsr")
     shutil.copy(RCSR, folder / "mechanisms")
     page = (MECHANISMS / "README.md").read_text(encoding="utf-8").splitlines(keepends=True)
-    kept = [line for line in page if ".yaml)" not in line or "(rcsr.yaml)" in line]
-    (folder / "mechanisms/README.md").write_text("".join(kept), encoding="utf-8")
+    kept = [line for line in page if ".yaml)" not in line or "/rcsr.yaml)" in line]
+    text = "".join(kept).replace("dissertation/", "")
+    (folder / "mechanisms/README.md").write_text(text, encoding="utf-8")
     return folder / "mechanisms/rcsr"
 
 
@@ -82,6 +83,28 @@ def test_tables_keeps_an_overview(mechkin, committed, folder) -> None:
     run = mechkin("tables", "--check")
     assert run.code == 1
     assert "README.md: different" in run.out
+
+
+def test_a_folder_of_folders_has_one_overview(mechkin, write, folder) -> None:
+    """Where it has no file of its own; what lies deeper is left alone."""
+    for name in ("b/one", "a/two"):
+        (folder / "kept" / name).parent.mkdir(parents=True)
+        write(f"kept/{name}.yaml", files.CRANK + files.TABLES)
+    (folder / "kept/a/studies").mkdir()
+    write("kept/a/studies/study.yaml", "study: 1\n")
+    run = mechkin("tables", "kept")
+    said = [line.partition(": ")[0] for line in run.err.splitlines() if "written" in line]
+    assert (run.code, said) == (0, ["kept/b/one", "kept/a/two"])
+    rows = (folder / "kept/README.md").read_text(encoding="utf-8").splitlines()[-2:]
+    for row, name in zip(rows, ("b/one", "a/two"), strict=True):
+        assert f"({name}/picture.svg)" in row
+        assert f"({name}.yaml)" in row
+    assert not list((folder / "kept").glob("*/README.md"))
+    assert mechkin("tables", "kept", "--check").code == 0
+    write("kept/own.yaml", files.CRANK + files.TABLES)
+    assert [one["file"] for one in mechkin("tables", "kept", "--json").json["files"]] == [
+        "kept/own.yaml"
+    ]
 
 
 def test_tables_leaves_another_readme_alone(mechkin, committed, folder) -> None:
@@ -337,10 +360,10 @@ def test_a_place_that_is_no_input_is_a_usage_error(mechkin) -> None:
 
 
 def test_mobility(mechkin) -> None:
-    run = mechkin("mobility", RCSR.with_name("bennett.yaml"))
+    run = mechkin("mobility", FILE_OF["bennett"])
     assert run.code == 0
     assert run.out.startswith("Bennett: one freedom; Kutzbach's count is -2")
-    record = mechkin("mobility", RCSR.with_name("bennett.yaml"), "--json").json
+    record = mechkin("mobility", FILE_OF["bennett"], "--json").json
     assert (record["count"], record["mobility"], record["redundant"][0]["number"]) == (-2, 1, 3)
 
 

@@ -24,9 +24,11 @@ WORDS = [
 
 
 def by_typer(words: list[str], monkeypatch: pytest.MonkeyPatch) -> dict[str, Any] | None:
-    """The arguments of `analyze_files`; None where typer refuses or only helps."""
+    """The fields of `AnalyzeCommand`; None where typer refuses or only helps."""
     seen: list[dict[str, Any]] = []
-    monkeypatch.setattr(analyze_command, "analyze_files", lambda **given: seen.append(given))
+    monkeypatch.setattr(
+        analyze_command, "analyze_files", lambda command: seen.append(command._asdict())
+    )
     try:
         app(words, standalone_mode=False)
     except Exception:

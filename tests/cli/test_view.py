@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 from cli.conftest import Mechkin
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.cli.messages import ExitCode
 
-BEYOND = MECHANISMS / "rcsr.yaml"
+BEYOND = FILE_OF["rcsr"]
 
 
 def shown(page: Path) -> dict:
@@ -57,7 +57,7 @@ def test_options_choose_what_is_shown(mechkin: Mechkin, folder: Path) -> None:
 
 
 def test_one_run_of_several(mechkin: Mechkin, folder: Path) -> None:
-    response = MECHANISMS / "rcsr_response.yaml"
+    response = FILE_OF["rcsr_response"]
     name = mk.load(response).runs[-1]
     assert mechkin("view", response, "-o", "r.html", "--run", name).code == ExitCode.OK
     assert [one["name"] for one in shown(folder / "r.html")["runs"]] == [name]

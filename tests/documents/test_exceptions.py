@@ -17,7 +17,7 @@ PAGE = page("docs/exceptions.md")
 def every_exception() -> set[str]:
     """The names of all classes of the package that derive from the common one."""
     for module in pkgutil.walk_packages(mk.__path__, "mechkin_cli."):
-        if module.name.split(".")[1] not in ("benchmark", "__main__", "cli"):
+        if module.name.split(".")[1] not in ("bench", "__main__", "cli"):
             importlib.import_module(module.name)
     found, seen = [mk.MechkinError], set()
     while found:

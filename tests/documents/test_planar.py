@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from documents.reading import blocks, page
 
-from mechkin_cli.cli.analyze import analyze_files
+from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 
 
 def test_what_the_example_prints(
@@ -14,5 +14,5 @@ def test_what_the_example_prints(
     (text,), (table,) = (blocks(page("docs/planar.md"), language) for language in ("yaml", "text"))
     monkeypatch.chdir(tmp_path)
     Path("shaper.yaml").write_text(text, encoding="utf-8")
-    analyze_files([Path("shaper.yaml")], None, [])
+    analyze_files(AnalyzeCommand([Path("shaper.yaml")], None, []))
     assert capsys.readouterr().out == f"{table}\n"

@@ -17,7 +17,9 @@ def test_the_suspension_of_the_page() -> None:
     own = "".join(
         f"  {name}: {text}\n" for name, text in yaml.safe_load(block)["quantities"].items()
     )
-    text = (ROOT / "mechanisms" / "five_link_suspension.yaml").read_text(encoding="utf-8")
+    text = (ROOT / "mechanisms" / "classics" / "five_link_suspension.yaml").read_text(
+        encoding="utf-8"
+    )
     head, tail = text.split("quantities:\n")
     rest = tail.partition("motion:")[2]
     others = "  travel: wheel.position.z - 310 mm\n  toe: atan2(spindle.x, spindle.y)\n"

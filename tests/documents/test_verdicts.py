@@ -8,7 +8,7 @@ from documents.reading import blocks, page
 from references import RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.cli.analyze import analyze_files
+from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
 from mechkin_cli.tolerances import CONDITION_NEAR_SINGULAR
 from mechkin_cli.verdict import Proof
 
@@ -38,6 +38,8 @@ def test_the_limit_of_the_condition() -> None:
 def test_the_lines_of_the_summary_are_those_of_the_command(
     line: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    analyze_files([RCSR], tmp_path, ["csv"], errors=line == "errors", certify=line == "proof")
+    analyze_files(
+        AnalyzeCommand([RCSR], tmp_path, ["csv"], errors=line == "errors", certify=line == "proof")
+    )
     (said,) = [x for x in capsys.readouterr().err.splitlines() if x.startswith(f"  {line}")]
     assert said + "\n" in blocks(VERDICTS, "text")

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from editors.language_server import Server
+from references import FILE_OF
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 GOOD = ["rcsr", "bennett", "csgc", "double_hooke", "five_link_suspension", "hooke", "sarrus"]
 
 TOP = "format: 1\nlinks: {arm: {}}\njoints:\n"
@@ -72,7 +70,7 @@ BAD = {
 
 @pytest.mark.parametrize("name", GOOD)
 def test_good_files_have_no_faults(editor: Server, name: str) -> None:
-    file = MECHANISMS / f"{name}.yaml"
+    file = FILE_OF[name]
     assert editor.faults(file.read_text(encoding="utf-8"), file) == []
 
 

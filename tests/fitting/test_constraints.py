@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fitting.test_fit import FOUR_BAR, rocker
+from references import FILE_OF
 from scipy.optimize import least_squares, minimize
-from studies.studies import MECHANISMS
 
 import mechkin_cli as mk
 
@@ -111,7 +111,7 @@ def test_the_mode_of_the_file_is_kept() -> None:
 
 
 def test_a_transmission_angle_in_space() -> None:
-    m = mk.load(MECHANISMS / "rssr.yaml")
+    m = mk.load(FILE_OF["rssr"])
     angle = "O4.theta.transmission_angle"
     target = {"of": "O4.theta", "at": [70, 90, 110, 130, 150], "is": [0, 10, 20, 30, 40]}
     bounds = {"r": (20, 80), "x": (100, 250), "d": (100, 220)}

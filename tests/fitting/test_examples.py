@@ -15,12 +15,13 @@ from fitting.closed_forms import (
     spring_length,
     straight_line,
 )
+from references import FILE_OF
 from scipy.optimize import minimize
 from studies.studies import MECHANISMS
 
 import mechkin_cli as mk
 
-FITS = MECHANISMS / "fits"
+FITS = MECHANISMS / "plane" / "fits"
 NINE = np.array([[x, 0.0] for x in range(-80, 81, 20)])
 
 
@@ -71,7 +72,7 @@ def test_the_straightest_half_turn_is_the_published_one() -> None:
 
 
 def test_a_function_of_an_rssr() -> None:
-    m = mk.load(MECHANISMS / "rssr.yaml")
+    m = mk.load(FILE_OF["rssr"])
     own = m.analyze(["O4.theta"])["O4.theta"]
     assert np.abs(own - rssr(np.radians(np.arange(0, 361, 10)), 40, 140, 160)).max() < 1e-10
     at, wanted = [70, 90, 110, 130, 150], [0, 10, 20, 30, 40]

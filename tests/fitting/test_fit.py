@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studies.studies import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 
 STARTS = 20 if int(os.environ.get("MECHKIN_RANDOM", "1")) > 1 else 2
 """Seeds of the nine points; MECHKIN_RANDOM=2 takes twenty."""
 
-FOUR_BAR = mk.load(MECHANISMS / "planar_four_bar.yaml")
+FOUR_BAR = mk.load(FILE_OF["planar_four_bar"])
 BOUNDS = {"a": (30, 50), "b": (100, 140), "c": (80, 110), "d": (110, 150)}
 KNOWN = {"a": 35.0, "b": 118.0, "c": 95.0, "d": 128.0}
 

@@ -5,7 +5,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from studies.studies import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.fit.measure import FitModels, FitValues
@@ -13,7 +13,7 @@ from mechkin_cli.fit.request import request
 from mechkin_cli.fit.search import Measured
 from mechkin_cli.fit.slopes import FitSlopes
 
-FOUR_BAR = mk.load(MECHANISMS / "planar_four_bar.yaml")
+FOUR_BAR = mk.load(FILE_OF["planar_four_bar"])
 BOUNDS = {"a": (30, 50), "b": (100, 140), "c": (80, 110), "d": (110, 150)}
 AT = {"a": 37.0, "b": 117.0, "c": 94.0, "d": 129.0}
 LOWER = np.array([low for low, _ in BOUNDS.values()], dtype=float)
@@ -142,7 +142,7 @@ def test_slopes_of_peaks_means_and_margins() -> None:
 
 @pytest.mark.parametrize("beside", [0.0, 1e-3])
 def test_what_has_no_sensitivity_is_told_and_taken_from_differences(beside: float) -> None:
-    file = mk.load(MECHANISMS / "planar_four_bar.yaml")
+    file = mk.load(FILE_OF["planar_four_bar"])
     wanted = file.analyze()["C.theta"][[4, 8]]
     # at the own values abs() has its kink in the row
     target = {"of": f"abs(C.theta - {float(wanted[0]) + beside!r} deg)", "at": [60, 120]}

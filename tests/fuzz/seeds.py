@@ -9,7 +9,7 @@ from building.bad_parts import BAD_PARTS
 from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from reading.bad_files import BAD_FILES
-from references import MECHANISMS
+from references import FILE_OF, MECHANISMS
 
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.schema.json_schema import json_schema_text
@@ -21,9 +21,7 @@ LONGEST = 20_000
 
 
 def seeds() -> list[bytes]:
-    files = [
-        path.read_bytes() for path in sorted([*MECHANISMS.glob("*.yaml"), *GOOD.glob("*.yaml")])
-    ]
+    files = [path.read_bytes() for path in sorted([*FILE_OF.values(), *GOOD.glob("*.yaml")])]
     bad = (*BAD_FILES, *BAD_PARTS, *BAD_USES, *BAD_RESPONSES)
     mistakes = [mistake.text.encode() for mistake in bad]
     return [content for content in (*files, *mistakes) if len(content) <= LONGEST]

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from oracle import assemble, mp, newton_euler, read
 
-from mechkin_cli.benchmark.stress.block import drawn
-from mechkin_cli.benchmark.stress.draws import scaled
-from mechkin_cli.benchmark.stress.families.table import FAMILIES
-from mechkin_cli.benchmark.stress.linkages.writing import ACCELERATION, RATE
-from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
+from benchmarks.stress.block import drawn
+from benchmarks.stress.draws import scaled
+from benchmarks.stress.families.table import FAMILIES
+from benchmarks.stress.linkages.writing import ACCELERATION, RATE
+from benchmarks.stress.numbers.double_double import DoubleDouble
 
 AGREED = 1e-22
 """In parts of the largest of its kind: the oracle's own Newton stops at 1e-48, double-double has 31

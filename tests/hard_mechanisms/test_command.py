@@ -10,13 +10,14 @@ import pytest
 from typer.testing import CliRunner
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.stress import page, workers
-from mechkin_cli.benchmark.stress.families.table import FAMILIES
-from mechkin_cli.benchmark.stress.forecast import Forecast
-from mechkin_cli.benchmark.stress.plan import tasks
-from mechkin_cli.benchmark.stress.run import stress
-from mechkin_cli.benchmark.stress.tally import Tally
-from mechkin_cli.cli.app import app
+from benchmarks import ROOT
+from benchmarks.__main__ import app
+from benchmarks.stress import page, workers
+from benchmarks.stress.families.table import FAMILIES
+from benchmarks.stress.forecast import Forecast
+from benchmarks.stress.plan import tasks
+from benchmarks.stress.run import stress
+from benchmarks.stress.tally import Tally
 from mechkin_cli.diagnostics import UsageError
 
 PAGE = Path(__file__).parents[2] / "docs" / "stress.md"
@@ -89,7 +90,7 @@ def test_what_is_left_follows_from_what_is_done() -> None:
 
 
 def test_one_mechanism_is_printed_as_a_file() -> None:
-    one = ("bench", "--stress", "--family", "leads", "--only", "3")
+    one = ("--stress", "--family", "leads", "--only", "3")
     text = CliRunner().invoke(app, one).stdout
     assert text == CliRunner().invoke(app, one).stdout
     assert mk.loads(text).name == "leads"
@@ -97,7 +98,7 @@ def test_one_mechanism_is_printed_as_a_file() -> None:
 
 
 def test_json() -> None:
-    asked = ["bench", "--stress", "--family", "change points", "--rows", "1e2", "--json"]
+    asked = ["--stress", "--family", "change points", "--rows", "1e2", "--json"]
     found = json.loads(CliRunner().invoke(app, asked).stdout)
     assert found["rows"] == 100
     assert found["families"]["change points"]["verdicts"] == {"right": 120}
@@ -113,14 +114,16 @@ def test_json() -> None:
     ],
 )
 def test_what_is_not_understood(asked: list[str], said: str) -> None:
-    result = CliRunner().invoke(app, ["bench", "--stress", *asked])
+    result = CliRunner().invoke(app, ["--stress", *asked])
     assert result.exit_code != 0
     assert said in str(result.exception)
 
 
 def test_a_process_ends_where_its_input_ends() -> None:
     """Also in the middle of a task: nobody waits for it."""
-    process = subprocess.Popen(workers.COMMAND, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        workers.COMMAND, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+    )
     assert process.stdin is not None
     process.stdin.write(json.dumps(["many loops", 1, list(range(1000))]).encode() + b"\n")
     process.stdin.close()
@@ -139,6 +142,6 @@ def test_a_process_ends_where_its_input_ends() -> None:
     ],
 )
 def test_options_that_mean_nothing_together_are_refused(given: list[str], named: str) -> None:
-    run = CliRunner().invoke(app, ["bench", *given])
+    run = CliRunner().invoke(app, given)
     assert isinstance(run.exception, UsageError)
     assert f"{named} out" in str(run.exception) or f"for {named};" in str(run.exception)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mpmath import mp, mpf
 
-from mechkin_cli.benchmark.stress.numbers.double_double import DoubleDouble
+from benchmarks.stress.numbers.double_double import DoubleDouble
 
 ROWS = 100
 RELATIVE, ABSOLUTE = 1e-30, 1e-30

@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mechkin_cli.benchmark.stress.block import drawn, run_block
-from mechkin_cli.benchmark.stress.certify import contradicted
-from mechkin_cli.benchmark.stress.families.table import FAMILIES
-from mechkin_cli.benchmark.stress.judge import Found, Judged, Verdict, judge
-from mechkin_cli.benchmark.stress.numbers.double_double import DEGREE
-from mechkin_cli.benchmark.stress.quantity import Truth
-from mechkin_cli.benchmark.stress.solve import solve
-from mechkin_cli.benchmark.stress.tally import Tally, of_record
+from benchmarks.stress.block import drawn, run_block
+from benchmarks.stress.certify import contradicted
+from benchmarks.stress.families.table import FAMILIES
+from benchmarks.stress.judge import Found, Judged, judge
+from benchmarks.stress.numbers.double_double import DEGREE
+from benchmarks.stress.quantity import Truth
+from benchmarks.stress.solve import solve
+from benchmarks.stress.tally import Tally, of_record
+from mechkin_cli.bench.stress import Verdict
 from mechkin_cli.verdict import Proof, Status
 
 ROW = 7

@@ -8,7 +8,7 @@ from math import acos, atan2, cos, degrees, hypot, radians, sin
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark.stress.block import run_block
+from benchmarks.stress.block import run_block
 
 FOUR_BAR = """\
 format: 1

@@ -2,14 +2,12 @@
 
 import copy
 import pickle
-from pathlib import Path
 
 import numpy as np
 import pytest
+from references import FILE_OF
 
 import mechkin_cli as mk
-
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 
 
 def pickled(model: mk.Model) -> mk.Model:
@@ -22,7 +20,7 @@ def pickled(model: mk.Model) -> mk.Model:
     "again", [lambda m: pickle.loads(pickle.dumps(m)), copy.deepcopy, copy.copy]
 )
 def test_a_copy_gives_the_same_bytes(stem, again) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     name = next(iter(model.problem.mechanism.coordinates))
     first = model.analyze([name], tables=[])
     other = again(model).analyze([name], tables=[])
@@ -31,7 +29,7 @@ def test_a_copy_gives_the_same_bytes(stem, again) -> None:
 
 
 def test_a_copy_keeps_parameters() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml", {"s1": "5.05 in"}).with_parameters({"P1": 0.51})
+    model = mk.load(FILE_OF["rcsr"], {"s1": "5.05 in"}).with_parameters({"P1": 0.51})
     other = pickle.loads(pickle.dumps(model))
     parameters = other.problem.parameters
     assert parameters["s1"].value == pytest.approx(5.05 * 0.0254, rel=1e-15)
@@ -56,7 +54,7 @@ PICKLED = [lambda r: pickle.loads(pickle.dumps(r)), copy.deepcopy]
     ],
 )
 def test_a_copy_of_an_analysis_has_the_same_rows(again, stem, asked) -> None:
-    run = mk.load(MECHANISMS / f"{stem}.yaml").analyze(**asked)
+    run = mk.load(FILE_OF[stem]).analyze(**asked)
     other = again(run)
     for name in (*run.model.problem.mechanism.coordinates, "row.condition"):
         assert run[name].tobytes() == other[name].tobytes()
@@ -72,7 +70,7 @@ def test_a_copy_of_an_analysis_has_the_same_rows(again, stem, asked) -> None:
 
 @pytest.mark.parametrize("again", PICKLED)
 def test_a_copy_of_a_response_keeps_parameters(again) -> None:
-    model = mk.load(MECHANISMS / "rcsr_response.yaml").with_parameters({"P1": 0.49})
+    model = mk.load(FILE_OF["rcsr_response"]).with_parameters({"P1": 0.49})
     run = model.respond()
     assert (run["O4.theta"] != mk.load(model.built.read.document.file).respond()["O4.theta"]).any()
     other = again(run)
@@ -82,7 +80,7 @@ def test_a_copy_of_a_response_keeps_parameters(again) -> None:
 
 @pytest.mark.parametrize("again", PICKLED)
 def test_answers_are_copied(again) -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     run = model.analyze()
     assert np.array_equal(again(run.errors)["theta4"], run.errors["theta4"])
     for answer in (run.tables, model.solve(161.0), model.modes(certify=True), model.ranges()):

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.tape.double_double import exactly
@@ -119,7 +119,7 @@ def test_inertia_of_no_real_body_is_repeated():
 
 
 def test_dense_systems_are_not_repeated_and_say_so():
-    found = mk.load(MECHANISMS / "rchch.yaml").analyze().errors
+    found = mk.load(FILE_OF["rchch"]).analyze().errors
     assert found.why["table_32.all columns"] == "a dense system"
 
 

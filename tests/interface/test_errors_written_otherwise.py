@@ -24,7 +24,7 @@ from oracle import (
 )
 from oracle.document import Document
 from properties.answers import kind
-from references import MECHANISMS
+from references import FILE_OF
 from responses.test_true_errors import true_values
 
 import mechkin_cli as mk
@@ -50,7 +50,7 @@ SI = {
 
 def written(name: str) -> Document:
     """The file without what it names of other files."""
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     for table in data["tables"]:
         table.pop("published", None)
     return {key: value for key, value in data.items() if key != "follow"}

@@ -174,3 +174,9 @@ def test_help_shows_what_there_is() -> None:
     described = mk.__doc__ or ""
     hidden = {"response", "response_graph", "session_of"}
     assert [name for name in sorted(methods - hidden) if f".{name}(" not in described] == []
+
+
+def test_the_public_names_are_listed() -> None:
+    command = [sys.executable, "-P", "-c", "import mechkin_cli as mk; print(*dir(mk))"]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert set(said.split()) == set(mk.__all__)

@@ -119,7 +119,7 @@ def test_bad_use_says_what_there_is(model: mk.Model) -> None:
     with pytest.raises(mk.UsageError, match=r"there is no quantity A\.thetta"):
         model.respond("spin", ["A.thetta"])
     with pytest.raises(mk.UsageError, match="the file has no responses; add responses:"):
-        mk.load("mechanisms/rcsr.yaml").respond()
+        mk.load("mechanisms/dissertation/rcsr.yaml").respond()
 
 
 def test_the_bytes_do_not_depend_on_lanes_or_threads(model: mk.Model) -> None:
@@ -128,7 +128,7 @@ def test_the_bytes_do_not_depend_on_lanes_or_threads(model: mk.Model) -> None:
 
 
 def test_a_sweep_has_nothing_that_only_responses_have() -> None:
-    sweep = mk.load("mechanisms/rcsr.yaml").analyze(tables=[])
+    sweep = mk.load("mechanisms/dissertation/rcsr.yaml").analyze(tables=[])
     for name in ("row.event", "row.work", "row.dissipated", "row.energy_error"):
         with pytest.raises(mk.ExpressionError, match=f"{name} is told of the rows of a response"):
             sweep[name]

@@ -12,7 +12,8 @@ import pytest
 from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
-from mechkin_cli.tables.writers import Results, written_files
+from mechkin_cli.tables.results import Results
+from mechkin_cli.tables.writers import written_files
 
 WORDS = ("max", "min", "peak", "mean", "rms", "range")
 COUNT = 12 * int(os.environ.get("MECHKIN_RANDOM", "1"))
@@ -129,7 +130,7 @@ def test_random_tables_have_the_summaries_that_numpy_gives_them():
 
 @pytest.fixture(scope="module")
 def analysis() -> mk.Analysis:
-    return mk.load("mechanisms/rcsr.yaml").analyze()
+    return mk.load("mechanisms/dissertation/rcsr.yaml").analyze()
 
 
 def test_peak_is_a_value_and_its_place(analysis):

@@ -19,10 +19,11 @@ from typing import Any
 import numpy as np
 from kernel.hostile import INDICES, NUMBERS, WRONG, Hostile
 from prepared import prepared
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.session.cells import SWITCHES
 from mechkin_cli.session.following import step_limits
 from mechkin_cli.session.inputs import turn_count
@@ -67,8 +68,8 @@ class Sound:
     that an input of the tape scales."""
 
     def __init__(self, name: str) -> None:
-        setup = prepared(mk.load(MECHANISMS / f"{name}.yaml").problem)
-        self.plan = setup.layout.build()
+        setup = prepared(mk.load(FILE_OF[name]).problem)
+        self.plan = build_plan(setup.layout)
         self.inputs = np.ascontiguousarray(setup.inputs.values[:, :5])
         self.state = np.ascontiguousarray(setup.start.state)
 

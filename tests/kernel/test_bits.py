@@ -24,11 +24,12 @@ import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel, functions
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.outputs import OutputPlan
+from mechkin_cli.plan.outputs import OutputPlan, Readout
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.search.search import assemblies
+from mechkin_cli.session.assembled_places import solver_graph
 from mechkin_cli.session.following import follow
-from mechkin_cli.session.kernel_run import Batch, run
-from mechkin_cli.structure.build import build_graph
+from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
 EVERYTHING = MOTION | Demand.FORCES | Demand.CONDITION | Demand.POWER
@@ -63,9 +64,9 @@ class Rows:
 def rcsr(closed_at: str) -> tuple[Any, Rows]:
     """The RCSR mechanism, all its quantities, guesses so unlike that Newton needs 1 to 5 steps."""
     problem = mk.load(RCSR).problem
-    graph = build_graph(problem.mechanism, problem.motion.driven, [closed_at])
+    graph = solver_graph(problem.mechanism, problem.motion.driven, [closed_at])
     layout = Layout(problem.mechanism, graph)
-    plan = layout.build()
+    plan = build_plan(layout)
     outputs = OutputPlan(layout, plan, problem.motion.driven)
     for wanted in problem.quantities().values():
         outputs.add(wanted)
@@ -84,14 +85,8 @@ def rcsr(closed_at: str) -> tuple[Any, Rows]:
 def compute(own: Any, rows: Rows, lanes: int = 0) -> Batch:
     return run(
         own.plan,
-        rows.inputs,
-        rows.guess,
-        rates=rows.rates,
-        accelerations=rows.accelerations,
-        jerks=rows.jerks,
-        demand=EVERYTHING,
-        outputs=own.outputs,
-        derivatives=True,
+        RowInputs(rows.inputs, rows.guess, rows.rates, rows.accelerations, rows.jerks),
+        Ask(EVERYTHING, Readout(own.outputs, own.slots, ()), derivatives=True),
         lanes=lanes,
     )
 
@@ -111,7 +106,10 @@ def test_rows_take_different_numbers_of_steps(closed_at: str) -> None:
     for row in range(ROWS):
         one = rows.take([row])
         tests = (1e-16, 1e-9, 1e-14)
-        closed = [run(own.plan, one.inputs, one.guess, iterations=k, tests=tests) for k in range(7)]
+        closed = [
+            run(own.plan, RowInputs(one.inputs, one.guess), Ask(iterations=k, tests=tests))
+            for k in range(7)
+        ]
         good = [batch.good[0] for batch in closed]
         steps.add(good.index(True))
     assert len(steps) >= 3

@@ -14,10 +14,10 @@ from mechkin_cli.assembly.home import Probe
 from mechkin_cli.assembly.start import choose_start
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.plan.plan import plan_records
+from mechkin_cli.plan.outputs import OutputPlan, Readout
+from mechkin_cli.plan.plan import build_plan, plan_records
 from mechkin_cli.plan.records import flatten, hand_over
-from mechkin_cli.session.kernel_run import Batch, assembly_size, run
+from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, assembly_size, run
 
 EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER
 FILES = SWEPT
@@ -38,7 +38,7 @@ def test_a_plan_numbers_its_constants_as_its_records_are_flattened(path: Any) ->
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_each_number_lands_on_its_own_constant(path: Any) -> None:
     """Numbers that are all different, so that no two can have been exchanged."""
-    plan = layout_of(path).build()
+    plan = build_plan(layout_of(path))
     numbers = 1.0 + np.arange(plan.constants.size)
     other = plan.with_constants(numbers)
     assert other.constants.tolist() == numbers.tolist()
@@ -48,7 +48,7 @@ def test_each_number_lands_on_its_own_constant(path: Any) -> None:
 def case(parameters: dict[str, str]) -> tuple[Any, OutputPlan]:
     model = mk.load(RCSR, parameters)
     layout = Layout(model.problem.mechanism, model.graph)
-    own = OutputPlan(layout, layout.build(), model.problem.motion.driven)
+    own = OutputPlan(layout, build_plan(layout), model.problem.motion.driven)
     for wanted in model.problem.quantities().values():
         own.add(wanted)
     return model, own
@@ -60,14 +60,8 @@ def computed(plan: Any, outputs: Any, rows: int = 9) -> Batch:
     ones = np.ones_like(inputs)
     return run(
         plan,
-        inputs,
-        guess,
-        rates=ones,
-        accelerations=0.5 * ones,
-        jerks=ones,
-        demand=EVERYTHING | Demand.JERK,
-        outputs=outputs,
-        derivatives=True,
+        RowInputs(inputs, guess, ones, 0.5 * ones, ones),
+        Ask(EVERYTHING | Demand.JERK, Readout(outputs, {}, ()), derivatives=True),
     )
 
 
@@ -91,7 +85,7 @@ def test_a_plan_with_other_constants_is_the_plan_built_with_them() -> None:
 
 def test_a_size_given_later_is_the_size_built_with() -> None:
     layout = layout_of(RCSR)
-    later, before = layout.build().with_size(0.7), layout.build(0.7)
+    later, before = build_plan(layout).with_size(0.7), build_plan(layout, 0.7)
     assert later.size == 0.7
     assert later.constants.tolist() == before.constants.tolist()
     own = OutputPlan(layout, later, [])

@@ -23,6 +23,7 @@ import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.plan.codes import Demand, LoadCode, OutputCode
 from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.plan.records import Output, hand_over_outputs
 from mechkin_cli.session.following import step_limits
 
@@ -196,7 +197,9 @@ def test_a_sphere_has_no_coordinate_to_read_or_to_load() -> None:
     spheres = [c for c, k in enumerate(layout.graph.closings) if k.joint.letter == "S"]
     assert spheres
     with pytest.raises(ValueError, match="has no coordinate 0"):
-        hand_over_outputs(layout.build(), [Output(OutputCode.CLOSING, spheres[0], 0, 0, ZERO, 1.0)])
+        hand_over_outputs(
+            build_plan(layout), [Output(OutputCode.CLOSING, spheres[0], 0, 0, ZERO, 1.0)]
+        )
     builder = _kernel.PlanBuilder(1.0, ZERO, 1.0)
     builder.add_tree_joint(_kernel.TreeCode.S, -1, 0.0, FRAME)
     builder.add_place(0, -1, 0, 0, ZERO, 1.0)

@@ -15,8 +15,8 @@ import mechkin_cli as mk
 from mechkin_cli.kernel.functions import width
 from mechkin_cli.mechanism.problem import law_value
 from mechkin_cli.plan.codes import Demand
-from mechkin_cli.plan.plan import kernel_columns
-from mechkin_cli.session.kernel_run import Batch, run as run_kernel
+from mechkin_cli.plan.loads import kernel_columns
+from mechkin_cli.session.kernel_run import Ask, Batch, run as run_kernel
 
 CRANK, ROD, OFFSET = 40.0, 130.0, 15.0
 TEXT = f"""\
@@ -89,16 +89,8 @@ def batch_of(result: Any, lanes: int = 0, threads: int = 1) -> Batch:
     inputs = session.inputs
     return run_kernel(
         session.plan,
-        inputs.reduced,
-        rows.states,
-        rates=inputs.rates,
-        accelerations=inputs.accelerations,
-        turned=rows.turns,
-        whole=inputs.whole,
-        full=inputs.values,
-        time=session.problem.motion.time.values,
-        demand=Demand.FORCES | Demand.VELOCITY,
-        iterations=0,
+        inputs.at(rows.states, rows.turns, session.problem.motion.time.values),
+        Ask(Demand.FORCES | Demand.VELOCITY, iterations=0),
         lanes=lanes,
         threads=threads,
     )

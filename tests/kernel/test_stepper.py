@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from prepared import Setup, prepared
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.kernel._kernel import Node, Stepper
 from mechkin_cli.plan.layout import Layout
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.session.following import step_limits
-
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 
 
 def setup_of(name: str) -> Setup:
-    return prepared(mk.load(MECHANISMS / f"{name}.yaml").problem)
+    return prepared(mk.load(FILE_OF[name]).problem)
 
 
 def straight(name: str) -> tuple[Stepper, Node]:
     setup = setup_of(name)
     inputs = setup.inputs.values[:, setup.start.row]
     stepper = Stepper.straight(
-        setup.layout.build(), inputs.tolist(), [1.0] * inputs.size, step_limits()
+        build_plan(setup.layout), inputs.tolist(), [1.0] * inputs.size, step_limits()
     )
     node = stepper.close(0.0, setup.start.state.tolist())
     assert node is not None
@@ -82,7 +80,7 @@ def test_two_blocks_that_turn_over_together_are_another_branch() -> None:
     problem = mk.loads(text).problem
     setup = prepared(problem)
     inputs = setup.inputs.values[:, 0]
-    stepper = Stepper.straight(setup.layout.build(), inputs.tolist(), [1.0, 1.0], step_limits())
+    stepper = Stepper.straight(build_plan(setup.layout), inputs.tolist(), [1.0, 1.0], step_limits())
     node = stepper.close(0.0, setup.start.state.tolist())
     assert node is not None
     rng = np.random.default_rng(3)
@@ -126,15 +124,15 @@ def four_bars(count: int) -> str:
 def test_a_path_of_changing_dimensions() -> None:
     """RCSR from its own P1 to another one: every place is an assembly of its own mechanism, and
     halving the step leaves an eighth of the prediction's error."""
-    base = mk.load(MECHANISMS / "rcsr.yaml")
+    base = mk.load(FILE_OF["rcsr"])
     setup = prepared(base.problem)
     length = setup.layout.length
 
     def plan(sigma: float):
-        m = mk.load(MECHANISMS / "rcsr.yaml", {"P1": f"{0.5 + 0.2 * sigma!r} in"})
+        m = mk.load(FILE_OF["rcsr"], {"P1": f"{0.5 + 0.2 * sigma!r} in"})
         layout = Layout(m.problem.mechanism, m.graph)
         assert layout.length == length
-        return layout.build()
+        return build_plan(layout)
 
     inputs = setup.inputs.values[:, 0].tolist()
     zeros = [0.0] * len(inputs)
@@ -154,7 +152,7 @@ def test_a_path_of_changing_dimensions() -> None:
         following = stepper.step(node, h)
         assert following is not None
         node, sigma = following, following.sigma
-    other = mk.load(MECHANISMS / "rcsr.yaml", {"P1": "0.7 in"})
+    other = mk.load(FILE_OF["rcsr"], {"P1": "0.7 in"})
     first = other.analyze(["O4.theta"])["O4.theta"][0]
     layout = setup.layout
     k = next(k for k, e in enumerate(layout.graph.edges) if e.joint.name == "O4")
@@ -169,5 +167,5 @@ def test_bad_use_is_refused() -> None:
     with pytest.raises(ValueError, match="another plan"):
         other.predict(node, 0.1)
     with pytest.raises(ValueError, match="direction"):
-        Stepper.straight(setup_of("rcsr").layout.build(), [0.0], [], step_limits())
+        Stepper.straight(build_plan(setup_of("rcsr").layout), [0.0], [], step_limits())
     assert stepper.close(0.0, [np.nan] * node.state.size) is None

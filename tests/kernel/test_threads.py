@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -19,8 +19,9 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel import _kernel, functions as width
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.session.kernel_run import Batch, run
+from mechkin_cli.plan.outputs import OutputPlan, Readout
+from mechkin_cli.plan.plan import build_plan
+from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK
 EVERYTHING = MOTION | Demand.FORCES | Demand.CONDITION | Demand.POWER
@@ -29,9 +30,9 @@ COUNTS = [1, 2, 3, 7, 64]
 
 @cache
 def case(name: str) -> tuple[Any, np.ndarray]:
-    model = mk.load(MECHANISMS / f"{name}.yaml")
+    model = mk.load(FILE_OF[name])
     layout = Layout(model.problem.mechanism, model.graph)
-    own = OutputPlan(layout, layout.build(), model.problem.motion.driven)
+    own = OutputPlan(layout, build_plan(layout), model.problem.motion.driven)
     for wanted in model.problem.quantities().values():
         own.add(wanted)
     return own, np.array([item.values[0] for item in model.problem.motion.inputs])
@@ -46,14 +47,8 @@ def computed(name: str, rows: int, threads: int) -> Batch:
     rates, accelerations, jerks = generator.uniform(-1, 1, (3, first.size, rows))
     return run(
         own.plan,
-        inputs,
-        guess,
-        rates=rates,
-        accelerations=accelerations,
-        jerks=jerks,
-        demand=EVERYTHING,
-        outputs=own.outputs,
-        derivatives=True,
+        RowInputs(inputs, guess, rates, accelerations, jerks),
+        Ask(EVERYTHING, Readout(own.outputs, own.slots, ()), derivatives=True),
         threads=threads,
     )
 

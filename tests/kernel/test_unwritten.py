@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from cli.files import beyond_dead_centre
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.session import following, session
@@ -58,7 +58,7 @@ def printed(byte: int, *paths: Path) -> str:
 def test_answers_do_not_depend_on_what_memory_held(tmp_path: Path) -> None:
     ends = tmp_path / "ends.yaml"
     ends.write_text(beyond_dead_centre())
-    paths = [ends, MECHANISMS / "parallelogram.yaml"]
+    paths = [ends, FILE_OF["parallelogram"]]
     first = printed(0x55, *paths)
     assert first.count("\n") > 100
     assert first == printed(0xAA, *paths)

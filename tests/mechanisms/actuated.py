@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from references import MECHANISMS
+from references import FILE_OF
 
 POSE = ("x", "y", "z", "rz", "ry", "rx")
 LEGS = tuple(f"L{k}.s" for k in range(1, 7))
@@ -89,7 +89,7 @@ motion:
 
 def platform(inputs: str, actuators: str = "") -> str:
     """The Stewart platform with its pose as coordinates, and other inputs."""
-    text = (MECHANISMS / "stewart.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["stewart"].read_text(encoding="utf-8")
     head = text[: text.index("motion:")].replace("angle: deg", "angle: rad")
     pose = "  pose: {type: F, links: [ground, platform], point: [0.02, 0.01, h]}\n\npoints:"
     head = head.replace("points:", pose, 1)

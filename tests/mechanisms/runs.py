@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from oracle import document, to_text
-from references import MECHANISMS, SWEPT
+from references import FILE_OF, SWEPT
 
 import mechkin_cli as mk
 
@@ -27,7 +27,7 @@ _POINTS = ("position", "velocity", "acceleration", "point", "slip", "axis")
 
 @cache
 def model(name: str) -> mk.Model:
-    return mk.load(MECHANISMS / f"{name}.yaml")
+    return mk.load(FILE_OF[name])
 
 
 @cache
@@ -39,7 +39,7 @@ def run(name: str, closed_at: tuple[str, ...] | None = None) -> mk.Analysis:
 
 def edited(name: str, quantities: Iterable[str], **sections: Any) -> mk.Analysis:
     """Quantities of a file with sections replaced, such as `assembly={"near": {...}}`."""
-    data = document(MECHANISMS / f"{name}.yaml") | _as_text(sections)
+    data = document(FILE_OF[name]) | _as_text(sections)
     return mk.loads(to_text(data), name).analyze(quantities, tables=[])
 
 

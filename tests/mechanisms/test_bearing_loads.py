@@ -206,7 +206,7 @@ def test_a_swinging_mass_loads_its_bearing_in_space():
 
 
 def test_variants_have_the_loads_of_single_runs():
-    model = mk.load("mechanisms/rcsr.yaml")
+    model = mk.load("mechanisms/dissertation/rcsr.yaml")
     asked = ["O2.radial_force", "O1.tilting_moment"]
     varied = model.vary({"P1": [0.46, 0.5]}, asked)
     for number, crank in enumerate((0.46, 0.5)):
@@ -235,7 +235,7 @@ def test_a_response_has_them():
 
 
 def test_what_has_none_says_who_has():
-    model = mk.load("mechanisms/rcsr.yaml")
+    model = mk.load("mechanisms/dissertation/rcsr.yaml")
     with pytest.raises(mk.UsageError, match=r"joints with an axis .* have bearing loads"):
         model.analyze(["O3.radial_force"])
     with pytest.raises(mk.UsageError, match="not enclosed: computed from other quantities"):

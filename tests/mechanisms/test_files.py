@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mechanisms.runs import LECTURES, NAMES, closings, model, motions, run
-from references import MECHANISMS
+from references import FILE_OF
 
 from mechkin_cli.verdict import Status
 
@@ -47,8 +47,8 @@ def test_where_loops_are_closed(name, cut):
 
 @pytest.mark.parametrize("name", NAMES + LECTURES)
 def test_a_file_says_what_it_is(name):
-    first, second = (MECHANISMS / f"{name}.yaml").read_text(encoding="utf-8").splitlines()[:2]
-    assert first == "# yaml-language-server: $schema=../schemas/mechanism.schema.json"
+    first, second = FILE_OF[name].read_text(encoding="utf-8").splitlines()[:2]
+    assert first == "# yaml-language-server: $schema=../../schemas/mechanism.schema.json"
     assert second == "format: 1"
     assert model(name).name
     assert model(name).source

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from mechanisms.runs import model, run
 from oracle import document, mp, newton_euler, read, solve, to_text
-from references import MECHANISMS
+from references import FILE_OF
 
 LIMIT = 1e-12
 NAMES = (
@@ -33,7 +33,7 @@ COHERENT = {"length": "in", "angle": "deg", "mass": "lbm", "force": "lbm*in/s^2"
 @cache
 def mechanism(name):
     """In coherent units; without masses the bare numbers of loads and reactions stay the same."""
-    return read(to_text(document(MECHANISMS / f"{name}.yaml") | {"units": COHERENT}))
+    return read(to_text(document(FILE_OF[name]) | {"units": COHERENT}))
 
 
 @cache

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mechanisms.runs import run
-from references import MECHANISMS, published
+from references import FILE_OF, published
 
 import mechkin_cli as mk
 
@@ -38,7 +38,7 @@ def test_rsgc(label, quantity):
 @pytest.fixture(scope="module")
 def loop_one():
     """The first loop, which the file follows alone."""
-    return mk.load(MECHANISMS / "rcsr_csr_loop_one.yaml").analyze()
+    return mk.load(FILE_OF["rcsr_csr_loop_one"]).analyze()
 
 
 @pytest.mark.parametrize(
@@ -51,5 +51,5 @@ def test_rcsr_csr(loop_one, label, quantity):
 
 def test_labels_are_those_of_the_source():
     for name, table in (("rspr", "sp_rspr"), ("rsgc", "sp_rsgc"), ("rcsr_csr", "table_10")):
-        layouts = {layout.name: layout for layout in mk.load(MECHANISMS / f"{name}.yaml").tables}
+        layouts = {layout.name: layout for layout in mk.load(FILE_OF[name]).tables}
         assert [c.label for c in layouts[table].columns] == list(published(table))

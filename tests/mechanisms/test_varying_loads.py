@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from oracle import document, mp, newton_euler, read, solve, to_text
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 
@@ -39,7 +39,7 @@ CASES = [(loads, massless) for loads in ("all", "torque") for massless in (False
 
 
 def text(loads: str, massless: bool) -> str:
-    data = document(MECHANISMS / "rcsr.yaml") | {"loads": LOADS if loads == "all" else TORQUE_ONLY}
+    data = document(FILE_OF["rcsr"]) | {"loads": LOADS if loads == "all" else TORQUE_ONLY}
     data["tables"] = []
     if massless:
         data["links"] = {name: {} for name in data["links"]}

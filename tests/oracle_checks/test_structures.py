@@ -22,7 +22,7 @@ from oracle.series import coefficient
 from oracle.vectors import cross, dot, norm, subtract
 from oracle_checks.balance import STEP, difference, external, length, momentum
 from oracle_checks.legs import rssr, stewart, suspension
-from references import MECHANISMS
+from references import FILE_OF
 
 LOOPS = ("RRRRRRR", "PRSRR", "CSPR", "HCPHRR")
 LEGS = {"RSSR": rssr, "suspension": suspension, "Stewart platform": stewart}
@@ -153,7 +153,7 @@ def test_a_lopsided_coupler_must_be_held():
 
 def test_hooke_joint():
     """tan(theta_B) = tan(theta_A) cos(angle); redundant constraints leave forces open."""
-    mechanism = read(MECHANISMS / "hooke.yaml")
+    mechanism = read(FILE_OF["hooke"])
     angle = mp.mpf("0.7")
     found = assemble(mechanism, {"A.theta": (angle, 1)})
     expected = mp.atan(mp.tan(angle) * mp.sqrt(3) / 2)

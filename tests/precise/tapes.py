@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 from mpmath import MPContext
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.model.model import Model
-from mechkin_cli.tape.exact import ExactTape
-from mechkin_cli.tape.tape import ARITY, Operation
+from mechkin_cli.tape.tape import ARITY, ExactTape, Operation
 
 mp = MPContext()
 mp.dps = 80
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 STEMS = [
     path.stem
-    for path in sorted(MECHANISMS.glob("*.yaml"))
+    for path in list(FILE_OF.values())
     if "motion:" in path.read_text(encoding="utf-8").splitlines()
 ]
 
@@ -46,7 +44,7 @@ _MEANING = {
 
 @cache
 def model(stem: str) -> Model:
-    return mk.load(MECHANISMS / f"{stem}.yaml")
+    return mk.load(FILE_OF[stem])
 
 
 def true_outputs(tape: ExactTape) -> list[Any]:

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from oracle.numerics import mp as oracle
 from oracle.reader import read
-from precise.tapes import MECHANISMS, STEMS, model, mp, true_outputs
+from precise.tapes import STEMS, model, mp, true_outputs
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.model.model import Model
@@ -60,7 +61,7 @@ def as_read(one: Precise, stem: str) -> list[tuple[Any, Any]]:
     """Numbers of the recording, with what the oracle's reader finds, in SI."""
     with oracle.workdps(80):
         try:
-            known = read(MECHANISMS / f"{stem}.yaml")
+            known = read(FILE_OF[stem])
         except (NotImplementedError, KeyError) as error:
             pytest.skip(f"the oracle does not read {error}")
         length, mass, _ = (oracle.mpf(x.numerator) / x.denominator for x in known.units._base)

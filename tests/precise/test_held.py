@@ -12,6 +12,7 @@ import mechkin_cli as mk
 from mechkin_cli.model.model import Model
 from mechkin_cli.plan.plan import plan_records
 from mechkin_cli.plan.records import flatten
+from mechkin_cli.session.kernel_run import Ask, PreciseConstants, RowInputs
 from mechkin_cli.tape.decimals import double_doubles
 
 CONCENTRIC = """
@@ -56,14 +57,12 @@ def test_what_is_not_conventional_is_right_to_both_parts() -> None:
     result = made.analyze(["C.s"], tables=[]).result
     session, given = result.session, made.session.precise.inputs(result.session)
     wanted = (session.problem.quantities()["C.s"],)
-    batch = session.run_precise(
-        given.reduced,
-        result.row_states.states,
-        readout=session.readout(wanted),
-        constants=session.precise.constants(session),
-        output_constants=session.precise.outputs(session, wanted),
-        whole=given.whole,
-        full=given.values,
+    states = result.row_states.states
+    constants = session.precise.constants(session)
+    batch = session.run(
+        RowInputs(given.reduced, states, whole=given.whole, full=given.values),
+        Ask(readout=session.readout(wanted)),
+        PreciseConstants(constants, session.precise.outputs(session, wanted)),
     )
     assert batch.outputs is not None
     length = mp.sqrt(mp.mpf("1.04"))

@@ -21,7 +21,13 @@ from mechkin_cli.kernel.functions import widths
 from mechkin_cli.mechanism.derived import DERIVED_KINDS
 from mechkin_cli.plan.codes import Demand, RowFlag
 from mechkin_cli.plan.outputs import demand_of
-from mechkin_cli.session.double_double import PreciseBatch, run_precise
+from mechkin_cli.session.kernel_run import (
+    Ask,
+    Batch,
+    PreciseConstants,
+    RowInputs,
+    run as run_kernel,
+)
 from mechkin_cli.sweep.result import Result
 from mechkin_cli.units.dimension import ANGLE
 
@@ -31,7 +37,7 @@ MOTION = Demand.VELOCITY | Demand.ACCELERATION
 
 def repeated(
     result: Result, names: list[str], *, written: bool = True, **given: Any
-) -> tuple[PreciseBatch, dict[str, slice]]:
+) -> tuple[Batch, dict[str, slice]]:
     """Quantities at the rows of a run in double-double, by their places among the outputs; with the
     constants as `written`, or as doubles."""
     session, known = result.session, result.problem.quantities()
@@ -39,26 +45,29 @@ def repeated(
     readout, demand = session.readout(wanted), demand_of(result.problem.mechanism, wanted)
     rows, precise = result.row_states, session.precise
     inputs = precise.inputs(session)
-    batch = session.run_precise(
-        inputs.reduced,
-        rows.states,
-        readout=readout,
-        constants=precise.constants(session) if written else None,
-        output_constants=precise.outputs(session, wanted) if written else None,
-        rates=inputs.rates,
-        accelerations=inputs.accelerations,
-        jerks=inputs.jerks,
-        turned=rows.turns,
-        whole=inputs.whole,
-        full=inputs.values,
-        demand=demand | MOTION,
-        **given,
+    constants = PreciseConstants()
+    if written:
+        own = precise.constants(session)
+        constants = PreciseConstants(own, precise.outputs(session, wanted))
+    batch = session.run(
+        RowInputs(
+            inputs.reduced,
+            rows.states,
+            inputs.rates,
+            inputs.accelerations,
+            inputs.jerks,
+            turned=rows.turns,
+            whole=inputs.whole,
+            full=inputs.values,
+        ),
+        Ask(demand | MOTION, readout, **given),
+        constants,
     )
     slots = readout.slots.items()
     return batch, {name: slice(at.first, at.first + at.width) for name, at in slots}
 
 
-def numbers(batch: PreciseBatch, place: slice, row: int = 0) -> list[Any]:
+def numbers(batch: Batch, place: slice, row: int = 0) -> list[Any]:
     assert batch.outputs is not None
     parts = batch.outputs[place, :, row]
     return [mp.mpf(float(high)) + mp.mpf(float(low)) for high, low in parts]
@@ -192,16 +201,18 @@ def test_powers_balance_to_the_last_digits(text: str) -> None:
     result = analyzed(text)
     session, rows = result.session, result.row_states
     inputs = session.precise.inputs(session)
-    batch = session.run_precise(
-        inputs.reduced,
-        rows.states,
+    batch = session.run(
+        RowInputs(
+            inputs.reduced,
+            rows.states,
+            inputs.rates,
+            inputs.accelerations,
+            turned=rows.turns,
+            whole=inputs.whole,
+        ),
+        Ask(MOTION | Demand.FORCES | Demand.POWER),
         # in doubles a leg's line has no length of one
-        constants=session.precise.constants(session),
-        rates=inputs.rates,
-        accelerations=inputs.accelerations,
-        turned=rows.turns,
-        whole=inputs.whole,
-        demand=MOTION | Demand.FORCES | Demand.POWER,
+        PreciseConstants(session.precise.constants(session)),
     )
     assert batch.good.all()
     assert batch.power_error is not None
@@ -214,9 +225,10 @@ def test_a_row_that_does_not_close_says_so() -> None:
     session, rows = result.session, result.row_states
     inputs = session.precise.inputs(session)
     off = rows.states.copy() + 1e3
-    batch = session.run_precise(inputs.reduced, off, iterations=1)
+    doubles = PreciseConstants()
+    batch = session.run(RowInputs(inputs.reduced, off), Ask(iterations=1), doubles)
     assert np.all(batch.flags & RowFlag.NOT_CONVERGED)
-    assert session.run_precise(inputs.reduced, rows.states).good.all()
+    assert session.run(RowInputs(inputs.reduced, rows.states), Ask(), doubles).good.all()
 
 
 @pytest.mark.parametrize("name", ["rcsr", "sevenr", "stewart", "double_hooke"])
@@ -229,15 +241,12 @@ def test_bits_do_not_depend_on_packing_or_splitting(name: str) -> None:
     readout = session.readout([known[n] for n in names])
 
     def bits(part: slice, **packing: int) -> bytes:
-        batch = run_precise(
+        given = (inputs.reduced, states, inputs.rates, inputs.accelerations)
+        batch = run_kernel(
             session.plan,
-            inputs.reduced[:, :37][:, part],
-            states[:, part],
-            rates=inputs.rates[:, :37][:, part],
-            accelerations=inputs.accelerations[:, :37][:, part],
-            demand=MOTION | Demand.FORCES,
-            outputs=readout.outputs,
-            derivatives=True,
+            RowInputs(*(array[:, :37][:, part] for array in given)),
+            Ask(MOTION | Demand.FORCES, readout, derivatives=True),
+            PreciseConstants(),
             **packing,
         )
         assert batch.outputs is not None
@@ -256,15 +265,22 @@ def test_bits_do_not_depend_on_packing_or_splitting(name: str) -> None:
 def test_the_condition_is_not_told() -> None:
     session, rows = run("rssr").result.session, run("rssr").result.row_states
     with pytest.raises(ValueError, match="told by a run in doubles"):
-        session.run_precise(session.inputs.reduced, rows.states, demand=Demand.CONDITION)
+        session.run(
+            RowInputs(session.inputs.reduced, rows.states),
+            Ask(Demand.CONDITION),
+            PreciseConstants(),
+        )
 
 
 def test_numbers_that_do_not_fit_are_refused() -> None:
     session, rows = run("rssr").result.session, run("rssr").result.row_states
     inputs, constants = session.inputs.reduced, session.precise.constants(session)
+    given = RowInputs(inputs, rows.states)
     with pytest.raises(ValueError, match="parts of a number"):
-        session.run_precise(np.zeros((1, 3, inputs.shape[1])), rows.states)
+        session.run(
+            given._replace(inputs=np.zeros((1, 3, inputs.shape[1]))), Ask(), PreciseConstants()
+        )
     with pytest.raises(ValueError, match="instead of"):
-        session.run_precise(inputs, rows.states, constants=constants[:-1])
+        session.run(given, Ask(), PreciseConstants(constants[:-1]))
     with pytest.raises(ValueError, match="low: not finite"):
-        session.run_precise(inputs, rows.states, constants=constants * np.array([1.0, np.nan]))
+        session.run(given, Ask(), PreciseConstants(constants * np.array([1.0, np.nan])))

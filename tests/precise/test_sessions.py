@@ -11,10 +11,10 @@ import pytest
 from precise.tapes import model, mp, true_outputs
 
 import mechkin_cli as mk
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.plan import plan_records
 from mechkin_cli.plan.records import flatten
 from mechkin_cli.session.double_double import Precise
+from mechkin_cli.session.kernel_run import Ask, PreciseConstants, RowInputs
 from mechkin_cli.tape.decimals import double_doubles
 from mechkin_cli.tape.recorder import TraceLost
 
@@ -110,15 +110,11 @@ def test_rounding_the_constants_alone_moves_the_rows() -> None:
     rounded = np.stack([exact[:, 0], np.zeros(len(exact))], axis=1)
 
     def theta4(constants: Any) -> Any:
-        batch = session.run_precise(
-            given.reduced,
-            result.row_states.states,
-            readout=session.readout(wanted),
-            constants=constants,
-            output_constants=session.precise.outputs(session, wanted),
-            demand=Demand.POSITION,
-            whole=given.whole,
-            full=given.values,
+        states = result.row_states.states
+        batch = session.run(
+            RowInputs(given.reduced, states, whole=given.whole, full=given.values),
+            Ask(readout=session.readout(wanted)),
+            PreciseConstants(constants, session.precise.outputs(session, wanted)),
         )
         assert batch.good.all()
         return batch.outputs[0]

@@ -9,20 +9,23 @@ coordinates enclosed.
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[2]))
+
 import mechkin_cli as mk
-from mechkin_cli.benchmark import sevenr, train
+from benchmarks import sevenr, train
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
 from mechkin_cli.proofs.enclose import Given, Positions, enclose
 from mechkin_cli.proofs.rows import certify
 
 REPETITIONS = 30
-RCSR = Path(__file__).parents[2] / "mechanisms" / "rcsr.yaml"
+RCSR = Path(__file__).parents[2] / "mechanisms" / "dissertation" / "rcsr.yaml"
 SWEEP = "from: 150, to: 202, step: 2"
 
 

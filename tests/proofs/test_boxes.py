@@ -12,7 +12,7 @@ import pytest
 from mechanisms.runs import NAMES as RUNS, closings, run
 from oracle import document, mp, read, solve, to_text
 from proofs.perturbed import moved
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.proofs.certificate import Certificate
@@ -31,12 +31,12 @@ def proofs_of(result: Any) -> Found:
 
 @cache
 def certificate(name: str) -> Certificate:
-    return mk.load(MECHANISMS / f"{name}.yaml").certify()
+    return mk.load(FILE_OF[name]).certify()
 
 
 @cache
 def mechanism(name: str) -> Any:
-    return read(to_text(document(MECHANISMS / f"{name}.yaml") | {"units": COHERENT}))
+    return read(to_text(document(FILE_OF[name]) | {"units": COHERENT}))
 
 
 def true_coordinates(name: str, row: int) -> dict[str, Any]:
@@ -141,15 +141,15 @@ assembly: {near: {A.theta: 40}}
 
 
 def test_overconstrained_loops_are_proven_to_closure() -> None:
-    proofs = mk.load(MECHANISMS / "bennett.yaml").certify()
+    proofs = mk.load(FILE_OF["bennett"]).certify()
     assert set(proofs.status) == {"proven to closure"}
     assert 0.0 < proofs.closure.max() < 1e-12
     # a loop in planes that are written exactly holds exactly
-    assert set(mk.load(MECHANISMS / "slider_crank.yaml").certify().status) == {"proven"}
+    assert set(mk.load(FILE_OF["slider_crank"]).certify().status) == {"proven"}
 
 
 def test_a_response_has_no_proofs() -> None:
-    analysis = mk.load(MECHANISMS / "rcsr_response.yaml").respond()
+    analysis = mk.load(FILE_OF["rcsr_response"]).respond()
     with pytest.raises(mk.UsageError, match="proofs are of sweeps"):
         _ = analysis.certificate
 
@@ -167,7 +167,7 @@ def test_a_response_has_no_proofs() -> None:
 )
 def test_what_is_too_small_for_a_double_is_not_zero(tiny: str) -> None:
     """The axis of B is tilted by what rounds to nothing, and the plane loop has no position."""
-    text = (MECHANISMS / "slider_crank.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["slider_crank"].read_text(encoding="utf-8")
     tilted = re.sub(r"(B: .*axis: )\[0, 0, 1\]", rf'\1["{tiny}", 0, 1]', text)
     assert tilted != text
     assert set(mk.loads(tilted).certify().status) == {"proven to closure"}

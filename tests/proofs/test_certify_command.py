@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 
@@ -67,7 +67,7 @@ def test_strict_wants_all_rows_proven(tmp_path: Path) -> None:
 
 
 def test_a_response_is_told_to_have_no_proofs(tmp_path: Path) -> None:
-    run = analyze(MECHANISMS / "rcsr_response.yaml", tmp_path, "--certify")
+    run = analyze(FILE_OF["rcsr_response"], tmp_path, "--certify")
     assert run.returncode == 0
     assert "the rows of response response are not proven: --certify proves sweeps" in run.stderr
 

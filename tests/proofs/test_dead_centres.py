@@ -23,7 +23,7 @@ from oracle import (
 )
 from proofs.test_boxes import COHERENT, DEGREE
 from random_families.dead_centres.case import linkage, plane_four_bar
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.plan.codes import PassageEnd
@@ -88,7 +88,7 @@ SPACE = ("phchc", "rcrcr", "rprhrrr", "rrrrrrh", "sevenr", "rcsr_csr")
 @pytest.mark.parametrize("name", SPACE)
 def test_linkages_in_space(name: str) -> None:
     """Driven on beyond their sweeps, against dead centres at 60 digits."""
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     data.pop("tables", None)
     (driver,) = data["motion"]["inputs"]
     motion = data["motion"]["inputs"][driver]
@@ -162,7 +162,7 @@ OTHERWISE = {
 
 @pytest.mark.parametrize("otherwise", OTHERWISE)
 def test_written_otherwise(otherwise: str) -> None:
-    data = document(MECHANISMS / "rcsr.yaml")
+    data = document(FILE_OF["rcsr"])
     data.pop("tables", None)
     (name,) = data["motion"]["inputs"]
     data["motion"]["inputs"][name] |= {"to": "210"}

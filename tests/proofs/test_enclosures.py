@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from oracle import solve
 from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.proofs import enclose as enclosures
@@ -56,7 +56,7 @@ def test_vectors_and_efforts_have_bounds() -> None:
 
 
 def test_reactions_that_are_not_unique_have_none() -> None:
-    proofs = mk.load(MECHANISMS / "bennett.yaml").certify()
+    proofs = mk.load(FILE_OF["bennett"]).certify()
     low, high = proofs.enclosure("A.force")
     assert np.isnan(low).all()
     assert np.isnan(high).all()

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
@@ -53,7 +53,7 @@ def test_arrays_that_do_not_fit_are_refused(result: Any) -> None:
     }.items():
         with pytest.raises((ValueError, TypeError)):
             boxes(plan, states, **{name: array})
-    other = mk.load(MECHANISMS / "rssr.yaml").session.plan
+    other = mk.load(FILE_OF["rssr"]).session.plan
     with pytest.raises(ValueError, match="another structure"):
         boxes(plan, states, radii=other)
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import numpy as np
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.proofs.modes import prove_modes
@@ -16,7 +16,7 @@ from mechkin_cli.verdict import Proof
 
 def test_modes_exist_and_differ() -> None:
     for name, count in {"rcsr": 2, "sevenr": 4, "rssr": 2}.items():
-        found = mk.load(MECHANISMS / f"{name}.yaml").modes(certify=True)
+        found = mk.load(FILE_OF[name]).modes(certify=True)
         assert found.proofs is not None
         assert found.proofs.modes == (Proof.proven,) * count
         assert found.proofs.all_different
@@ -26,7 +26,7 @@ def test_modes_exist_and_differ() -> None:
 def test_one_mode_twice_is_no_other_mode() -> None:
     """Whole turns, and the other sign of a quaternion, are the same place."""
     for name in ("rcsr", "five_link_suspension"):
-        model = mk.load(MECHANISMS / f"{name}.yaml")
+        model = mk.load(FILE_OF[name])
         session, result = model.session, model.analyze(tables=[]).result
         state = result.row_states.states[:, 0]
         other = state.copy()

@@ -9,7 +9,7 @@ import numpy as np
 from oracle import mp
 
 import mechkin_cli as mk
-from mechkin_cli.benchmark import train
+from benchmarks import train
 from mechkin_cli.proofs.certificate import Certificate
 
 LOOPS = 40

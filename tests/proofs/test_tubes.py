@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracle import document, in_other_units, moved, renamed, reordered, rotation_matrix, to_text
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.proofs.rows import SweepProofs as Found, certify
@@ -35,7 +35,7 @@ def proofs_of(result: Result) -> Found:
 
 @pytest.mark.parametrize("name", SWEPT)
 def test_sweeps_are_one_branch(name: str) -> None:
-    proofs = mk.load(MECHANISMS / f"{name}.yaml").certify()
+    proofs = mk.load(FILE_OF[name]).certify()
     assert proofs.is_one_branch
     assert proofs.tubes > 0
     assert proofs.diagnostics == ()
@@ -121,7 +121,7 @@ OTHERWISE = {
 @pytest.mark.parametrize("otherwise", OTHERWISE)
 @pytest.mark.parametrize("name", ["rcsr", "rssr", "rcsr_csr"])
 def test_written_otherwise(name: str, otherwise: str) -> None:
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     data.pop("tables", None)
     known = verdicts(data)
     assert set(known) == {"proven"}
@@ -129,7 +129,7 @@ def test_written_otherwise(name: str, otherwise: str) -> None:
 
 
 def test_backwards() -> None:
-    text = (MECHANISMS / "rcsr.yaml").read_text()
+    text = FILE_OF["rcsr"].read_text()
     back = text.replace("from: 150, to: 202, step: 2", "from: 202, to: 150, step: 2").replace(
         "near: {O2.theta: -104, O2.s: -9, O4.theta: 37}", "near: {O4.theta: -5}"
     )
@@ -141,13 +141,13 @@ def test_backwards() -> None:
 
 
 def test_closed_at_another_joint() -> None:
-    model = mk.load(MECHANISMS / "sevenr.yaml")
+    model = mk.load(FILE_OF["sevenr"])
     assert model.certify(closed_at=["J4"]).is_one_branch
 
 
 def test_towards_a_dead_centre() -> None:
     """Five tubes a decade at most, down to 1e-9 degrees from where the branch ends."""
-    text = (MECHANISMS / "rcsr.yaml").read_text()
+    text = FILE_OF["rcsr"].read_text()
     model = mk.loads(text.replace("from: 150, to: 202, step: 2", "from: 150, to: 210, step: 2"))
     notes = [d for d in model.analyze(tables=[]).diagnostics if d.code == "dead-centre"]
     end = next(n.value for n in notes[0].numbers if n.name == "O1.theta")
@@ -163,7 +163,7 @@ def test_towards_a_dead_centre() -> None:
 
 
 def test_turns_of_the_input() -> None:
-    text = (MECHANISMS / "rssr.yaml").read_text()
+    text = FILE_OF["rssr"].read_text()
     proofs = mk.loads(text.replace("from: 0, to: 360, step: 10", "from: 0, to: 1440, step: 15"))
     assert proofs.certify().is_one_branch
 
@@ -204,7 +204,7 @@ def test_rows_too_far_apart_for_a_proof_are_told_at_once() -> None:
 
 
 def test_a_row_alone_and_rows_that_stand_still() -> None:
-    text = (MECHANISMS / "rcsr.yaml").read_text()
+    text = FILE_OF["rcsr"].read_text()
     one = mk.loads(text.replace("from: 150, to: 202, step: 2", "values: [160]")).certify()
     assert one.is_one_branch
     assert one.tubes == 0

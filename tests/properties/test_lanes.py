@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 from properties.cases import STRUCTURES, case
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
@@ -24,10 +24,7 @@ def width(lanes: int):
 @cache
 def contents(source: str, lanes: int) -> dict[str, bytes]:
     """All quantities of a source, verdicts too."""
-    if source in FILES:
-        model = mk.load(MECHANISMS / f"{source}.yaml")
-    else:
-        model = mk.loads(case(source).text)
+    model = mk.load(FILE_OF[source]) if source in FILES else mk.loads(case(source).text)
     analysis = model.analyze(sorted(model.quantities), tables=[], lanes=lanes)
     return {name: analysis[name].tobytes() for name in sorted(model.quantities)}
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from analysis.forty import drawing as forty
 from analysis.test_sixteen import drawing as sixteen
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
@@ -28,8 +28,8 @@ LOOKS, ROUND, REFERENCE = 16, 128, 1 << 15
 FILES = {
     "forty": forty(),
     "sixteen": sixteen(),
-    "rrrrrrh": (MECHANISMS / "rrrrrrh.yaml").read_text(),
-    "rprrhc": (MECHANISMS / "rprrhc.yaml").read_text(),
+    "rrrrrrh": FILE_OF["rrrrrrh"].read_text(),
+    "rprrhc": FILE_OF["rprrhc"].read_text(),
 }
 
 
@@ -101,7 +101,7 @@ def test_the_words_say_what_the_search_knows() -> None:
     found = mk.loads(forty()).modes()
     assert len(found.modes) == found.bound == 40
     assert found.complete
-    seven = mk.load(MECHANISMS / "rrrrrrh.yaml").modes()
+    seven = mk.load(FILE_OF["rrrrrrh"]).modes()
     assert not seven.complete
     assert 0.0 < seven.chance <= tolerances.SEARCH_NEW_MODE_CHANCE
     assert "with 99 % confidence one more that closes finds another" in seven.sentence

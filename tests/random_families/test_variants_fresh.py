@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import os
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from means import mean_over_the_way, rms_over_the_way
+from references import FILE_OF
 
 import mechkin_cli as mk
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-MECHANISMS = Path(__file__).resolve().parents[2] / "mechanisms"
 NUMBER = re.compile(r"^  (\w+): *([\d.]+) (\w+) *(#.*)?$", re.M)
 UNFOLLOWED = {"rcsr_csr_loop_one"}
 """Follows fewer loops than all its quantities need."""
@@ -35,14 +34,14 @@ SUFFIXES = ("theta", "s", "theta_dot", "s_dot", "theta_ddot", "position", "effor
 
 def kept() -> list[str]:
     """Files with parameters and a sweep."""
-    texts = {path.stem: path.read_text(encoding="utf-8") for path in MECHANISMS.glob("*.yaml")}
+    texts = {path.stem: path.read_text(encoding="utf-8") for path in FILE_OF.values()}
     needed = {"parameters:", "motion:"}
     return sorted(stem for stem, text in texts.items() if needed <= set(text.splitlines()))
 
 
 def without_tables(stem: str) -> str:
     """The file up to its tables."""
-    text = (MECHANISMS / f"{stem}.yaml").read_text(encoding="utf-8")
+    text = FILE_OF[stem].read_text(encoding="utf-8")
     return re.split("^tables:", text, flags=re.M)[0]
 
 

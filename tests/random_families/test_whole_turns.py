@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from random_families.four_bars import cases
 from random_families.test_many_turns import grashof
+from references import FILE_OF
 
 from mechkin_cli import loads
 from mechkin_cli.exact import PI
@@ -20,12 +20,11 @@ from mechkin_cli.session.session import Session
 from mechkin_cli.sweep.sweep import analyze
 from mechkin_cli.units.units import UNITS
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 DEGREE = mpmath.mpf(180) / mpmath.pi
 
 
 def swept(name: str, first: float, last: float, step: float) -> str:
-    text = (MECHANISMS / f"{name}.yaml").read_text()
+    text = FILE_OF[name].read_text()
     motion = f"from: {first!r}, to: {last!r}, step: {step!r}"
     return re.sub(r"from: [^,]+, to: [^,]+, step: [^,}]+", motion, text[: text.index("tables:")])
 

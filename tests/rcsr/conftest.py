@@ -1,4 +1,4 @@
-"""One run of mechanisms/rcsr.yaml for all tests of this folder."""
+"""One run of mechanisms/dissertation/rcsr.yaml for all tests of this folder."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import numpy as np
 from oracle.document import document, to_text
 from oracle.dynamics.quadrature import EnergyIntegral
 from oracle.dynamics.response import prepare
-from references import MECHANISMS
+from references import FILE_OF
 from responses.linkages import four_bar
 from responses.motions import last_time, off, respond
 
@@ -37,7 +37,7 @@ BENNETT = {
 
 def test_bennetts_linkage_turns_as_its_energy_says() -> None:
     """Three equations too many, and one freedom all the same."""
-    data = document(MECHANISMS / "bennett.yaml")
+    data = document(FILE_OF["bennett"])
     del data["motion"], data["tables"]
     data["responses"] = {"run": BENNETT}
     text = to_text(data)

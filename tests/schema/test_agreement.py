@@ -11,7 +11,7 @@ from building.bad_responses import BAD_RESPONSES
 from building.bad_uses import BAD_USES
 from building.sound import SOUND
 from reading.bad_files import BAD_FILES, SOUND as SMALL
-from references import MECHANISMS
+from references import FILE_OF
 from schema.test_json_schema import accepts
 
 import mechkin_cli as mk
@@ -20,7 +20,7 @@ from mechkin_cli.building.source import open_file
 TESTS = Path(__file__).parent.parent
 SHAPED = sorted((TESTS / "reading" / "good").glob("*.yaml"))
 """Files of the right shape, which need not mean anything."""
-MEANT = sorted([*MECHANISMS.glob("*.yaml"), *(TESTS / "stress" / "loops").glob("*.yaml")])
+MEANT = sorted([*FILE_OF.values(), *(TESTS / "stress" / "loops").glob("*.yaml")])
 YAML = "YAML itself resolves it before a schema sees the data"
 EXPRESSION = "expressions are texts to a schema: names, dimensions and values are the reader's"
 CROSSING = "it lies between two places of the file, a schema sees one at a time"

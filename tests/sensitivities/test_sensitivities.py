@@ -8,11 +8,11 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 import pytest
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.units.dimension import LENGTH
 
-MECHANISMS = sorted(Path("mechanisms").glob("*.yaml"))
 RIGHT = 1e-10
 """In parts of the largest of a column."""
 
@@ -35,7 +35,7 @@ def stand(theta: float, crank: object, rod: object) -> object:
 
 
 def test_a_slider_crank() -> None:
-    model = mk.load("mechanisms/slider_crank.yaml")
+    model = mk.load(FILE_OF["slider_crank"])
     s = model.sensitivities(["D.s", "A.effort"], at=[30, 70, 200])
     by_crank = [derivative(lambda r, t=t: stand(t, r, mp.mpf("0.35")), "0.1") for t in s.place]
     by_rod = [derivative(lambda rod, t=t: stand(t, mp.mpf("0.1"), rod), "0.35") for t in s.place]
@@ -71,7 +71,7 @@ def rocker(theta: float, lengths: dict[str, object]) -> object:
 
 
 def test_a_four_bar() -> None:
-    model = mk.load("mechanisms/planar_four_bar.yaml")
+    model = mk.load(FILE_OF["planar_four_bar"])
     s = model.sensitivities(["C.theta"], at=["30 deg", 105, 240])
     own = {"a": 40, "b": 120, "c": 90, "d": 130}
     for name, value in own.items():
@@ -109,7 +109,7 @@ def spatial_rocker(theta: float, sign: int, p: dict[str, object]) -> object:
 
 
 def test_an_rssr() -> None:
-    model = mk.load("mechanisms/rssr.yaml")
+    model = mk.load(FILE_OF["rssr"])
     s = model.sensitivities(["O4.theta"], at=[20, 140, 300])
     own = {"r": 40, "x": 140, "y": 100, "z": 60, "d": 160, "tilt": 15}
     value = s.value("O4.theta")
@@ -140,7 +140,7 @@ def read_by_tables(model: mk.Model) -> list[str]:
     return list(dict.fromkeys(texts))[:: max(1, len(texts) // 9)]
 
 
-@pytest.mark.parametrize("path", MECHANISMS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILE_OF.values(), ids=lambda path: path.stem)
 def test_differences_of_plain_runs(path: Path) -> None:
     model = mk.load(path)
     if not model.problem.parameters or "sweep" not in model.runs:
@@ -186,7 +186,7 @@ def test_differences_of_plain_runs(path: Path) -> None:
     assert compared or model.session.is_redundant
 
 
-TEXT = Path("mechanisms/planar_four_bar.yaml").read_text(encoding="utf-8")
+TEXT = FILE_OF["planar_four_bar"].read_text(encoding="utf-8")
 ASKED = ["C.theta", "O.effort", "pen.position.x", "norm(B.force)"]
 
 
@@ -240,7 +240,7 @@ def test_inputs_that_are_written_with_parameters() -> None:
 
 
 def test_lengths_of_a_bennett_linkage_do_not_change_alone() -> None:
-    s = mk.load("mechanisms/bennett.yaml").sensitivities(["C.theta"], ["a", "b", "alpha"])
+    s = mk.load(FILE_OF["bennett"]).sensitivities(["C.theta"], ["a", "b", "alpha"])
     assert set(s.verdict("C.theta", "a")) == {"ok"}  # b goes with it, as it is written
     # at 180 deg all links lie in line, as drawn, whatever their lengths are
     others = s.place != 180.0
@@ -251,7 +251,7 @@ def test_lengths_of_a_bennett_linkage_do_not_change_alone() -> None:
 
 def test_inputs_are_told_where_the_row_is() -> None:
     """An input has its value whether the loops close or not, and a row that does not has none."""
-    s = mk.load("mechanisms/bennett.yaml").sensitivities(["A.theta", "C.theta"], ["a", "b"])
+    s = mk.load(FILE_OF["bennett"]).sensitivities(["A.theta", "C.theta"], ["a", "b"])
     for name in "ab":
         words = s.verdict("C.theta", name).tolist()
         assert s.verdict("A.theta", name).tolist() == words
@@ -262,7 +262,7 @@ def test_inputs_are_told_where_the_row_is() -> None:
 def test_loops_that_are_left_out_and_a_file_that_is_built_anew() -> None:
     """With another axis the building decides something otherwise, so the file is built anew; the
     first loop, which alone is followed, feels nothing of it."""
-    text = Path("mechanisms/rcsr_csr_loop_one.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr_csr_loop_one"].read_text(encoding="utf-8")
     text = text.replace("  P1: 0.5 in\n", "  P1: 0.5 in\n  tilt: 0\n")
     joint = text[text.index("  O7:") :]
     tilted = joint.replace("sin(alpha8)*sin(theta_c1),", "sin(alpha8)*sin(theta_c1) + tilt,", 1)
@@ -270,13 +270,13 @@ def test_loops_that_are_left_out_and_a_file_that_is_built_anew() -> None:
     s = mk.loads(text.replace(joint, tilted)).sensitivities(["O4.theta"], ["P1", "tilt"])
     assert s.why("O4.theta", "tilt") == ""
     assert not s["O4.theta", "tilt"].any()
-    plain = mk.load("mechanisms/rcsr_csr_loop_one.yaml").sensitivities(["O4.theta"], ["P1"])
+    plain = mk.load(FILE_OF["rcsr_csr_loop_one"]).sensitivities(["O4.theta"], ["P1"])
     same(s["O4.theta", "P1"], plain["O4.theta", "P1"])
 
 
 def test_a_position_that_is_zero_throughout_is_not_bent() -> None:
     """The cross of a Hooke joint stays in the origin, to within rounding, whatever the angle."""
-    s = mk.load("mechanisms/hooke.yaml").sensitivities(["U.point", "norm(U.point)"], ["angle"])
+    s = mk.load(FILE_OF["hooke"]).sensitivities(["U.point", "norm(U.point)"], ["angle"])
     assert set(s.verdict("U.point", "angle")) == {"ok"}
     assert np.abs(s["U.point", "angle"]).max() < 1e-20
 
@@ -293,7 +293,7 @@ def test_kinks_and_structure() -> None:
 def test_a_row_beside_a_dead_centre() -> None:
     """A rod of 1 m on a crank of 1.5 m: half way round the crank there is a dead centre of the
     crank where it turns by asin(1/1.5); s there goes as the root of what is left."""
-    text = Path("mechanisms/slider_crank.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["slider_crank"].read_text(encoding="utf-8")
     text = text.replace("crank: 0.1 m", "crank: 0.5 m").replace(
         "to: 360, step: 10", "to: 40, step: 40"
     )
@@ -319,7 +319,7 @@ def test_far_from_a_dead_centre_no_slope_misleads() -> None:
     """Not even those of rows at which a slope is zero."""
     s = mk.loads(TEXT).sensitivities(["C.theta", "pen.position.x"])
     assert "mislead" not in repr(s)
-    rod = mk.load("mechanisms/slider_crank.yaml").sensitivities(["D.s"], ["rod"])
+    rod = mk.load(FILE_OF["slider_crank"]).sensitivities(["D.s"], ["rod"])
     assert np.abs(rod["D.s", "rod"]).min() < 1e-12
     assert "mislead" not in repr(rod)
 
@@ -331,7 +331,10 @@ def test_what_is_refused() -> None:
         (lambda: model.sensitivities(["row.status"]), "words"),
         (lambda: model.sensitivities(["C.theta"], at=31), "the nearest stand at 30 and 45 deg"),
         (lambda: model.sensitivities("C.theta"), "a list of texts"),
-        (lambda: mk.load("mechanisms/rspr.yaml").sensitivities(["row.time"]), "no parameters"),
+        (
+            lambda: mk.load(FILE_OF["rspr"]).sensitivities(["row.time"]),
+            "no parameters",
+        ),
     ):
         with pytest.raises(mk.UsageError, match=words):
             call()
@@ -341,7 +344,7 @@ def test_what_is_refused() -> None:
 
 
 def test_how_they_are_read() -> None:
-    s = mk.load("mechanisms/rcsr.yaml").sensitivities(["theta4", "O3.force"], ["P1", "alpha1"])
+    s = mk.load(FILE_OF["rcsr"]).sensitivities(["theta4", "O3.force"], ["P1", "alpha1"])
     assert s["O3.force", "P1"].shape == (27, 3)
     assert s.matrix("O3.force").shape == (81, 2)
     frame = s.to_pandas()
@@ -350,7 +353,7 @@ def test_how_they_are_read() -> None:
     assert "theta4" in repr(s)
     assert "<table>" in s._repr_html_()
     change = 1e-6
-    plain = mk.load("mechanisms/rcsr.yaml", {"P1": f"{0.5 + change} in"}).analyze()["O4.theta"]
+    plain = mk.load(FILE_OF["rcsr"], {"P1": f"{0.5 + change} in"}).analyze()["O4.theta"]
     told = s["theta4", "P1"] * change + s.value("theta4")
     second = s.curvature("theta4", "P1") * change**2 / 2
     assert np.abs(told + second - plain).max() < 1e-11

@@ -9,7 +9,7 @@ import pytest
 
 import mechkin_cli as mk
 
-TEXT = Path("mechanisms/planar_four_bar.yaml").read_text(encoding="utf-8")
+TEXT = Path("mechanisms/plane/planar_four_bar.yaml").read_text(encoding="utf-8")
 SMALL = {"a": "0.01 mm", "b": ["-0.01 mm", 0.03], "c": 0.02}
 """So small that the four-bar is linear in them."""
 
@@ -67,7 +67,7 @@ def test_parameters_that_are_written_with_one_another_scatter_alone() -> None:
 
 def test_a_dead_centre_inside_a_band() -> None:
     """A rod of 0.33 m reaches the slide from a crank that stands 0.3214 m off: not with 0.32."""
-    text = Path("mechanisms/slider_crank.yaml").read_text(encoding="utf-8")
+    text = Path("mechanisms/plane/slider_crank.yaml").read_text(encoding="utf-8")
     text = text.replace("crank: 0.1 m", "crank: 0.5 m").replace("rod: 0.35 m", "rod: 0.33 m")
     text = text.replace("to: 360, step: 10", "to: 40, step: 10")
     t = mk.loads(text).tolerances({"rod": 0.01}, ["D.s"], samples=256)

@@ -6,6 +6,7 @@ from math import cos, inf, isfinite, pi, sin
 
 import numpy as np
 import pytest
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.search.clusters import pose_keys, same_poses
@@ -16,9 +17,8 @@ FILES = ("rcsr", "rchch", "stewart", "rprhrrr", "five_link_suspension")
 
 
 def layout_of(name: str):
-    from references import MECHANISMS
 
-    return mk.load(MECHANISMS / f"{name}.yaml").session.layout
+    return mk.load(FILE_OF[name]).session.layout
 
 
 @pytest.mark.parametrize("name", FILES)

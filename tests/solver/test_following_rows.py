@@ -3,16 +3,18 @@ up, linear work, and turns of closing joints that are never lost."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from time import process_time
 
 import numpy as np
 import pytest
 from prepared import Setup, prepared
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.plan.codes import OutputCode, TrackEnd
 from mechkin_cli.plan.layout import Layout, home_state
+from mechkin_cli.plan.outputs import Readout
+from mechkin_cli.plan.plan import build_plan
 from mechkin_cli.plan.records import Output, hand_over_outputs
 from mechkin_cli.session.following import Followed, follow
 from mechkin_cli.session.inputs import (
@@ -22,18 +24,16 @@ from mechkin_cli.session.inputs import (
     continuous_signs,
     drawn_quaternion,
 )
-from mechkin_cli.session.kernel_run import run
-
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 
 
 class Platform:
     """The Stewart platform, driven along Lissajous paths of its six legs."""
 
     def __init__(self) -> None:
-        model = mk.load(MECHANISMS / "stewart.yaml")
+        model = mk.load(FILE_OF["stewart"])
         self.layout = Layout(model.problem.mechanism, model.graph)
-        self.plan = self.layout.build()
+        self.plan = build_plan(self.layout)
         self.start = home_state(self.layout)
 
     def path(self, rows: int, turns: float = 3.0) -> np.ndarray:
@@ -50,7 +50,7 @@ class Platform:
         """States at all rows; every row closes near its guess."""
         assert followed.end == TrackEnd.FINISHED
         assert followed.reached == path.shape[1]
-        batch = run(self.plan, path, followed.guess)
+        batch = run(self.plan, RowInputs(path, followed.guess))
         assert batch.good.all()
         assert np.all(batch.correction <= followed.limit)
         return batch.states
@@ -137,8 +137,8 @@ def test_noise_on_the_rows(platform: Platform, size: float) -> None:
 
 def test_the_inputs_in_another_order(platform: Platform) -> None:
     """The path's length, not one of its inputs, measures the steps."""
-    model = mk.load(MECHANISMS / "stewart.yaml")
-    text = (MECHANISMS / "stewart.yaml").read_text(encoding="utf-8")
+    model = mk.load(FILE_OF["stewart"])
+    text = FILE_OF["stewart"].read_text(encoding="utf-8")
     lines = text.splitlines()
     first = next(k for k, line in enumerate(lines) if line.strip().startswith("L1.s: {from"))
     lines[first : first + 6] = lines[first : first + 6][::-1]
@@ -148,7 +148,7 @@ def test_the_inputs_in_another_order(platform: Platform) -> None:
     path = platform.path(400)
     here, there = (
         follow(platform.plan, path, platform.start),
-        follow(layout.build(), path[::-1].copy(), home_state(layout)),
+        follow(build_plan(layout), path[::-1].copy(), home_state(layout)),
     )
     assert here.steps == there.steps
 
@@ -157,7 +157,7 @@ def test_the_inputs_in_another_order(platform: Platform) -> None:
 
 
 def closing_case(name: str) -> Setup:
-    problem = mk.load(MECHANISMS / f"{name}.yaml").problem
+    problem = mk.load(FILE_OF[name]).problem
     return prepared(problem)
 
 
@@ -180,7 +180,7 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     """Brute force: an arctangent unwrapped over steps too small for half a turn."""
     setup = closing_case(name)
     path = np.ascontiguousarray(longer_way(setup)[:, ::coarse])
-    plan = setup.layout.build()
+    plan = build_plan(setup.layout)
     slots = {
         place: slot for place, slot in TurnSlots.of(plan).closing.items() if place[1] != ORIENTATION
     }
@@ -189,12 +189,13 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     records = [Output(code, *place, 0, (0.0, 0.0, 0.0), 1.0) for place in slots]
     angles = hand_over_outputs(plan, records)
     outputs = {place: number for number, place in enumerate(slots)}
+    read = Ask(readout=Readout(angles, {}, ()))
     fine = dense(path, 400)
     way = follow(plan, fine, setup.start.state)
-    brute = run(plan, fine, way.guess, outputs=angles).outputs
+    brute = run(plan, RowInputs(fine, way.guess), read).outputs
     followed = follow(plan, path, setup.start.state, turns=True)
     assert followed.end == way.end == TrackEnd.FINISHED
-    rows = run(plan, path, followed.guess, outputs=angles).outputs
+    rows = run(plan, RowInputs(path, followed.guess), read).outputs
     for place, slot in slots.items():
         wanted = np.unwrap(brute[outputs[place]])[::400]
         found = continuous_angle(rows[outputs[place]], followed.turns[slot])
@@ -206,7 +207,7 @@ def test_signs_against_small_steps(name: str) -> None:
     """Quaternions of coarse rows against those of small steps, component by component."""
     setup = closing_case(name)
     (closing,) = setup.layout.graph.closings
-    joint, plan = closing.joint, setup.layout.build()
+    joint, plan = closing.joint, build_plan(setup.layout)
     slot = TurnSlots.of(plan).closing[0, ORIENTATION]
     path = np.ascontiguousarray(longer_way(setup))
     fine = dense(path, 100)

@@ -26,7 +26,7 @@ from solver.networks import (
 )
 
 import mechkin_cli as mk
-from mechkin_cli.structure.build import build_graph
+from mechkin_cli.session.assembled_places import solver_graph
 
 
 def blocks(network: Network) -> list[tuple[int, int]]:
@@ -151,7 +151,7 @@ def test_twice_the_loops_take_about_twice_the_time() -> None:
         taken = []
         for _ in range(5):
             start = time.process_time()
-            build_graph(problem.mechanism, problem.motion.driven)
+            solver_graph(problem.mechanism, problem.motion.driven)
             taken.append(time.process_time() - start)
         seconds.append(min(taken))
     assert seconds[1] < 10 * seconds[0]

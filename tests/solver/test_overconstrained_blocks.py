@@ -18,7 +18,7 @@ from references import SWEPT
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.vectors import GROUND
-from mechkin_cli.session.exchanged import is_drawn_assembled
+from mechkin_cli.session.assembled_places import is_drawn_assembled
 from mechkin_cli.structure.network import connections_of, reduce
 from mechkin_cli.structure.rank import Rates, unit_of
 

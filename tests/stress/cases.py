@@ -1,4 +1,4 @@
-"""Texts of hard cases made of mechanisms/rcsr.yaml: sizes, dead centres, far drawings, sweeps."""
+"""Texts of hard cases made of rcsr.yaml: sizes, dead centres, far drawings, sweeps."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LENGTHS = ("P1", "P2", "P3", "P4", "s1", "s4", "cx", "cy", "cz")
 DISTANCES = tuple(f"1e-{power}" for power in range(12))
 """From the dead centre, in degrees."""
 DEAD_CENTRES = {"upper": "205.1439659451948204775", "lower": "133.9439778838147226667"}
-"""Where the branch of mechanisms/rcsr.yaml ends, in degrees."""
+"""Where the branch of mechanisms/dissertation/rcsr.yaml ends, in degrees."""
 NEAR = {"O2.theta": "theta2", "O2.s": "s2", "O4.theta": "theta4"}
 
 

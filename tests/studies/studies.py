@@ -5,7 +5,7 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 MECHANISMS = ROOT / "mechanisms"
-KEPT = sorted((MECHANISMS / "studies").glob("*.yaml"))
+KEPT = sorted(MECHANISMS.glob("*/studies/*.yaml"), key=lambda path: path.name)
 
 RCSR: dict[str, Any] = {
     "vary": {

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from studies.studies import MECHANISMS, RCSR, study_text
+from references import FILE_OF
+from studies.studies import RCSR, study_text
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
@@ -30,7 +31,7 @@ def waited(condition: object, what: str) -> None:
 
 
 def test_a_local_cluster_finds_the_same() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     whole = model.study(RCSR)
     with distributed.LocalCluster(2, threads_per_worker=1, dashboard_address=None) as cluster:
         found = model.study(RCSR, scheduler=cluster.scheduler_address)
@@ -40,7 +41,7 @@ def test_a_local_cluster_finds_the_same() -> None:
 
 def test_nobody_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mechkin_cli.studies.workers.SECONDS", 1)
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     with pytest.raises(UsageError, match=r"no scheduler answers at tcp://127.0.0.1:9: .*; start"):
         model.study(RCSR, scheduler="tcp://127.0.0.1:9")
 
@@ -94,7 +95,7 @@ def command(study: Path, out: Path, *more: str) -> list[str]:
 
 def test_killed_workers_and_schedulers_change_no_byte(tmp_path: Path) -> None:
     study = tmp_path / "study.yaml"
-    study.write_text(study_text(RCSR | {"sample": {"count": 120}}, MECHANISMS / "rcsr.yaml"))
+    study.write_text(study_text(RCSR | {"sample": {"count": 120}}, FILE_OF["rcsr"]))
     subprocess.run(command(study, tmp_path / "here"), check=False)
     expected = (tmp_path / "here/variants.csv").read_bytes()
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 import yaml
+from references import FILE_OF
 from studies.studies import KEPT, MECHANISMS, RCSR, study_text
 
 import mechkin_cli as mk
@@ -31,9 +32,9 @@ def mechkin(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch)
     return run
 
 
-def written(folder: Path, data: dict[str, Any], mechanism: str = "rcsr.yaml") -> Path:
+def written(folder: Path, data: dict[str, Any], mechanism: str = "rcsr") -> Path:
     file = folder / "study.yaml"
-    file.write_text(study_text(data, MECHANISMS / mechanism))
+    file.write_text(study_text(data, FILE_OF[mechanism]))
     return file
 
 
@@ -58,7 +59,7 @@ def test_the_examples_run(mechkin: Any, tmp_path: Path, path: Path) -> None:
 def test_stroke_of_the_swash_plate(mechkin: Any, tmp_path: Path) -> None:
     from math import radians, tan
 
-    mechkin("study", MECHANISMS / "studies/plunger_tolerances.yaml", "--out", tmp_path)
+    mechkin("study", MECHANISMS / "classics/studies/plunger_tolerances.yaml", "--out", tmp_path)
     for row in csv.DictReader((tmp_path / "variants.csv").open()):
         expected = 2 * float(row["r"]) * tan(radians(float(row["tilt"])))
         assert float(row["stroke"]) == pytest.approx(expected, rel=1e-12)

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studies.studies import MECHANISMS, RCSR, study_text
+from references import FILE_OF
+from studies.studies import RCSR, study_text
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
@@ -23,7 +24,7 @@ KILLS = int(os.environ.get("MECHKIN_RANDOM", "1")) * 3
 
 @pytest.fixture(scope="module")
 def model() -> mk.Model:
-    return mk.load(MECHANISMS / "rcsr.yaml")
+    return mk.load(FILE_OF["rcsr"])
 
 
 @pytest.fixture
@@ -137,7 +138,7 @@ def test_another_mechanism_is_refused(model: mk.Model, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="different parameters; choose"):
         model.with_parameters({"P3": 0.41}).study(RCSR, tmp_path)
     text = model.built.read.document.text.replace("mass:", "mass:  ", 1)
-    other = mk.loads(text, "rcsr.yaml", folder=MECHANISMS)
+    other = mk.loads(text, "rcsr.yaml", folder=FILE_OF["rcsr"].parent)
     with pytest.raises(UsageError, match="different mechanism; choose"):
         other.study(RCSR, tmp_path)
     pytest.importorskip("pyarrow")
@@ -225,7 +226,7 @@ def command(study: Path, out: Path, *more: str) -> list[str]:
 @pytest.mark.parametrize("processes", ["0", "2"])
 def test_killed_at_any_moment_it_goes_on(tmp_path: Path, processes: str) -> None:
     study = tmp_path / "study.yaml"
-    study.write_text(study_text(RCSR | {"sample": {"count": 12}}, MECHANISMS / "rcsr.yaml"))
+    study.write_text(study_text(RCSR | {"sample": {"count": 12}}, FILE_OF["rcsr"]))
     begin = time.perf_counter()
     subprocess.run(command(study, tmp_path / "whole"), check=False, capture_output=True)
     seconds = time.perf_counter() - begin

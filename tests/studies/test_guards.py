@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from studies.studies import MECHANISMS, RCSR, study_text
+from references import FILE_OF
+from studies.studies import RCSR, study_text
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import InvalidFile, UsageError
@@ -23,7 +24,7 @@ SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP") if "MECHKIN_RANDOM" in os.environ else
 
 @pytest.fixture(scope="module")
 def model() -> mk.Model:
-    return mk.load(MECHANISMS / "rcsr.yaml")
+    return mk.load(FILE_OF["rcsr"])
 
 
 def mechkin(*words: object) -> subprocess.CompletedProcess[str]:
@@ -35,7 +36,7 @@ def test_a_table_that_is_read_is_not_replaced_by_the_results(tmp_path: Path) -> 
     table = tmp_path / "variants.csv"
     table.write_text("P1\n0.48\n0.5\n")
     (tmp_path / "study.yaml").write_text(
-        study_text({"table": "variants.csv", "keep": KEEP}, MECHANISMS / "rcsr.yaml")
+        study_text({"table": "variants.csv", "keep": KEEP}, FILE_OF["rcsr"])
     )
     for more in ((), ("--again",)):
         found = mechkin("study", tmp_path / "study.yaml", "--out", tmp_path, *more)
@@ -88,7 +89,7 @@ def test_set_counts_in_python_as_in_the_file(model: mk.Model, tmp_path: Path) ->
     given = data | {"set": {"P3": "0.99 in"}}
     assert model.study(given)[label].tobytes() == other.tobytes()
     assert model.study(data)[label].tobytes() != other.tobytes()
-    (tmp_path / "study.yaml").write_text(study_text(given, MECHANISMS / "rcsr.yaml"))
+    (tmp_path / "study.yaml").write_text(study_text(given, FILE_OF["rcsr"]))
     assert mechkin("study", tmp_path / "study.yaml", "--out", tmp_path / "out").returncode == 0
     lines = list(csv.DictReader((tmp_path / "out/variants.csv").open()))
     assert [float(line[label]) for line in lines] == pytest.approx(other.tolist(), rel=1e-12)
@@ -99,7 +100,7 @@ def test_set_counts_in_python_as_in_the_file(model: mk.Model, tmp_path: Path) ->
         assert str(refused.value).startswith(f"study at set.{next(iter(bad))}: error: ")
         if bad in ({"P3": "1 s"}, {"P3": "2*("}):
             continue
-        text = study_text(data | {"set": bad}, MECHANISMS / "rcsr.yaml")
+        text = study_text(data | {"set": bad}, FILE_OF["rcsr"])
         (tmp_path / "bad.yaml").write_text(text)
         line = text[: text.index('"set"')].count("\n") + 2
         found = mechkin("study", tmp_path / "bad.yaml", "--dry-run")
@@ -131,7 +132,7 @@ def test_a_signal_ends_processes_quietly(tmp_path: Path, name: str) -> None:
     if not hasattr(signal, name):
         pytest.skip("no such signal here")
     data = RCSR | {"sample": {"count": 40_000}}
-    (tmp_path / "study.yaml").write_text(study_text(data, MECHANISMS / "rcsr.yaml"))
+    (tmp_path / "study.yaml").write_text(study_text(data, FILE_OF["rcsr"]))
     words = ("study", tmp_path / "study.yaml", "--out", tmp_path / "out", "--processes", "2")
     call = [sys.executable, "-P", "-m", "mechkin_cli", *map(str, words)]
     with subprocess.Popen(

@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from studies.studies import MECHANISMS, RCSR
+from references import FILE_OF
+from studies.studies import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.verdict import Status
@@ -12,7 +13,7 @@ from mechkin_cli.verdict import Status
 
 @pytest.fixture(scope="module")
 def model() -> mk.Model:
-    return mk.load(MECHANISMS / "rcsr.yaml")
+    return mk.load(FILE_OF["rcsr"])
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +87,7 @@ def test_lists_may_be_split_and_joined(model: mk.Model) -> None:
 
 
 def test_what_cannot_be_built_is_told_and_the_rest_goes_on() -> None:
-    model = mk.load(MECHANISMS / "swash_plate.yaml")
+    model = mk.load(FILE_OF["swash_plate"])
     keep = [{"of": "bore.s", "as": "range"}]
     found = model.study({"vary": {"tilt": ["10 deg", "90 deg", "18 deg"]}, "keep": keep})
     # a plate parallel to the bore: the plunger's nose finds no place on it
@@ -100,7 +101,7 @@ def test_what_cannot_be_built_is_told_and_the_rest_goes_on() -> None:
 
 
 def test_a_response_is_studied_too() -> None:
-    model = mk.load(MECHANISMS / "rcsr_response.yaml")
+    model = mk.load(FILE_OF["rcsr_response"])
     (run,) = model.runs
     quantity = "O1.theta"
     data = {

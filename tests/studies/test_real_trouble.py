@@ -11,7 +11,8 @@ import time
 from pathlib import Path
 
 import pytest
-from studies.studies import MECHANISMS, study_text
+from references import FILE_OF
+from studies.studies import study_text
 from studies.test_folders import contents
 
 STUDY = {
@@ -27,7 +28,7 @@ SMALL = 32 * 1024
 
 def command(tmp_path: Path, out: Path) -> list[str]:
     study = tmp_path / "study.yaml"
-    study.write_text(study_text(STUDY, MECHANISMS / "rcsr.yaml"))
+    study.write_text(study_text(STUDY, FILE_OF["rcsr"]))
     return [sys.executable, "-P", "-m", "mechkin_cli", "study", str(study), "--out", str(out)]
 
 

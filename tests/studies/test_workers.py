@@ -6,18 +6,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from references import FILE_OF
 from studies.poison import poisoned
-from studies.studies import MECHANISMS, RCSR
+from studies.studies import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.studies import study as running, study as study_work
+from mechkin_cli.studies import study as running
 from mechkin_cli.studies.workers import Executors, Task, TaskCall, executed, processes
 
 
 @pytest.fixture(scope="module")
 def model() -> mk.Model:
-    return mk.load(MECHANISMS / "rcsr.yaml")
+    return mk.load(FILE_OF["rcsr"])
 
 
 def test_the_variants_that_kill_a_process_are_found_and_the_rest_goes_on() -> None:
@@ -112,14 +113,15 @@ def test_a_variant_that_its_worker_dies_of_is_recorded(model: mk.Model) -> None:
     assert victim not in found.rows["variant"]
 
 
-def test_workers_of_another_version_are_refused(
-    model: mk.Model, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    real = study_work.version
-    monkeypatch.setattr(running, "version", lambda: "0.0.1")
+def test_workers_of_another_version_are_refused(model: mk.Model) -> None:
+    class Older(Inline):
+        def submit(self, function: Any, /, *given: Any, **named: Any) -> Future[Any]:
+            asked = (lambda: "0.0.1") if function is running.version else function
+            return super().submit(asked, *given, **named)
+
     with pytest.raises(UsageError, match=r"a worker has mechkin 0.0.1, this is mechkin"):
-        model.study(RCSR, executor=Inline(lambda begin, end: None))
-    assert real() != "0.0.1"
+        model.study(RCSR, executor=Older(lambda begin, end: None))
+    assert running.version() != "0.0.1"
 
 
 def test_workers_that_have_gone_are_told(model: mk.Model) -> None:
@@ -165,7 +167,7 @@ def test_a_script_without_a_guard_is_told(tmp_path: Any) -> None:
     script = tmp_path / "script.py"
     script.write_text(
         "import mechkin_cli as mk\n"
-        f"m = mk.load({str(MECHANISMS / 'rcsr.yaml')!r})\n"
+        f"m = mk.load({str(FILE_OF['rcsr'])!r})\n"
         "try:\n"
         "    m.study({'vary': {'P1': [0.5, 0.51]}}, processes=1)\n"
         "except mk.MechkinError as error:\n"

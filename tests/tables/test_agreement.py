@@ -5,8 +5,9 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.columns import Columns, TableColumn
+from mechkin_cli.tables.columns import TableColumn
 from mechkin_cli.tables.print import PrintedValues, TableAgreement, agreement
+from mechkin_cli.tables.table import Columns
 
 
 def table(**columns: list[float]) -> Columns:

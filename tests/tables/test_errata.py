@@ -4,7 +4,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Columns, TableColumn
+from mechkin_cli.tables.columns import TableColumn
 from mechkin_cli.tables.errata import (
     PrintedTable,
     against_print_record,
@@ -14,6 +14,7 @@ from mechkin_cli.tables.errata import (
 )
 from mechkin_cli.tables.layout import PrintedSource, Remark
 from mechkin_cli.tables.print import PrintedValues, agreement
+from mechkin_cli.tables.table import Columns
 
 
 def printed_table(name: str, values: list[float], texts: list[str], *remarks: Remark):

@@ -100,7 +100,7 @@ def test_the_rssrs_rod_keeps_its_length_on_the_branch_of_the_drawing() -> None:
 
 
 def test_the_rcsr_is_that_of_the_dissertation() -> None:
-    known = mk.load(ROOT / "mechanisms" / "rcsr.yaml").analyze()
+    known = mk.load(ROOT / "mechanisms" / "dissertation" / "rcsr.yaml").analyze()
     rows = rows_of("rcsr")
     shared = [
         (i, int(np.flatnonzero(known["O1.theta"] == t)[0]))

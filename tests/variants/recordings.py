@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
+from references import FILE_OF
 
 from mechkin_cli.building.builder import Built, build
 from mechkin_cli.building.recording import record
@@ -24,16 +24,15 @@ from mechkin_cli.structure.graph import SolverGraph
 from mechkin_cli.tape.recorder import Traced, register
 from mechkin_cli.tape.tape import Tape, compiled
 
-MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 WITH_PARAMETERS = [
     path.stem
-    for path in sorted(MECHANISMS.glob("*.yaml"))
+    for path in list(FILE_OF.values())
     if {"parameters:", "motion:"} <= set(path.read_text(encoding="utf-8").splitlines())
 ]
 
 
 def base_of(stem: str) -> Built:
-    return build(open_file(MECHANISMS / f"{stem}.yaml"))
+    return build(open_file(FILE_OF[stem]))
 
 
 def parameters_of(built: Built) -> dict[str, float]:

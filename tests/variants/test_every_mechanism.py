@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from variants.recordings import MECHANISMS, WITH_PARAMETERS, near
+from references import FILE_OF
+from variants.recordings import WITH_PARAMETERS, near
 
 import mechkin_cli as mk
 
@@ -26,7 +27,7 @@ def some_quantities(model: mk.Model) -> list[str]:
 @pytest.mark.parametrize("plain", [True, False], ids=["natively", "with derived quantities"])
 @pytest.mark.parametrize("stem", WITH_PARAMETERS)
 def test_as_one_at_a_time(stem: str, plain: bool) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     values = near(model.built, COUNT, seed=7, spread=0.003)
     values[:, 1] = values[:, 0]
     values[:, 1][0] *= 1.0005
@@ -55,7 +56,7 @@ def test_as_one_at_a_time(stem: str, plain: bool) -> None:
 
 
 def test_renamed_parameters() -> None:
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     other = text.replace("P1", "first_crank").replace("alpha4", "twist")
     one, two = mk.loads(text, "rcsr"), mk.loads(other, "rcsr")
     lengths, angles = [0.49, 0.5, 0.52], [15.0, 15.2, 14.9]
@@ -67,7 +68,7 @@ def test_renamed_parameters() -> None:
 
 
 def test_a_parameter_that_nothing_needs() -> None:
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     more = text.replace("parameters:\n", "parameters:\n  colour: 3\n")
     one, two = mk.loads(text, "rcsr"), mk.loads(more, "rcsr")
     a = one.vary({"P1": [0.49, 0.52]}, ["O4.theta"])
@@ -77,7 +78,7 @@ def test_a_parameter_that_nothing_needs() -> None:
 
 def test_far_variants_keep_their_branch() -> None:
     """A long way in the parameters leads to the place that many short ways lead to."""
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     far = {"P1": 0.35, "P2": 1.1, "s1": 5.6}
     own = {"P1": 0.5, "P2": 0.8, "s1": 5.0}
     whole = model.with_parameters(far).analyze(tables=[])

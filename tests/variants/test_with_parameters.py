@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from variants.recordings import MECHANISMS, WITH_PARAMETERS, near, parameters_of
+from references import FILE_OF, MECHANISMS
+from variants.recordings import WITH_PARAMETERS, near, parameters_of
 
 import mechkin_cli as mk
 from mechkin_cli.variants.model import VariedModel
@@ -22,7 +23,7 @@ def changed(model: mk.Model, seed: int) -> dict[str, float]:
 
 @pytest.mark.parametrize("stem", WITH_PARAMETERS)
 def test_the_same_positions_as_a_fresh_file(stem: str) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     values = changed(model, seed=3)
     varied = model.with_parameters(values)
     units, known = model.problem.units, model.problem.parameters
@@ -30,7 +31,7 @@ def test_the_same_positions_as_a_fresh_file(stem: str) -> None:
         name: f"{value!r} {units.label(known[name].dimension)}".strip()
         for name, value in values.items()
     }
-    fresh = mk.load(MECHANISMS / f"{stem}.yaml", texts)
+    fresh = mk.load(FILE_OF[stem], texts)
     # of a file that follows loop one alone, what that loop has
     alone = ["O2.theta", "O2.s", "O4.theta"]
     names = alone if model.problem.follow is not None else list(model.problem.mechanism.coordinates)
@@ -43,9 +44,9 @@ def test_the_same_positions_as_a_fresh_file(stem: str) -> None:
 
 
 def test_problem_is_that_of_the_file() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     varied = model.with_parameters({"P1": "0.52 in", "s1": 5.1})
-    fresh = mk.load(MECHANISMS / "rcsr.yaml", {"P1": "0.52 in", "s1": "5.1 in"})
+    fresh = mk.load(FILE_OF["rcsr"], {"P1": "0.52 in", "s1": "5.1 in"})
     assert varied.problem.mechanism == fresh.problem.mechanism
     assert varied.problem.assembly == fresh.problem.assembly
     assert {n: q.value for n, q in varied.problem.parameters.items()} == {
@@ -55,7 +56,7 @@ def test_problem_is_that_of_the_file() -> None:
 
 
 def test_one_after_another() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     once = model.with_parameters({"P1": 0.51, "P2": 0.81}).analyze(tables=[])["O4.theta"]
     twice = model.with_parameters({"P1": 0.6}).with_parameters({"P2": 0.81, "P1": 0.51})
     assert twice.analyze(tables=[])["O4.theta"].tobytes() == once.tobytes()
@@ -68,7 +69,7 @@ def test_one_after_another() -> None:
 
 def test_rows_that_follow_a_parameter() -> None:
     """What no tape holds is built anew; rates of inputs are on the tape."""
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     text = text.replace("parameters:\n", "parameters:\n  last: 202 deg\n  w: 0.1 rad/s\n")
     text = text.replace("to: 202", "to: last").replace("rate: 0.1 rad/s", "rate: w")
     model = mk.loads(text, "rcsr")
@@ -96,13 +97,13 @@ def test_rows_that_follow_a_parameter() -> None:
 )
 def test_bad_use(given, match) -> None:
     with pytest.raises(mk.UsageError, match=match):
-        mk.load(MECHANISMS / "rcsr.yaml").with_parameters(given)
+        mk.load(FILE_OF["rcsr"]).with_parameters(given)
 
 
 @pytest.mark.parametrize("scale", [0.7, 1.3, 1.6])
 def test_questions_beside_the_sweep(scale: float) -> None:
     """Whether the size leads to the length unit of the file's own drawing or not."""
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     units, known = model.problem.units, model.problem.parameters
     lengths = [name for name in known if not name.startswith("alpha")]
     texts = {
@@ -110,7 +111,7 @@ def test_questions_beside_the_sweep(scale: float) -> None:
         for name in lengths
     }
     varied = model.with_parameters(texts)
-    fresh = mk.load(MECHANISMS / "rcsr.yaml", texts)
+    fresh = mk.load(FILE_OF["rcsr"], texts)
     ranges = [each.ranges(outputs=["O4.theta"]).ranges for each in (varied, fresh)]
     for one, other in zip(*ranges, strict=True):
         for a, b in ((one.lower, other.lower), (one.upper, other.upper)):
@@ -129,7 +130,7 @@ def test_questions_beside_the_sweep(scale: float) -> None:
 def test_a_variant_built_anew_has_loads_that_vary() -> None:
     """With the seat on the other side of its end the gas spring is drawn otherwise, so that no
     recording holds; its force falls with its length all the same."""
-    path = MECHANISMS / "fits" / "hatch.yaml"
+    path = MECHANISMS / "plane" / "fits" / "hatch.yaml"
     values = {"u": 130.5, "v": -114.5, "p": 100.75}
     texts = {name: f"{value!r} mm" for name, value in values.items()}
     varied = mk.load(path).with_parameters(values).analyze(["hinge.effort"])

@@ -8,7 +8,7 @@ import io
 import jsonschema
 import numpy as np
 import pytest
-from references import MECHANISMS
+from references import FILE_OF
 from view.contract import DATA
 from view.seen import array, data
 
@@ -18,7 +18,7 @@ from mechkin_cli.tables.markdown import rows_table
 from mechkin_cli.view.page import script_json
 from mechkin_cli.view.write import analyses_of
 
-FILES = sorted(MECHANISMS.glob("*.yaml"))
+FILES = list(FILE_OF.values())
 LARGEST = 1_000_000
 """Bytes of the data of a mechanism kept here."""
 
@@ -54,7 +54,7 @@ def test_every_mechanism_has_a_page(path) -> None:
 
 
 def test_the_form_is_told_from_another() -> None:
-    shown = data(mk.load(MECHANISMS / "rcsr.yaml"))
+    shown = data(mk.load(FILE_OF["rcsr"]))
     for key in DATA["required"]:
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({k: v for k, v in shown.items() if k != key}, DATA)
@@ -65,7 +65,7 @@ def test_the_form_is_told_from_another() -> None:
 
 @pytest.mark.parametrize("stem", ["rcsr", "rcsr_response", "stewart", "bennett"])
 def test_tables_are_those_of_the_files(stem: str) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     shown = data(model, modes=False)
     for analysis in analyses_of(model, None, None):
         every = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
@@ -84,7 +84,7 @@ def test_tables_are_those_of_the_files(stem: str) -> None:
 
 
 def test_curves_are_the_columns_of_the_tables() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     shown = data(model, modes=False)
     (own,) = shown["runs"][0]["branches"]
     analysis = model.analyze()
@@ -97,7 +97,7 @@ def test_curves_are_the_columns_of_the_tables() -> None:
 
 
 def test_arrows_are_the_reactions_in_the_files_units() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     (own,) = data(model, modes=False)["runs"][0]["branches"]
     analysis = model.analyze()
     arrows = {one["name"]: one for one in own["arrows"]}
@@ -113,7 +113,7 @@ def test_arrows_are_the_reactions_in_the_files_units() -> None:
 
 def test_what_is_not_unique_is_no_arrow() -> None:
     """A planar linkage in space: forces in its plane are unique, those along z are not."""
-    (own, *_) = data(mk.load(MECHANISMS / "slider_crank.yaml"))["runs"][0]["branches"]
+    (own, *_) = data(mk.load(FILE_OF["slider_crank"]))["runs"][0]["branches"]
     names = {one["name"].split(" (")[0]: one for one in own["arrows"]}
     force = names["B.force"]
     assert force["name"] == "B.force (x, y)"

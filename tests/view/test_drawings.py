@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from references import MECHANISMS, RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
@@ -61,7 +61,7 @@ def test_up_is_against_gravity_else_of_the_plane():
 
 
 def test_a_picture_is_svg_of_one_size_with_one_decimal_inside_its_frame():
-    for path in sorted(MECHANISMS.glob("*.yaml")):
+    for path in list(FILE_OF.values()):
         text = (path.with_suffix("") / "picture.svg").read_text(encoding="utf-8")
         root = ElementTree.fromstring(text)
         assert root.get("viewBox") == f"0 0 {WIDTH:.0f} {HEIGHT:.0f}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from references import RCSR
+from references import FILE_OF, RCSR
 from view import seen
 from view.browser import Browser
 from view.page_data import write_page
@@ -48,7 +48,7 @@ def resized(browser: Browser, width: int, height: int) -> None:
 
 @pytest.mark.parametrize("name", ["rcsr", "stewart", "slider_crank"])
 def test_a_margin_in_every_window(browser: Browser, tmp_path: Path, name: str) -> None:
-    page = write_page(tmp_path, seen.data(mk.load(RCSR.parent / f"{name}.yaml")))
+    page = write_page(tmp_path, seen.data(mk.load(FILE_OF[name])))
     browser.open(page, width=WINDOWS[0][0], height=WINDOWS[0][1])
     for window in WINDOWS:
         resized(browser, *window)
@@ -77,7 +77,7 @@ def test_a_view_that_was_turned_stays_when_the_window_changes(
 
 
 def test_the_header_keeps_its_button_in_a_narrow_window(browser: Browser, tmp_path: Path) -> None:
-    page = write_page(tmp_path, seen.data(mk.load(RCSR.parent / "slider_crank.yaml")))
+    page = write_page(tmp_path, seen.data(mk.load(FILE_OF["slider_crank"])))
     browser.open(page, width=390, height=844, touch=True)
     title, button = browser.evaluate("""['#title', '#choices button'].map((each) => {
       const {left, right, top, bottom} = document.querySelector(each).getBoundingClientRect();

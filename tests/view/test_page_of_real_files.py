@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from references import RCSR
+from references import FILE_OF, RCSR
 from view import seen
 from view.browser import Browser
 from view.page_data import write_page
@@ -17,7 +17,6 @@ from view.watching import SINGLE
 
 import mechkin_cli as mk
 
-MECHANISMS = RCSR.parent
 NAMES = ["rcsr", "stewart", "rchch", "five_link_suspension", "slider_crank", "rcsr_response"]
 
 
@@ -29,7 +28,7 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
     """Opens a mechanism's page and gives its data; then nothing may have been complained of."""
 
     def of(name: str) -> dict[str, Any]:
-        data = seen.data(mk.load(MECHANISMS / f"{name}.yaml"))
+        data = seen.data(mk.load(FILE_OF[name]))
         browser.open(write_page(tmp_path, data))
         return data
 

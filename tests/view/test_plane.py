@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from references import MECHANISMS
+from references import FILE_OF
 from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import data
 
@@ -50,7 +50,7 @@ def test_planes_square_to_x_and_y() -> None:
 
 @pytest.mark.parametrize("stem", ["rcsr", "rssr", "stewart", "bennett", "hooke", "sarrus"])
 def test_what_moves_in_space_has_no_plane(stem: str) -> None:
-    shown = data(mk.load(MECHANISMS / f"{stem}.yaml"), modes=False)
+    shown = data(mk.load(FILE_OF[stem]), modes=False)
     assert not shown["planar"]
     assert shown["view"]["camera"] is None
 

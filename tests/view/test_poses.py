@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from mpmath import mp, mpf
-from references import MECHANISMS
+from references import FILE_OF
 from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import data, moved, number_of, posed_rows, poses
 
@@ -98,7 +98,7 @@ def test_a_slider_crank_slides_as_its_closed_form() -> None:
     assert [least, most] == pytest.approx([(want - 130).min(), (want - 130).max()], abs=1e-9)
 
 
-@pytest.mark.parametrize("path", sorted(MECHANISMS.glob("*.yaml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", list(FILE_OF.values()), ids=lambda path: path.stem)
 def test_joints_hold_and_points_are_where_the_tables_have_them(path) -> None:
     """In doubles to 1e-12 of the size: J.point and p.position, which the kernel tells by another
     way; and both halves of a joint with a point of its own meet."""
@@ -123,7 +123,7 @@ def test_joints_hold_and_points_are_where_the_tables_have_them(path) -> None:
 
 @pytest.mark.parametrize("stem", ["rcsr", "stewart", "rcsr_response", "hooke"])
 def test_quaternions_are_of_length_one_and_do_not_jump(stem: str) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     shown = data(model)
     for number in range(len(shown["runs"][0]["branches"])):
         q = poses(shown, 0, number)[:, :, 3:]

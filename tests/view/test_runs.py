@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from references import MECHANISMS
+from references import FILE_OF
 from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import array, branch, column, data, moved, number_of, posed_rows, poses
 
@@ -29,7 +29,7 @@ ROCKING = (
     .replace("from: 0, to: 360, step: 10", "from: 20, to: 200, step: 5")
 )
 """Crank 60, coupler 60, rocker 50, ground 70: the crank cannot go round."""
-PARALLELOGRAM = (MECHANISMS / "parallelogram.yaml").read_text(encoding="utf-8")
+PARALLELOGRAM = FILE_OF["parallelogram"].read_text(encoding="utf-8")
 
 
 def test_rows_beyond_a_dead_centre_have_no_pose_and_a_mark() -> None:
@@ -131,7 +131,7 @@ def test_twenty_thousand_rows_keep_curves_and_thin_poses() -> None:
 def test_many_columns_and_modes_share_a_page() -> None:
     """The RCSR's 92 columns in two modes, 20 001 rows: the cells of one branch, and as many of all
     other modes together."""
-    text = (MECHANISMS / "rcsr.yaml").read_text(encoding="utf-8")
+    text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     model = mk.loads(text.replace("to: 202, step: 2", "to: 202, count: 20001"))
     scene, _ = view_scene(analyses_of(model, None, None))
     shown = scene.record()
@@ -163,8 +163,8 @@ def test_a_pose_is_kept_on_both_sides_of_what_happens() -> None:
 
 
 def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
-    monkeypatch.setattr("mechkin_cli.view.page.MOST_MODES", 2)
-    model = mk.load(MECHANISMS / "phchc.yaml")
+    monkeypatch.setattr("mechkin_cli.view.write.MOST_MODES", 2)
+    model = mk.load(FILE_OF["phchc"])
     scene, notes = view_scene(analyses_of(model, None, None))
     assert len(scene.runs[0].branches) == 3
     (note,) = notes
@@ -176,16 +176,14 @@ def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
 
 
 def test_without_modes_none_are_looked_for(monkeypatch) -> None:
-    monkeypatch.setattr(
-        "mechkin_cli.modes.modes.find_modes", lambda *_, **__: pytest.fail("searched")
-    )
-    shown = data(mk.load(MECHANISMS / "rcsr.yaml"), modes=False)
+    monkeypatch.setattr("mechkin_cli.modes.find_modes", lambda *_, **__: pytest.fail("searched"))
+    shown = data(mk.load(FILE_OF["rcsr"]), modes=False)
     assert len(shown["runs"][0]["branches"]) == 1
 
 
 @pytest.mark.parametrize("stem", ["rcsr", "rcsr_response", "stewart"])
 def test_modes_are_all_there_is_and_each_once(stem: str) -> None:
-    model = mk.load(MECHANISMS / f"{stem}.yaml")
+    model = mk.load(FILE_OF[stem])
     found = model.modes()
     shown = data(model)
     names = [one["name"] for one in shown["runs"][0]["branches"]]
@@ -194,13 +192,13 @@ def test_modes_are_all_there_is_and_each_once(stem: str) -> None:
 
 
 def test_a_mode_asked_for_is_the_own_one() -> None:
-    model = mk.load(MECHANISMS / "rcsr.yaml")
+    model = mk.load(FILE_OF["rcsr"])
     scene, _ = view_scene(analyses_of(model, None, "A"))
     assert [one.name for one in scene.runs[0].branches] == ["mode A", "mode B"]
 
 
 def test_loops_that_are_not_followed_are_hidden() -> None:
-    shown = data(mk.load(MECHANISMS / "rcsr_csr_loop_one.yaml"))
+    shown = data(mk.load(FILE_OF["rcsr_csr_loop_one"]))
     assert [one["name"] for one in shown["links"] if one["hidden"]] == ["arm", "output"]
     assert any("left out" in one["text"] for one in shown["notes"])
 

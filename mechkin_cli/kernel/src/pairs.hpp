@@ -1,6 +1,6 @@
 // The joint table's closing pairs: each is its letter, the elementary conditions that it keeps between the frame A on the
 // first link and B on the second, lengths before directions, and its coordinates in the order of its freedoms
-// (mechanism/joint_table.py). A new pair is one entry here and its name in the list below.
+// (mechanism/pairs.py). A new pair is one entry here and its name in the list below.
 #pragma once
 
 #include "composition.hpp"

@@ -1,5 +1,5 @@
 // Programs of quantities: values of loads that vary, and other numbers that follow from positions, rates and time, for a
-// pack of rows. What they compute is recorded where the file is built (solver/quantity_program.py).
+// pack of rows. What they compute is recorded where the file is built (plan/programs.py).
 //
 // A `RowValue` says what the workspace does not hold: `time()`, `turned(turn, closing, angle)` an angle with its whole
 // turns (LoadOf::turn), and `input(number, factor, angle)` an input with them, of which `angle` is the part within one.

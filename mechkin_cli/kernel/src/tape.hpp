@@ -1,5 +1,5 @@
 // A tape: the arithmetic from a few numbers given to the numbers computed of them, as plain data that every compiled
-// unit replays (tape/operations.py says what the operations are).
+// unit replays (tape/tape.py says what the operations are).
 #pragma once
 
 #include <cstdint>

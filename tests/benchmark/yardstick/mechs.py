@@ -120,7 +120,7 @@ def sevenr():
 
     The short first link lets the input make a full turn. Link 4 is split into two equal halves that
     are welded together. Dimensions have few digits, so that a file can say the same mechanism
-    (mechkin_cli/benchmark/sevenr.py).
+    (benchmarks/sevenr.py).
     """
     rng = np.random.default_rng(123)
     angles = np.linspace(0, 2 * np.pi, 7)[:6]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from references import MECHANISMS
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.tables.errors import ZERO, ColumnErrors, least_digits, worst_column
@@ -32,7 +32,7 @@ and a test compares it.
 
 def page(mechanisms: list[Path] | None = None) -> str:
     """The whole page, or the lines of some mechanisms."""
-    files = sorted(MECHANISMS.glob("*.yaml")) if mechanisms is None else mechanisms
+    files = list(FILE_OF.values()) if mechanisms is None else mechanisms
     lines = [line for file in files for line in _lines(file)]
     return HEAD + "".join(f"{line}\n" for line in lines)
 

@@ -16,7 +16,7 @@ from oracle.expressions import is_bare
 from oracle.idle import legs
 from oracle.units import Units
 from planar.space import in_space
-from references import MECHANISMS, SWEPT
+from references import FILE_OF, SWEPT
 
 Data = dict[str, Any]
 BEYOND = {"lecture_swash_plate"}
@@ -29,7 +29,7 @@ STANDARD = "9.80665 m/s^2"
 
 def file(name: str) -> Data:
     """A kept file without its tables, with four marked points on every link (three in a plane)."""
-    data = document(MECHANISMS / f"{name}.yaml")
+    data = document(FILE_OF[name])
     data = {k: v for k, v in data.items() if k not in ("tables", "quantities", "responses")}
     plane = "plane" in data
     for load in data.get("loads", []):

@@ -1,0 +1,373 @@
+"""Coefficients and right side of the dense system, and its solution.
+
+Rows: force and moment of every moving link, then the pairs' conditions. Columns: all components of
+all reactions, then the efforts. Rows by columns times unknowns equal the right side: what pairs and
+drives exert on a link is the opposite of loads, gravity and inertia.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli.balances.dense import (
+    Wrench,
+    borne_wrenches,
+    coordinate_wrench,
+    force_at,
+    row_motion,
+)
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, cross, scale
+from mechkin_cli.tables import Columns, TableColumn, words_of
+from mechkin_cli.tolerances import DENSE_PIVOT, DENSE_ROUNDING
+from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT, Dimension
+
+if TYPE_CHECKING:
+    from mechkin_cli.balances.dense import RowMotion
+    from mechkin_cli.sweep import Result
+    from mechkin_cli.tables import CoefficientsLayout
+    from mechkin_cli.units import UnitSystem
+
+
+# The unknowns and conditions with which each pair enters the dense system.
+#
+# As the dissertation on successive screws writes them (sections 3.4 to 3.14): a pair on one axis A
+# has a force F and a moment M about the origin with F.A = 0 and (M - O x F).A = 0; what it can take
+# along the axis, FA, or about it, MA, stands apart; a screw takes FA with MA = -p FA. A ball has
+# three forces through its centre. Any other pair has six components, and a condition for each of
+# its freedoms.
+
+UNIT_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_XYZ = "xyz"
+
+
+class Unknown(NamedTuple):
+    """One component: what it exerts on the second link of its joint per unit, in SI.
+
+    `rank` orders the unknowns as the source does: forces, moments, what stands apart, efforts.
+    """
+
+    name: str
+    joint: str
+    dimension: Dimension
+    wrench: Wrench
+    rank: int
+
+
+class ForceCondition(NamedTuple):
+    """A sum of a joint's force and moment components (per unknown of F and M) that vanishes."""
+
+    name: str
+    joint: str
+    dimension: Dimension
+    force: Vector
+    moment: Vector
+
+    def coefficient(self, wrench: Wrench) -> float:
+        """The factor of an unknown."""
+        parts = zip((*self.force, *self.moment), (*wrench.force, *wrench.moment), strict=True)
+        total = 0.0
+        for weight, component in parts:
+            total += weight * component
+        return total
+
+
+class Pair(NamedTuple):
+    """What one pair brings."""
+
+    unknowns: tuple[Unknown, ...]
+    conditions: tuple[ForceCondition, ...]
+
+
+Along = tuple[tuple[str, Attached], tuple[str, Attached]]
+"""Two named directions of the forces of a ball; the third is their cross product."""
+
+
+def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> Pair:
+    """Unknowns and conditions of a pair; `along` by the names of balls."""
+    if joint.type.is_free:
+        return Pair((), ())
+    if joint.type.is_guide:
+        return _guide(joint, motion)
+    if joint.type.is_oriented:
+        return _ball(joint, motion, along.get(joint.name))
+    slides = [_no_force(joint, motion.direction(at), n) for n, at in _named(joint.free_slides)]
+    turns = [_no_moment(joint, motion, at, n) for n, at in _named(joint.free_turns or ())]
+    return Pair((*_components(joint),), (*slides, *turns))
+
+
+def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> Unknown:
+    """What the drive of a coordinate exerts; `word` names it."""
+    known = joint.type.coordinate[coordinate]
+    dimension = MOMENT if known.is_angle else FORCE
+    wrench = coordinate_wrench(joint, coordinate, motion)
+    return Unknown(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
+
+
+def _guide(joint: Joint, motion: RowMotion) -> Pair:
+    axis, point = motion.direction(joint.axis), motion.point(joint.point)
+    conditions = (
+        _no_force(joint, axis, ""),
+        ForceCondition(
+            f"{joint.name}: no moment in M about the axis",
+            joint.name,
+            MOMENT,
+            scale(-1.0, cross(axis, point)),
+            axis,
+        ),
+    )
+    free = joint.type.free
+    apart = []
+    if joint.type.is_threaded:
+        thread = force_at(point, axis).plus(Wrench(ZERO, scale(-joint.pitch, axis)))
+        apart.append(Unknown(f"{joint.name}.FA", joint.name, FORCE, thread, 2))
+    else:
+        if not free["slide"]:
+            force = force_at(point, axis)
+            apart.append(Unknown(f"{joint.name}.FA", joint.name, FORCE, force, 2))
+        if not free["turn"]:
+            apart.append(Unknown(f"{joint.name}.MA", joint.name, MOMENT, Wrench(ZERO, axis), 2))
+    return Pair((*_components(joint), *apart), conditions)
+
+
+def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> Pair:
+    point = motion.point(joint.point)
+    directions: Sequence[Vector] = UNIT_AXES
+    names: Sequence[str] = _XYZ
+    if along is not None:
+        one, two = (motion.direction(at) for _, at in along)
+        directions = (one, two, cross(one, two))
+        first, second = (name for name, _ in along)
+        names = (f" {first}", f" {second}", f" {first} x {second}")
+    forces = tuple(
+        Unknown(f"{joint.name}.F{name}", joint.name, FORCE, force_at(point, direction), 3)
+        for name, direction in zip(names, directions, strict=True)
+    )
+    slides = [_no_force(joint, motion.direction(at), n) for n, at in _named(joint.free_slides)]
+    return Pair(forces, (*slides,))
+
+
+def _components(joint: Joint) -> Iterator[Unknown]:
+    for letter, axis in zip(_XYZ, UNIT_AXES, strict=True):
+        yield Unknown(f"{joint.name}.F{letter}", joint.name, FORCE, Wrench(axis, ZERO), 0)
+    for letter, axis in zip(_XYZ, UNIT_AXES, strict=True):
+        yield Unknown(f"{joint.name}.M{letter}", joint.name, MOMENT, Wrench(ZERO, axis), 1)
+
+
+def _named(free: Sequence[Attached]) -> Iterator[tuple[str, Attached]]:
+    """Directions with a number where there are several."""
+    for number, at in enumerate(free, start=1):
+        yield (f" {number}" if len(free) > 1 else ""), at
+
+
+def _no_force(joint: Joint, axis: Vector, number: str) -> ForceCondition:
+    where = "along the axis" if joint.type.is_guide else f"along slide{number}"
+    return ForceCondition(f"{joint.name}: no force in F {where}", joint.name, FORCE, axis, ZERO)
+
+
+def _no_moment(joint: Joint, motion: RowMotion, at: Attached, number: str) -> ForceCondition:
+    axis, point = motion.direction(at), motion.point(joint.point)
+    name = f"{joint.name}: no moment in M about turn{number}"
+    return ForceCondition(name, joint.name, MOMENT, scale(-1.0, cross(axis, point)), axis)
+
+
+Matrix = list[list[float]]
+
+
+class Equation(NamedTuple):
+    """One row: its name and dimension."""
+
+    name: str
+    dimension: Dimension
+
+
+class DenseSystem(NamedTuple):
+    """`coefficients` (equations, unknowns) and `right` (equations,), in SI."""
+
+    equations: tuple[Equation, ...]
+    unknowns: tuple[Unknown, ...]
+    coefficients: Matrix
+    right: list[float]
+
+
+def dense_system(
+    result: Result, row: int, along: Mapping[str, Along] = MappingProxyType({})
+) -> DenseSystem:
+    """The system at a row (counted from 0) that has a position; `along` as in `pair_terms`."""
+    mechanism, motion = result.problem.mechanism, row_motion(result, row)
+    pairs = [pair_terms(joint, motion, along) for joint in mechanism.joints.values()]
+    drives = mechanism.drives
+    # a motor that carries what a tie transmits gives another effort than acts at its own coordinate
+    word = "drive" if drives is not None and drives.ties else "effort"
+    inputs = [effort(mechanism.joints[j], c, motion, word) for j, c in result.problem.acting]
+    terms = [*(unknown for pair in pairs for unknown in pair.unknowns), *inputs]
+    unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))
+    conditions = [condition for pair in pairs for condition in pair.conditions]
+    ends = {joint.name: (joint.first, joint.second) for joint in mechanism.joints.values()}
+    borne = borne_wrenches(result, motion, row)
+    equations: list[Equation] = []
+    coefficients: Matrix = []
+    right: list[float] = []
+    for name in mechanism.links:
+        if name == GROUND_NAME:
+            continue
+        signs = [
+            float(ends[u.joint][1] == name) - float(ends[u.joint][0] == name) for u in unknowns
+        ]
+        for part, dimension in (("force", FORCE), ("moment", MOMENT)):
+            for k, letter in enumerate("xyz"):
+                equations.append(Equation(f"{name}: {part} {letter}", dimension))
+                row_of = [
+                    s * getattr(u.wrench, part)[k] for s, u in zip(signs, unknowns, strict=True)
+                ]
+                coefficients.append(row_of)
+                right.append(-getattr(borne[name], part)[k])
+    for condition in conditions:
+        equations.append(Equation(condition.name, condition.dimension))
+        coefficients.append([_in_condition(condition, unknown) for unknown in unknowns])
+        right.append(0.0)
+    return DenseSystem(tuple(equations), unknowns, coefficients, right)
+
+
+def _in_condition(condition: ForceCondition, unknown: Unknown) -> float:
+    """Conditions hold for F and M of their pair, not for what stands apart, nor for its drive."""
+    if unknown.joint != condition.joint or unknown.rank not in _OF_CONDITIONS:
+        return 0.0
+    return condition.coefficient(unknown.wrench)
+
+
+_OF_CONDITIONS = (0, 1, 3)
+
+
+def solved(system: DenseSystem) -> list[float] | None:
+    """The unknowns in SI, by elimination with row pivots; None where they are not as many as the
+    equations or not independent of one another."""
+    size = len(system.unknowns)
+    if len(system.equations) != size:
+        return None
+    rows = [_scaled([*c, r]) for c, r in zip(system.coefficients, system.right, strict=True)]
+    for k in range(size):
+        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        if abs(rows[pivot][k]) <= DENSE_PIVOT:
+            return None
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        for i in range(k + 1, size):
+            factor = rows[i][k] / rows[k][k]
+            if factor:
+                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    values = [0.0] * size
+    for k in reversed(range(size)):
+        rest = rows[k][size]
+        for j in range(k + 1, size):
+            rest -= rows[k][j] * values[j]
+        values[k] = rest / rows[k][k]
+    return values
+
+
+def _scaled(row: list[float]) -> list[float]:
+    """An equation with its largest coefficient 1, so that pivots compare."""
+    largest = max(abs(value) for value in row[:-1]) or 1.0
+    return [value / largest for value in row]
+
+
+# The dense system of reactions as two tables: coefficients and right side, unknowns and values.
+#
+# Numbers are in the file's units, so that an unknown in its unit times a coefficient has the unit
+# of its equation; moments are about the ground origin. What the system's own solution gives stands
+# beside the unknowns where it is square: the reactions of the other tables, found another way.
+
+
+def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Columns, Columns]:
+    """The coefficients with their right side, and the unknowns with their values.
+
+    Raises:
+        UsageError: the row has no solution.
+    """
+    row = layout.row - 1
+    if not result.solved[row]:
+        raise UsageError(
+            f"the coefficients {layout.name} are wanted at row {layout.row}, which has no "
+            "solution; give another row"
+        )
+    named = result.problem.mechanism.directions
+    along = {
+        name: ((one, named[one]), (two, named[two])) for name, (one, two) in layout.along.items()
+    }
+    system = dense_system(result, row, along)
+    name, of_unknowns = layout.names
+    title = f"{layout.title}; {_counts(layout, system, result)}"
+    coefficients = Columns(name, title, _coefficients(system, result.units), of_rows=False)
+    title = f"{layout.title}; unknowns at row {layout.row}"
+    unknowns = Columns(of_unknowns, title, _unknowns(system, result.units), of_rows=False)
+    return coefficients, unknowns
+
+
+def _counts(layout: CoefficientsLayout, system: DenseSystem, result: Result) -> str:
+    """Row, size, the source's count and the sizes really solved."""
+    text = f"{len(system.equations)} equations in {len(system.unknowns)} unknowns"
+    if layout.counted is not None:
+        text += f" (the source counts {layout.counted})"
+    sizes = " and ".join(str(len(block.unknowns)) for block in result.graph.blocks)
+    solved_in = f", solved here with {sizes} unknowns" if sizes else ", solved here link by link"
+    return f"row {layout.row}: {text}{solved_in}"
+
+
+def _coefficients(system: DenseSystem, units: UnitSystem) -> tuple[TableColumn, ...]:
+    """Number and name of each equation, a column per unknown, the right side."""
+    matrix = np.array(system.coefficients)
+    columns = [
+        _numbers("i", range(1, len(system.equations) + 1)),
+        _words("equation", [equation.name for equation in system.equations]),
+    ]
+    dimensions = [equation.dimension for equation in system.equations]
+    for unknown, values in zip(system.unknowns, matrix.T, strict=True):
+        told = [
+            units.from_si(float(value), _per(dimension, unknown.dimension))
+            for value, dimension in zip(values, dimensions, strict=True)
+        ]
+        columns.append(_numbers(unknown.name, told))
+    right = [units.from_si(v, d) for v, d in zip(system.right, dimensions, strict=True)]
+    return (*columns, _numbers("right side", right))
+
+
+def _per(equation: Dimension, unknown: Dimension) -> Dimension:
+    """The dimension of a coefficient."""
+    return LENGTH if (equation, unknown) == (MOMENT, FORCE) else DIMENSIONLESS
+
+
+def _unknowns(system: DenseSystem, units: UnitSystem) -> tuple[TableColumn, ...]:
+    dimensions = [unknown.dimension for unknown in system.unknowns]
+    values = _without_rounding(solved(system), dimensions)
+    return (
+        _numbers("j", range(1, len(system.unknowns) + 1)),
+        _words("unknown", [unknown.name for unknown in system.unknowns]),
+        _numbers("value", [units.from_si(v, d) for v, d in zip(values, dimensions, strict=True)]),
+        _words("unit", [units.label(dimension) for dimension in dimensions]),
+    )
+
+
+def _without_rounding(
+    values: Sequence[float] | None, dimensions: Sequence[Dimension]
+) -> Sequence[float]:
+    """The values with zeros for what is rounding; empty cells where there is no solution."""
+    if values is None:
+        return [float("nan")] * len(dimensions)
+    largest: dict[Dimension, float] = {}
+    for value, dimension in zip(values, dimensions, strict=True):
+        largest[dimension] = max(abs(value), largest.get(dimension, 0.0))
+    return [
+        value if abs(value) > DENSE_ROUNDING * largest[dimension] else 0.0
+        for value, dimension in zip(values, dimensions, strict=True)
+    ]
+
+
+def _numbers(label: str, values: Sequence[float] | range) -> TableColumn:
+    return TableColumn(label, "", np.array(values, dtype=np.float64))
+
+
+def _words(label: str, texts: Sequence[str]) -> TableColumn:
+    return TableColumn(label, "", words_of(texts))

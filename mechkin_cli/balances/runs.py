@@ -1,0 +1,407 @@
+"""Balances as small tables in the file's units."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.derived import (
+    GRAVITY,
+    BasisQuantities,
+    effort_powers,
+    friction_power,
+    largest_between,
+    load_powers_along,
+    mean,
+    over_cycle,
+    power_against,
+    running_integral_of_cycle,
+    total,
+    unloaded,
+)
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel.functions import atan2, cos, sin
+from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, WorkBalance
+from mechkin_cli.session import input_tie
+from mechkin_cli.sweep import stands_elsewhere
+from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, Words, column_of
+from mechkin_cli.tolerances import REACTION_ROUNDING
+from mechkin_cli.units import ANGLE, ANGULAR_RATE, ENERGY, INERTIA, MOMENT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from mechkin_cli.mechanism import Cycle, Load
+    from mechkin_cli.session import KernelInputs
+    from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Result
+    from mechkin_cli.units import Dimension
+
+
+# The rows along a cycle: the inputs' rates along it, and whether it is closed.
+
+
+def rates_along(result: Result, cycle: Cycle) -> KernelInputs:
+    """The inputs with their rates per unit of the cycle's name (rad or s): with those of time, or
+    with unit rate of the input and those of the inputs that follow it."""
+    session = result.session
+    if cycle.number is None:
+        return session.inputs.without_accelerations()
+    along = session.inputs.at_unit_rate(cycle.number)
+    motion = session.problem.motion
+    if motion.time is not None:
+        # equal steps of time and of the input: it turns at one rate
+        rates = session.inputs.rates / session.inputs.rates[cycle.number]
+        return along._replace(rates=rates)
+    tie = input_tie(session, cycle.number)
+    if tie is not None:
+        rates = tie.derivatives(session.inputs.values[cycle.number])[1]
+        rates[cycle.number] = 1.0
+        along = along._replace(rates=np.ascontiguousarray(rates))
+    return along
+
+
+def cycle_fault(result: Result, balance: AnyBalance) -> Diagnostic | None:
+    """Why the rows are no closed cycle; None where they are."""
+    cycle, rows = balance.cycle, result.row_states
+    lost = np.flatnonzero(~result.solved)
+    if lost.size:
+        text = f"{balance.name}: row {lost[0] + 1} of the cycle has no solution"
+        hint = "balances need every row; move or turn the sweep so that all have one"
+        return _fault("balance-undefined", balance, text, hint)
+    if stands_elsewhere(result.session, rows.states[:, [0, -1]]):
+        text = f"{balance.name}: the mechanism is not back at the last row where it was at first"
+        again = (cycle.turns + 1) if cycle.number is not None else 2
+        hint = f"let the rows go over more turns, such as {again}; mechkin ranges shows the circuit"
+        return _fault("cycle-not-closed", balance, text, hint)
+    moving = result.problem.motion.inputs
+    along = rates_along(result, cycle).rates
+    for number, item in enumerate(moving):
+        if np.ptp(item.values) and not along[number].any():
+            text = f"{balance.name}: {item.name} moves, too, but does not follow {cycle.name}"
+            hint = f"tie it with {{with: an expression of {cycle.name}}}, or give the sweep a time:"
+            return _fault("no-cycle", balance, text, hint)
+    return None
+
+
+def repeated(values: Floats) -> bool:
+    """Whether the last of some samples is the first again, and all are numbers."""
+    if not np.isfinite(values).all():
+        return False
+    size = float(np.max(np.abs(values)))
+    return bool(abs(values[-1] - values[0]) <= tolerances.REPEATS * size)
+
+
+def sample_fault(balance: AnyBalance, what: str, values: Floats) -> Diagnostic:
+    """Why samples over the rows are no cycle."""
+    lost = np.flatnonzero(~np.isfinite(values))
+    if lost.size:
+        text = f"{balance.name}: {what} has no value in row {lost[0] + 1}"
+        return _fault("balance-undefined", balance, text, "see what is said of that row, and of it")
+    text = f"{balance.name}: {what} is not at the last row what it was at the first"
+    hint = "what depends on time, or on an angle with its turns, does not repeat; use wrap(angle)"
+    measured = f"{values[-1]:.6g} for {values[0]:.6g}"
+    return _fault("cycle-not-closed", balance, text, hint, measured)
+
+
+def _fault(
+    code: str, balance: AnyBalance, text: str, hint: str, measured: str | None = None
+) -> Diagnostic:
+    return Diagnostic(code, "error", text, balance.place, measured=measured, hint=hint)
+
+
+# The flywheel that keeps a machine's rate within bounds, under a drive of constant effort.
+#
+# With the work W(x) of drive and loads from the first row on and the reduced inertia J(x), the
+# energy T0 + W = (J + J_F) omega^2 / 2 has to keep omega between the bounds everywhere:
+#
+#     T0 - w_min^2/2 J_F  >=  A = max(w_min^2/2 J - W)
+#     T0 - w_max^2/2 J_F  <=  B = min(w_max^2/2 J - W)
+#
+# The least flywheel meets both: J_F = (A - B) / (unevenness mean^2). These are the tangents to
+# Wittenbauer's diagram of energy over inertia (Wittenbauer, Graphische Dynamik, 1923), without the
+# usual approximation, which takes one rate for both bounds. Loads are those of the rows: what reads
+# rates does not follow the fluctuation.
+
+
+class Sized(NamedTuple):
+    """What a flywheel is sized by, SI.
+
+    Attributes:
+        flywheel: its inertia; 0 where none is needed.
+        estimate: the same with the mean rate at both bounds.
+        drive: the constant effort that balances the loads' work.
+        fluctuation: largest less least work of drive and loads.
+        least, most: reduced inertia of the mechanism.
+        without: the unevenness without a flywheel; nan where it would not go round.
+    """
+
+    flywheel: float
+    estimate: float
+    drive: float
+    fluctuation: float
+    least: float
+    most: float
+    without: float
+
+
+def sized(loads: Floats, inertia: Floats, step: float, unevenness: float, rate: float) -> Sized:
+    """The flywheel of a machine.
+
+    Args:
+        loads: of all loads along the angle, over a cycle (rows - 1,), N m.
+        inertia: reduced, kg m^2.
+        step: from row to row, rad.
+        unevenness: wanted.
+        rate: mean of largest and least, rad/s.
+    """
+    drive = -mean(loads)
+    work = running_integral_of_cycle(loads + drive, step)[:-1]
+
+    def needed(share: float, about: float) -> float:
+        """A - B for an unevenness `share`; with `about` 0 both bounds have the mean rate."""
+        low, high = (rate * (1.0 + sign * about / 2.0) for sign in (-1.0, 1.0))
+        upper = largest_between(low * low / 2.0 * inertia - work)
+        lower = -largest_between(work - high * high / 2.0 * inertia)
+        return (upper - lower) / (share * rate * rate)
+
+    return Sized(
+        flywheel=max(needed(unevenness, unevenness), 0.0),
+        estimate=max(needed(unevenness, 0.0), 0.0),
+        drive=drive,
+        fluctuation=largest_between(work) + largest_between(-work),
+        least=-largest_between(-inertia),
+        most=largest_between(inertia),
+        without=_root(lambda share: needed(share, share)),
+    )
+
+
+def _root(needed: Callable[[float], float]) -> float:
+    """The unevenness at which no flywheel is needed: what is needed falls as it grows."""
+    low, high = 0.0, 2.0
+    if needed(high) > 0.0:
+        return float("nan")
+    for _ in range(200):
+        middle = (low + high) / 2.0
+        if middle in (low, high):
+            break
+        if needed(middle) > 0.0:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+# Fourier coefficients over a cycle of rows at equal distances.
+#
+#     f = mean + sum over n of (c_n cos(n x) + s_n sin(n x)),     x the input's angle, or 2 pi t / T
+#
+# Of N rows these are the coefficients of the trigonometric polynomial through them; what orders
+# above N/2 of the function leave in them (aliasing) falls as its harmonics do.
+
+
+class HarmonicOrder(NamedTuple):
+    """One order: coefficients, amplitude and phase (rad) of amplitude cos(n x - phase), and how far
+    the coefficients may be off."""
+
+    order: float
+    cosine: float
+    sine: float
+    amplitude: float
+    phase: float
+    error: float
+
+
+def harmonic(values: Floats, cycle: Cycle, order: float) -> HarmonicOrder:
+    """The harmonic of an order of samples over the cycle (rows - 1,)."""
+    cosine, sine = _coefficients(values, cycle, order)
+    error = float("nan")
+    if values.size % 2 == 0 and 4 * round(order * cycle.turns) < values.size:
+        coarse = _coefficients(values[::2], cycle, order)
+        error = max(abs(cosine - coarse[0]), abs(sine - coarse[1]))
+    amplitude = float(np.sqrt(cosine * cosine + sine * sine))
+    phase = float(atan2(np.array([sine]), np.array([cosine]))[0])
+    return HarmonicOrder(order, cosine, sine, amplitude, phase, error)
+
+
+def _coefficients(values: Floats, cycle: Cycle, order: float) -> tuple[float, float]:
+    count, whole = values.size, round(order * cycle.turns)
+    # n x from row to row is a whole number of N-th parts of a turn
+    part = (whole * np.arange(count)) % count
+    angle = np.asarray(part * (2.0 * np.pi / count), dtype=np.float64)
+    if cycle.number is not None:
+        angle = (angle if cycle.step > 0.0 else -angle) + order * cycle.first
+    factor = (1.0 if whole == 0 else 2.0) / count
+    cosine = factor * total(values * cos(angle))
+    sine = 0.0 if whole == 0 else factor * total(values * sin(angle))
+    return cosine, sine
+
+
+# The work of every effort and load over a cycle.
+
+
+class Item(NamedTuple):
+    """Work over the cycle (J), and how far it may be off."""
+
+    name: str
+    work: float
+    error: float
+
+
+def work_over_cycle(result: Result, balance: WorkBalance) -> tuple[list[Item], list[Diagnostic]]:
+    """Works of efforts, gravity, loads and inertia, and their sum, which is what is missing."""
+    cycle, items, faults = balance.cycle, [], []
+    parts = powers_along(result, cycle)
+    total = np.zeros(result.rows)
+    for values in parts.values():
+        total = total + values
+    for name, values in parts.items():
+        if repeated(values):
+            items.append(Item(name, *over_cycle(values[:-1], cycle.step)))
+        else:
+            faults.append(sample_fault(balance, name, values))
+            items.append(Item(name, float("nan"), float("nan")))
+    items.append(Item("sum", *over_cycle(total[:-1], cycle.step)))
+    return items, faults
+
+
+def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
+    """The forces' products with the motion along the cycle (J per rad or s, rows), by name: of
+    efforts, gravity and loads, and of inertia, by which they are in balance."""
+    run = BasisQuantities(result, {}, result.session.inputs)
+    along = rates_along(result, cycle)
+    found = effort_powers(run, along)
+    for number, (load, power) in enumerate(load_powers_along(run, along)):
+        found[load_name(result, number, load)] = power
+    rubbed = friction_power(run, along)
+    if rubbed is not None:
+        found["friction"] = rubbed
+    masses = unloaded(result.session, at_inputs=True)
+    return found | {"inertia": power_against(run, along, masses)}
+
+
+def load_name(result: Result, number: int, load: Load | str) -> str:
+    """`load 2: damper`, counted as they act; gravity is not among them."""
+    if load == GRAVITY:
+        return GRAVITY
+    first = 1 if any(result.problem.mechanism.gravity) else 0
+    words = {"LinkLoad": "on link", "JointLoad": "at joint"}
+    kind = type(load).__name__
+    what = words.get(kind, kind.lower())
+    owner = getattr(load, "link", None) or getattr(load, "joint", None)
+    return f"load {number - first + 1}: {what}{f' {owner}' if owner else ''}"
+
+
+Table = tuple[Columns, list["Diagnostic"]]
+
+
+def balance_table(balance: AnyBalance, result: Result) -> Table:
+    """A balance over the rows, and what is wrong with it; its cells are empty then."""
+    fault = cycle_fault(result, balance)
+    if isinstance(balance, WorkBalance):
+        return _work(balance, result, fault)
+    if isinstance(balance, Harmonics):
+        return _harmonics(balance, result, fault)
+    return _flywheel(balance, result, fault)
+
+
+def _work(balance: WorkBalance, result: Result, fault: Diagnostic | None) -> Table:
+    if fault is not None:
+        return _table(
+            balance, [_words("of", ["sum"]), *_energies(result, [np.nan], [np.nan])], [fault]
+        )
+    items, faults = work_over_cycle(result, balance)
+    energies = _energies(result, [i.work for i in items], [i.error for i in items])
+    return _table(balance, [_words("of", [item.name for item in items]), *energies], faults)
+
+
+def _energies(result: Result, work: Sequence[float], error: Sequence[float]) -> list[TableColumn]:
+    return [
+        _numbers(result, "work", ENERGY, work),
+        _numbers(result, "error", ENERGY, error),
+    ]
+
+
+def _harmonics(balance: Harmonics, result: Result, fault: Diagnostic | None) -> Table:
+    names, orders, cells, unit = [], [], [], ""
+    faults = [] if fault is None else [fault]
+    for label, expression in balance.of:
+        column = column_of(ColumnLayout(label, expression), result)
+        values, unit = np.asarray(column.values, dtype=np.float64), column.unit
+        if fault is None and not repeated(values):
+            faults.append(sample_fault(balance, label, values))
+        good = fault is None and repeated(values)
+        for order in balance.orders:
+            names.append(label)
+            orders.append(order)
+            found = harmonic(values[:-1], balance.cycle, order) if good else None
+            if found and found.amplitude <= REACTION_ROUNDING * float(np.max(np.abs(values))):
+                # what rounding leaves has no phase
+                found = found._replace(phase=np.nan)
+            cells.append(found[1:] if found else (np.nan,) * 5)
+    cosine, sine, amplitude, phase, error = np.array(cells).reshape(-1, 5).T.copy()
+    return _table(
+        balance,
+        [
+            _words("of", names),
+            TableColumn("order", "", np.array(orders)),
+            TableColumn("cosine", unit, cosine),
+            TableColumn("sine", unit, sine),
+            TableColumn("amplitude", unit, amplitude),
+            _numbers(result, "phase", ANGLE, phase),
+            TableColumn("error", unit, error),
+        ],
+        faults,
+    )
+
+
+def _flywheel(balance: Flywheel, result: Result, fault: Diagnostic | None) -> Table:
+    found, faults = Sized(*[float("nan")] * 7), [] if fault is None else [fault]
+    if fault is None:
+        parts = powers_along(result, balance.cycle)
+        efforts = {f"{joint}.{coordinate}.effort" for joint, coordinate in result.problem.acting}
+        loads = np.zeros(result.rows)
+        for name, values in parts.items():
+            if name not in efforts and name != "inertia":
+                loads = loads + values
+        energy = result.problem.quantities()["row.kinetic_energy"]
+        along = rates_along(result, balance.cycle)
+        inertia = 2.0 * result.evaluated([energy], inputs=along)[energy.name][0]
+        for what, values in (("the loads' moment", loads), ("the reduced inertia", inertia)):
+            if not repeated(values):
+                faults.append(sample_fault(balance, what, values))
+        if not faults:
+            step, turning = balance.cycle.step, balance.unevenness
+            found = sized(loads[:-1], inertia[:-1], step, turning, balance.rate)
+    columns = [
+        TableColumn("unevenness", "", np.array([balance.unevenness])),
+        _numbers(result, "rate", ANGULAR_RATE, [balance.rate]),
+        _numbers(result, "flywheel", INERTIA, [found.flywheel]),
+        _numbers(result, "estimate", INERTIA, [found.estimate]),
+        _numbers(result, "drive", MOMENT, [found.drive]),
+        _numbers(result, "work_fluctuation", ENERGY, [found.fluctuation]),
+        _numbers(result, "least_inertia", INERTIA, [found.least]),
+        _numbers(result, "largest_inertia", INERTIA, [found.most]),
+        TableColumn("unevenness_without", "", np.array([found.without])),
+    ]
+    return _table(balance, columns, faults)
+
+
+def _table(balance: AnyBalance, columns: list[TableColumn], faults: list[Diagnostic]) -> Table:
+    return Columns(balance.name, balance.title, tuple(columns), of_rows=False), faults
+
+
+def _words(label: str, texts: Sequence[str]) -> TableColumn:
+    known = tuple(dict.fromkeys(texts))
+    codes = np.array([known.index(text) for text in texts], dtype=np.int32)
+    return TableColumn(label, "", Words(codes, known))
+
+
+def _numbers(
+    result: Result, label: str, dimension: Dimension, values: Sequence[float] | np.ndarray
+) -> TableColumn:
+    units = result.units
+    in_file = units.from_si(np.array(values, dtype=np.float64), dimension)
+    return TableColumn(label, units.label(dimension), np.asarray(in_file))

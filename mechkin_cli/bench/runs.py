@@ -1,0 +1,160 @@
+"""A run of the bench: scenes, methods, timing in turns, errors; everything as records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from time import thread_time
+from typing import NamedTuple
+
+from mechkin_cli.bench.measurement import (
+    Bench,
+    Method,
+    Skipped,
+    Timing,
+    Unable,
+    errors_of,
+    in_turns,
+    measured,
+)
+from mechkin_cli.bench.methods import FAMILY, UNIT, dense_methods, kernel_methods
+from mechkin_cli.bench.report import Table
+from mechkin_cli.bench.row_by_row import scipy_methods, stepping_methods
+from mechkin_cli.bench.scene import Scene, Subject, Values
+from mechkin_cli.bench.settings import demand_table, process_table, thread_table
+from mechkin_cli.bench.truth import exact_values
+from mechkin_cli.templates import template_text
+
+Family = Callable[[Scene], Iterator[Method]]
+"""From a scene to its methods at all their settings; raises `Unable` where they cannot run."""
+
+FAMILIES: dict[str, Family] = {
+    FAMILY: kernel_methods,
+    "dense": dense_methods,
+    "scipy": scipy_methods,
+    "stepping": stepping_methods,
+}
+"""The first is ours. A family imports its library itself, so that one that is missing is named and
+left out."""
+
+
+@dataclass(frozen=True)
+class Rounds:
+    """In how many rounds methods are timed: those of the kernel, and those row by row in Python."""
+
+    fast: int = 15
+    slow: int = 3
+
+    @property
+    def processes(self) -> int:
+        """Those of whole processes; 0 for none."""
+        return self.slow if self.slow > 1 else 0
+
+
+FULL, QUICK = Rounds(), Rounds(3, 1)
+
+TEMPLATES = ("rssr", "rcsr", "platform")
+"""One loop, more of a joint, six loops at once."""
+
+LONG = 0.5
+"""Seconds of a sweep by a slow method from which on one round has to do."""
+
+
+def setting_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[Table]:
+    """What the settings of a run cost."""
+    for subject in subjects:
+        yield demand_table(subject, rounds.fast, rounds.processes)
+    if rounds.processes:
+        for subject in subjects:
+            yield process_table(subject, rounds.processes)
+    yield thread_table([subject.scene for subject in subjects], rounds.slow)
+
+
+def templates() -> list[Subject]:
+    """Some mechanisms to start from, read, checked and closed."""
+    from mechkin_cli.model import loads
+
+    texts = {name: template_text(name) for name in TEMPLATES}
+    return [Subject(Scene(name, loads(text, name)), text) for name, text in texts.items()]
+
+
+class Suite(NamedTuple):
+    """What a command measures.
+
+    Args:
+        command: its words, as a page names them.
+        subjects: makes the mechanisms where no file is named.
+        families: of methods.
+        tables: what else is measured.
+        words: the same in words.
+    """
+
+    command: str
+    subjects: Callable[[], list[Subject]]
+    families: Mapping[str, Family]
+    tables: Callable[[Sequence[Subject], Rounds], Iterator[Table]]
+    words: str
+
+
+SUITE = Suite("mechkin bench", templates, FAMILIES, setting_tables, "demand plan, threads")
+
+
+def methods_of(scene: Scene, family: str, make: Family) -> list[Method | Skipped]:
+    """All methods of a family that can run, then the reason why others cannot."""
+    found: list[Method | Skipped] = []
+    try:
+        found.extend(make(scene))
+    except ImportError as error:
+        name = str(error.name or "").partition(".")[0]
+        found.append(
+            Skipped(scene.name, family, f"{name} is not installed (pip install 'mechkin[bench]')")
+        )
+    except Unable as reason:
+        found.append(Skipped(scene.name, family, str(reason)))
+    return found
+
+
+def bench(scene: Scene, rounds: Rounds, families: Mapping[str, Family] = FAMILIES) -> Bench:
+    """Measures a scene by some families of methods; ours is always among them."""
+    wanted = {FAMILY: kernel_methods, **families}
+    found = [each for name, make in wanted.items() for each in methods_of(scene, name, make)]
+    methods = [each for each in found if isinstance(each, Method)]
+    skipped = tuple(each for each in found if isinstance(each, Skipped))
+    true, exact = exact_values(scene)
+    lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
+    units = {m.level: m for m in methods if m.family == FAMILY and m.curve == UNIT}
+    measurements = []
+    for method, timing, by, values in _timed(methods, units, rounds):
+        errors = errors_of(scene.asked, lengths, values, true)
+        unit = units[method.level]
+        measurements.append(measured(scene.name, method, timing, by, unit.rows, errors))
+    return Bench(scene, tuple(measurements), skipped, exact)
+
+
+def _timed(
+    methods: Sequence[Method], units: Mapping[str, Method], rounds: Rounds
+) -> Iterator[tuple[Method, Timing, Timing, Values]]:
+    """Each method with its times, those of the kernel in the same rounds, and what it finds."""
+    fast = [m for m in methods if not m.slow]
+    times = in_turns({id(m): m.call for m in fast}, rounds.fast)
+    for method in fast:
+        yield method, times[id(method)], times[id(units[method.level])], method.read()
+    for method in methods:
+        if method.slow:
+            yield method, *_slowly(method, units[method.level], rounds.slow)
+
+
+def _slowly(method: Method, unit: Method, most: int) -> tuple[Timing, Timing, Values]:
+    """Times a method whose runs are long, beside the kernel, and keeps what the first run finds."""
+    own: list[float] = []
+    others: list[float] = []
+    values: Values = {}
+    while not own or (len(own) < most and own[0] < LONG):
+        begun = thread_time()
+        found = method.read()
+        own.append(thread_time() - begun)
+        values = values or found
+        begun = thread_time()
+        unit.call()
+        others.append(thread_time() - begun)
+    return Timing(tuple(own)), Timing(tuple(others)), values

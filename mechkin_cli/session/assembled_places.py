@@ -1,0 +1,182 @@
+"""Places where a mechanism is assembled, next to its drawing, to take ranks at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import (
+    GROUND,
+    GROUND_NAME,
+    ZERO,
+    Attached,
+    Frame,
+    Mechanism,
+    add,
+    cross,
+    find_legs,
+    frame_on,
+    norm,
+    scale,
+    subtract,
+)
+from mechkin_cli.plan import Layout, home_inputs, home_state
+from mechkin_cli.session.kernel_run import Ask, RowInputs, run
+from mechkin_cli.session.structure import Coordinate, Structure
+from mechkin_cli.structure import (
+    RandomStarts,
+    Rates,
+    SolverGraph,
+    UnsolvableGraph,
+    build_graph,
+    connections_of,
+    reduce,
+    unit_of,
+    whole_link,
+)
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+
+Poses = Callable[[str], Frame]
+
+
+def assembled_places(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Iterator[Poses]:
+    """Where the links' drawings stand; `graph` closes all loops of a component at once."""
+    yield from closed_places(mechanism, graph)
+    if not is_drawn_assembled(mechanism):
+        yield _as_drawn
+
+
+def closed_places(
+    mechanism: Mechanism, graph: Callable[[], SolverGraph], at: Sequence[float] = ()
+) -> Iterator[Poses]:
+    """As `assembled_places`, without a drawing that is not assembled; beside it the inputs stand
+    `at` these values (rad, m), or at zero."""
+    drawn = is_drawn_assembled(mechanism)
+    if drawn:
+        yield _as_drawn
+    structure = _structure(mechanism, graph)
+    if structure is not None:
+        moves = [(move, off) for off in (1.0, 0.0) for move in tolerances.PLACE_MOVES]
+        for move, off in moves if drawn else [(0.0, 0.0), *moves]:
+            poses = _closed(structure, at, move, off * move)
+            if poses is not None:
+                yield poses
+
+
+def is_drawn_assembled(mechanism: Mechanism) -> bool:
+    """Whether all joints are drawn with their frames on each other, and legs as long as they are
+    apart."""
+    most = tolerances.LOOP_RANK
+    size = mechanism.box_diagonal()
+    parts = [part for joint in mechanism.joints.values() for part in joint.parts]
+    turns = [
+        norm(subtract(one, other))
+        for part in parts
+        if not part.type.is_ball
+        for one, other in zip(part.before[:3], part.after[:3], strict=True)
+    ]
+    apart = [
+        norm(subtract(add(part.before.o, scale(part.drawn, part.before.z)), part.after.o))
+        for part in parts
+    ]
+    for leg in find_legs(mechanism):
+        foot, head = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o
+        apart.append(abs(norm(subtract(head, foot)) - norm(leg.span)))
+    return max(turns, default=0.0) <= most and max(apart, default=0.0) <= most * size
+
+
+def _as_drawn(link: str) -> Frame:
+    return GROUND
+
+
+def _structure(mechanism: Mechanism, graph: Callable[[], SolverGraph]) -> Structure | None:
+    """The mechanism in the kernel, where it can be solved as it is driven."""
+    try:
+        found = graph()
+    except UnsolvableGraph:
+        return None
+    if any(block.equations > tolerances.MOST_EQUATIONS for block in found.blocks):
+        return None
+    # no load says where links stand
+    return Structure(Layout(replace(mechanism, loads=(), frictions=()), found), tuple(found.driven))
+
+
+def _displaced(layout: Layout, move: float) -> Floats:
+    """The drawing with all coordinates but those of balls moved, up to so much."""
+    state, random = home_state(layout), RandomStarts()
+    for carrier in layout.carriers:
+        if not carrier.part.type.is_ball:
+            count = len(carrier.part.type.freedoms)
+            state[carrier.state : carrier.state + count] += move + random.between(move, count)
+    return state
+
+
+def _closed(structure: Structure, at: Sequence[float], move: float, off: float) -> Poses | None:
+    """The poses that Newton's method reaches with all inputs moved from where they stand, from a
+    guess that is `off` the drawing; None where it does not close."""
+    layout = structure.layout
+    joints = layout.mechanism.joints
+    stand = [
+        value / joints[name].unit_of(coordinate, layout.length)
+        for (name, coordinate), value in zip(structure.driven, at, strict=bool(at))
+    ]
+    origin, length = layout.origin, layout.length
+    ends = (ZERO, scale(length, GROUND.x), scale(length, GROUND.y))
+    links = [name for name in layout.mechanism.links if name != GROUND_NAME]
+    points = [Attached(name, add(origin, end)) for name in links for end in ends]
+    readout = structure.readout((), tuple(points))
+    home = np.array(stand) if at else home_inputs(layout)
+    inputs: Floats = home[:, None] + move
+    guess = _displaced(layout, off)[:, None]
+    batch = run(structure.plan, RowInputs(inputs, guess), Ask(readout=readout))
+    if not batch.good[0] or batch.outputs is None:
+        return None
+    values = batch.outputs[:, 0].tolist()
+    read = [(values[k], values[k + 1], values[k + 2]) for k in readout.points]
+    found = {GROUND_NAME: GROUND}
+    for number, name in enumerate(links):
+        middle, *others = read[3 * number : 3 * number + 3]
+        x, y = (scale(1.0 / length, subtract(end, middle)) for end in others)
+        turn = Frame(x, y, cross(x, y), ZERO)
+        back = add(add(scale(origin[0], x), scale(origin[1], y)), scale(origin[2], turn.z))
+        found[name] = turn._replace(o=subtract(middle, back))
+    # the half of a cut link goes with the other
+    return lambda link: found[whole_link(link)]
+
+
+def solver_graph(
+    mechanism: Mechanism,
+    inputs: Sequence[Coordinate],
+    closed_at: Sequence[str] | None = None,
+) -> SolverGraph:
+    """The solver graph of a mechanism whose `inputs` (joint, coordinate) are driven, with ranks
+    taken at assembled places where counting does not tell; as `structure.build_graph`."""
+    return build_graph(mechanism, inputs, assembled_places, closed_at)
+
+
+def left_free(mechanism: Mechanism, inputs: Mapping[tuple[str, str], float]) -> list[bool]:
+    """For each assembled place whether some link can move while the inputs rest; none where no
+    place is found, or the ranks would take too long.
+
+    Args:
+        mechanism: with pairs that hold idle freedoms.
+        inputs: (joint, coordinate) that rest, and where (rad, m).
+    """
+
+    whole, names, at = reduce(mechanism), list(inputs), list(inputs.values())
+    connections = connections_of(mechanism, whole, names)
+    driven = {(name, mechanism.joints[name].freedom_number(c)) for name, c in inputs}
+    unit, found = unit_of(mechanism), []
+    for poses in closed_places(mechanism, lambda: solver_graph(mechanism, names), at):
+        rates = Rates(poses, driven, unit)
+        still = rates.still(whole.links, connections, {GROUND_NAME})
+        if rates.work:
+            found.append(set(whole.links) > still)
+    return found

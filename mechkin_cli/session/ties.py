@@ -1,0 +1,106 @@
+"""Inputs that follow others: what moves with one input where all others stand."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import Parameter
+from mechkin_cli.memo import remembered
+from mechkin_cli.session.cells import Formula, cells_of
+from mechkin_cli.session.inputs import input_unit
+from mechkin_cli.session.path import FollowedPath, Route, places_of
+from mechkin_cli.show import Floats
+from mechkin_cli.tape import replay
+
+if TYPE_CHECKING:
+    from mechkin_cli.session.session import Session
+    from mechkin_cli.tape import Tape
+
+
+class InputTie:
+    """What follows input `number` of a session, where all others stand as in a row.
+
+    Args:
+        session: the mechanism as it is driven.
+        tape: its motion's for that input.
+        number: the input.
+        row: where the others stand.
+    """
+
+    def __init__(self, session: Session, tape: Tape, number: int, row: int) -> None:
+        motion = session.problem.motion
+        self.number, self.name = number, motion.inputs[number].name
+        self.units = np.array([input_unit(session.layout, item) for item in motion.inputs])
+        followers = followers_of(session)
+        self.followers = {name for name, leader in followers.items() if leader == self.name}
+        own = [i for i in motion.inputs if i.name not in followers]
+        given = [float(item.values[row]) for item in own]
+        given += [] if motion.time is None else [float(motion.time.values[row])]
+        self.formula = Formula(tape, [], lambda _: given)
+        self.given = given
+        self.held = session.inputs.values[len(motion.inputs) :, row : row + 1]
+
+    def at(self, values: Floats) -> Floats:
+        """All inputs (inputs, places) at values of the one that moves; in kernel units."""
+        own = self._in_si(values * self.units[self.number]) / self.units[:, None]
+        inputs: Floats = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
+        return inputs
+
+    def derivatives(self, values: Floats) -> Floats:
+        """All inputs with first and second derivatives by the one that moves (3, inputs, places),
+        in kernel units."""
+        unit = self.units[self.number]
+        found = np.empty((3, self.units.size, values.size))
+        for k, value in enumerate((values * unit).tolist()):
+            at = np.array([value])
+            ways = self.formula.ways(at, self.given)[0]
+            found[:, :, k] = self.formula.jets(at, self.given, ways)[0].T
+        powers = np.array([1.0, unit, unit * unit])
+        own = found * powers[:, None, None] / self.units[None, :, None]
+        held = np.zeros((3, self.held.size, values.size))
+        held[0] = self.held
+        jets: Floats = np.concatenate([own, held], axis=1)
+        return jets
+
+    def way(self, values: Floats) -> FollowedPath:
+        """The way of all inputs along values of the one that moves, in kernel units."""
+        places = values * self.units[self.number]
+        cells = cells_of(self.formula, places)
+        course = places_of(self.formula, cells, Parameter(self.name), places, self._in_si(places))
+        own = course.values[:, course.rows >= 0] / self.units[:, None]
+        inputs = np.concatenate([own, np.repeat(self.held, own.shape[1], axis=1)])
+        return Route(course, inputs, self.units).way(0)
+
+    def _in_si(self, places: Floats) -> Floats:
+        given = np.empty((1 + len(self.given), places.size))
+        given[0], given[1:] = places, np.array(self.given)[:, None]
+        inputs: Floats = replay(self._native, given)[0].T
+        return inputs
+
+    @cached_property
+    def _native(self) -> _kernel.Tape:
+        return self.formula.native
+
+
+def followers_of(session: Session) -> dict[str, str]:
+    """Inputs that follow another, and the first of those that they follow."""
+    motion = session.problem.motion
+    found: dict[str, str] = {}
+    for leader, tape in motion.ties:
+        number = [item.name for item in motion.inputs].index(leader)
+        for k, item in enumerate(motion.inputs):
+            if k != number and tape.depends(k):
+                found.setdefault(item.name, leader)
+    return found
+
+
+@remembered
+def input_tie(session: Session, number: int, row: int = 0) -> InputTie | None:
+    """What follows input `number` where all others stand as in a row; None where nothing does."""
+    name = session.problem.motion.inputs[number].name
+    tapes = dict(session.problem.motion.ties)
+    return InputTie(session, tapes[name], number, row) if name in tapes else None

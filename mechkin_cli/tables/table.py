@@ -1,0 +1,57 @@
+"""A table: its columns evaluated, with what stands below it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from mechkin_cli.tables.columns import TableSource
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.summary import Summary
+
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mechkin_cli.tables.columns import AT, TableColumn, column_of, column_of_numbers, words_of
+from mechkin_cli.tables.layout import TableLayout
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
+    below it."""
+
+    name: str
+    title: str
+    columns: tuple[TableColumn, ...]
+    of_rows: bool = True
+    summary: Summary | None = None
+
+
+def summary_table(name: str, title: str, summary: Summary) -> Columns:
+    """The rows as a table of its own, `NAME.summary`."""
+    words: list[str] = []
+    for line in summary.lines:
+        words.append(f"{words[-1]} {AT}" if line == AT else line)
+    columns = [TableColumn("summary", "", words_of(words))]
+    for each in summary.columns:
+        numbers = np.array(summary.numbers(each))
+        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
+    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
+
+
+def evaluate(table: TableLayout, source: TableSource) -> Columns:
+    """All columns of a table, in file units.
+
+    Raises:
+        ExpressionError: a column is no number per row, or names what the source does not have.
+    """
+    columns = tuple(column_of(layout, source) for layout in table.columns)
+    summary = None
+    if table.summary:
+        from mechkin_cli.tables.summary import summary_of
+
+        summary = summary_of(table.summary, table.columns, columns, source)
+    return Columns(table.name, table.title, columns, summary=summary)
