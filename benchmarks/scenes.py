@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks import rcsr, sevenr, train
-from mechkin_cli.bench.scene import Scene, Subject
+from mechkin_cli.bench.scene import BenchScene, Subject
 
 FOLDER = Path(__file__).parent / "mechanisms"
 
@@ -36,7 +36,7 @@ def subjects() -> list[Subject]:
     from mechkin_cli.model.model import loads
 
     found = [(name, text()) for name, text in texts().items()]
-    return [Subject(Scene(name, loads(text, name)), text) for name, text in found]
+    return [Subject(BenchScene(name, loads(text, name)), text) for name, text in found]
 
 
 def platform(rows: int) -> str:

@@ -8,7 +8,7 @@ from benchmarks.peers import FAMILIES
 from benchmarks.responses.table import response_table
 from benchmarks.scenes import subjects
 from benchmarks.variant_table import variant_table
-from mechkin_cli.bench.report import Table
+from mechkin_cli.bench.report import ReportTable
 from mechkin_cli.bench.runs import Rounds, Suite, setting_tables
 from mechkin_cli.bench.scene import Subject
 from mechkin_cli.bench.settings import demand_table, process_table, thread_table
@@ -21,7 +21,7 @@ DEMAND_SCENES = ("RCSR", "7R", "Stewart")
 PROCESS_SCENES = ("RCSR", "7R")
 
 
-def whole_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[Table]:
+def whole_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[ReportTable]:
     """What the settings of a run cost, variants and responses."""
     chosen = [subject for subject in subjects if subject.name in DEMAND_SCENES]
     for subject in chosen:

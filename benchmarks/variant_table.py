@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.scenes import texts
 from mechkin_cli.bench.measurement import in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.model.model import loads
 
 VARIANTS = 1000
@@ -26,14 +26,14 @@ MILLI = 1000.0
 QUANTITIES = ("O1.effort", "O2.theta", "O2.s", "O4.theta")
 
 COLUMNS = (
-    Column("way", "way"),
-    Column("milliseconds", "ms a\nvariant", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times\nlanes", "time"),
+    ReportColumn("way", "way"),
+    ReportColumn("milliseconds", "ms a\nvariant", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times\nlanes", "time"),
 )
 
 
-def variant_table(rounds: int, variants: int = VARIANTS) -> Table:
+def variant_table(rounds: int, variants: int = VARIANTS) -> ReportTable:
     """The RCSR mechanism with other dimensions, extremes over its rows, on one thread."""
     text = texts()["RCSR"]().replace("to: 202 deg", "to: 190 deg")
     model = loads(text, "RCSR")
@@ -84,4 +84,4 @@ def variant_table(rounds: int, variants: int = VARIANTS) -> Table:
     complete = int(model.vary(given, QUANTITIES, reduce="max", threads=1).complete.sum())
     notes = (f"{rows} rows each, one thread; {complete} of {variants} variants complete.",)
     columns = COLUMNS
-    return Table("variants", f"{variants} variants of RCSR", columns, lines, notes)
+    return ReportTable("variants", f"{variants} variants of RCSR", columns, lines, notes)

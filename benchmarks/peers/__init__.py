@@ -9,12 +9,12 @@ from benchmarks.peers import with_casadi, with_mujoco, with_pinocchio
 from mechkin_cli.bench import runs
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.runs import Family
-from mechkin_cli.bench.scene import Scene
+from mechkin_cli.bench.scene import BenchScene
 
 INSTALL = "pip install -r benchmarks/requirements.txt"
 
 
-def _here(make: Family, scene: Scene) -> Iterator[Method]:
+def _here(make: Family, scene: BenchScene) -> Iterator[Method]:
     """
     Raises:
         Unable: the library is not installed.

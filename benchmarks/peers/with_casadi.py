@@ -22,7 +22,7 @@ from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.row_by_row import RowByRow
 
 if TYPE_CHECKING:
-    from mechkin_cli.bench.scene import Scene, Values
+    from mechkin_cli.bench.scene import BenchScene, Values
 
 FAMILY = "CasADi"
 COMPILER = "gcc"
@@ -32,7 +32,7 @@ MOST_UNKNOWNS = 12
 """Beyond, its code takes longer to compile than everything else to measure."""
 
 
-def methods(scene: Scene) -> Iterator[Method]:
+def methods(scene: BenchScene) -> Iterator[Method]:
     """Newton's method over its tolerance, and the whole motion."""
     casadi = import_module("casadi")
     rows = RowByRow(scene)
@@ -58,7 +58,7 @@ def methods(scene: Scene) -> Iterator[Method]:
 
 
 def _method(
-    scene: Scene,
+    scene: BenchScene,
     setting: str,
     level: str,
     call: Callable[[], Any],

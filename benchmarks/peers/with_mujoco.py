@@ -14,12 +14,19 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from mechkin_cli.bench.chain import GROUND, Chain, Closed, CommonFrame, CommonPoint, Displacement
+from mechkin_cli.bench.chain import (
+    GROUND,
+    BodyTree,
+    Closed,
+    CommonFrame,
+    CommonPoint,
+    TreeDisplacement,
+)
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.row_by_row import RowByRow
 
 if TYPE_CHECKING:
-    from mechkin_cli.bench.scene import Scene, Values
+    from mechkin_cli.bench.scene import BenchScene, Values
     from mechkin_cli.mechanism.vectors import Frame
     from mechkin_cli.show import Floats
 
@@ -34,7 +41,7 @@ HINGES = {"R": ("hinge",), "P": ("slide",), "C": ("hinge", "slide")}
 """Its joints along an axis by the kind of displacement."""
 
 
-def methods(scene: Scene) -> Iterator[Method]:
+def methods(scene: BenchScene) -> Iterator[Method]:
     """Steps in time, by their number between two rows."""
     mujoco = import_module("mujoco")
     # that a step was too long is seen in the error; a callback of one's own would be kept for ever
@@ -50,7 +57,7 @@ def methods(scene: Scene) -> Iterator[Method]:
         )
 
 
-def _check(chain: Chain, rows: RowByRow) -> None:
+def _check(chain: BodyTree, rows: RowByRow) -> None:
     kinds = {body.by.kind for body in chain.bodies if body is not None}
     if not kinds <= {*HINGES, "W"}:
         other = ", ".join(sorted(kinds - {*HINGES, "W"}))
@@ -137,7 +144,7 @@ class Stepping:
             for which, pair in enumerate(_pairs(closing)):
                 yield f"closing{number}.{which}", closing, pair
 
-    def _body(self, parent: Any, number: int, of: int, by: Displacement) -> Any:
+    def _body(self, parent: Any, number: int, of: int, by: TreeDisplacement) -> Any:
         """A body whose frame is that behind its displacement."""
         place = np.linalg.inv(self._after(of)) @ _matrix(by.before)
         rotation = place[:3, :3]

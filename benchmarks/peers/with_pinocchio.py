@@ -18,15 +18,15 @@ from mechkin_cli.bench.chain import (
     GROUND,
     CommonFrame,
     CommonPoint,
-    Displacement,
     Distance,
+    TreeDisplacement,
 )
 from mechkin_cli.bench.measurement import Method
 from mechkin_cli.bench.row_by_row import RowByRow
 
 if TYPE_CHECKING:
     from mechkin_cli.bench.chain import Place
-    from mechkin_cli.bench.scene import Scene, Values
+    from mechkin_cli.bench.scene import BenchScene, Values
     from mechkin_cli.mechanism.vectors import Frame
     from mechkin_cli.show import Floats
 
@@ -34,7 +34,7 @@ FAMILY = "Pinocchio"
 STEPS = (1, 2, 3, 4)
 
 
-def methods(scene: Scene) -> Iterator[Method]:
+def methods(scene: BenchScene) -> Iterator[Method]:
     """Newton's method over its steps, and the whole motion."""
     loops = Loops(import_module("pinocchio"), RowByRow(scene))
     for steps in STEPS:
@@ -83,12 +83,12 @@ class Loops:
         assert spot is not None
         return spot
 
-    def _carried(self, parent: int, by: Displacement) -> Spot:
+    def _carried(self, parent: int, by: TreeDisplacement) -> Spot:
         """The joint of a displacement, and the drawing of what it carries in the joint's frame."""
         joint = self._joint(self._spot(parent), by)
         return Spot(joint.joint, joint.frame * self._se3(by.after).inverse())
 
-    def _joint(self, on: Spot, by: Displacement) -> Spot:
+    def _joint(self, on: Spot, by: TreeDisplacement) -> Spot:
         pin, place = self.pin, on.frame * self._se3(by.before)
         kinds = {
             "R": [pin.JointModelRZ],

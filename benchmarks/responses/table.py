@@ -10,19 +10,19 @@ import numpy as np
 from benchmarks.responses.cases import RUN, TOLERANCES, Case, cases
 from benchmarks.responses.peers import Way, peers
 from mechkin_cli.bench.measurement import in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.model.model import Model
 
 MILLI = 1000.0
 
 COLUMNS = (
-    Column("case", "response"),
-    Column("method", "method"),
-    Column("setting", "setting"),
-    Column("milliseconds", "ms", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times\nmechkin", "time"),
-    Column("error", "largest\nerror", "error"),
+    ReportColumn("case", "response"),
+    ReportColumn("method", "method"),
+    ReportColumn("setting", "setting"),
+    ReportColumn("milliseconds", "ms", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times\nmechkin", "time"),
+    ReportColumn("error", "largest\nerror", "error"),
 )
 OWN = "mechkin, respond()"
 
@@ -31,7 +31,7 @@ def response_table(
     rounds: int,
     tolerances: tuple[float, ...] = TOLERANCES,
     names: Iterable[str] | None = None,
-) -> Table:
+) -> ReportTable:
     """All cases, or those of some names."""
     wanted = None if names is None else set(names)
     rows: list[dict[str, Cell]] = []
@@ -48,7 +48,7 @@ def response_table(
         "against an extrapolated motion in numpy's widest numbers, or a closed form (spring).",
         *(f"{library} is left out: it is not installed." for library in missing),
     )
-    return Table("responses", "Responses: time against error", COLUMNS, rows, notes)
+    return ReportTable("responses", "Responses: time against error", COLUMNS, rows, notes)
 
 
 def _case(

@@ -14,7 +14,7 @@ from benchmarks.stress.judge import Found, Judged, judge
 from benchmarks.stress.quantity import Truth
 from benchmarks.stress.solve import solve
 from benchmarks.stress.tally import CONTRADICTED, Fault, Tally
-from mechkin_cli.bench.stress import FAULTS, REFUSED, Verdict
+from mechkin_cli.bench.stress import FAULTS, REFUSED, StressVerdict
 from mechkin_cli.verdict import Status, has_solution
 
 CHUNK = 50_000
@@ -86,7 +86,7 @@ def _faults(
         for k in np.flatnonzero((judged.verdict == verdict).any(axis=1)).tolist():
             row = int(np.argmax(judged.verdict[k] == verdict))
             words = _words(found, truth, k, row)
-            faults.append(Fault(Verdict(verdict).name, numbers[k], first + row, words))
+            faults.append(Fault(StressVerdict(verdict).name, numbers[k], first + row, words))
     return faults
 
 

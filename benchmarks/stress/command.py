@@ -14,7 +14,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 
 if TYPE_CHECKING:
     from benchmarks.stress.tally import Tally
-    from mechkin_cli.bench.report import Table
+    from mechkin_cli.bench.report import ReportTable
 
 
 LONG = 60.0
@@ -35,7 +35,7 @@ class Stress(NamedTuple):
     json: bool
 
 
-def stress_command(asked: Stress, show: Callable[[Table], None]) -> int:
+def stress_command(asked: Stress, show: Callable[[ReportTable], None]) -> int:
     """Runs what is asked for; `show` prints a table for a person.
 
     Returns:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from benchmarks.stress.families.table import FAMILIES
 from benchmarks.stress.tables import TOTAL, tables
 from benchmarks.stress.tally import Tally
-from mechkin_cli.bench.report import Table
+from mechkin_cli.bench.report import ReportTable
 
 SMALL_ROWS = 2_000
 SECTION = re.compile(
@@ -149,7 +149,7 @@ def _sections(tallies: Sequence[Tally]) -> str:
     return "\n\n".join(_markdown(table) for table in tables(tallies))
 
 
-def _markdown(table: Table) -> str:
+def _markdown(table: ReportTable) -> str:
     labels = [
         column.label.replace("-\n", "").replace("\n", " ").strip() for column in table.columns
     ]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from benchmarks.stress.families.table import FAMILIES
 from benchmarks.stress.histogram import Histogram
 from benchmarks.stress.tally import CONTRADICTED, NO_POSITION, Tally
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.bench.stress import COUNTS, REFUSED
 from mechkin_cli.verdict import Proof
 
@@ -16,27 +16,27 @@ MOST = 0.999
 TOTAL = "all"
 
 
-def tables(tallies: Sequence[Tally]) -> tuple[Table, ...]:
+def tables(tallies: Sequence[Tally]) -> tuple[ReportTable, ...]:
     """Verdicts, errors, and errors by condition."""
     return _verdicts(tallies), _errors(tallies), _proofs(tallies), _by_condition(tallies)
 
 
-def _proofs(tallies: Sequence[Tally]) -> Table:
+def _proofs(tallies: Sequence[Tally]) -> ReportTable:
     columns = (
-        Column("family", "family"),
-        Column("each", "one mecha-\nnism of", "number"),
-        Column("rows", "rows\nasked", "number"),
-        Column("proven", "proven", "number"),
-        Column("closure", "proven\nto closure", "number"),
-        Column("open", "not\nproven", "number"),
-        Column("none", "no\nposition", "number"),
-        Column("contradicted", "proven\nelsewhere", "number"),
+        ReportColumn("family", "family"),
+        ReportColumn("each", "one mecha-\nnism of", "number"),
+        ReportColumn("rows", "rows\nasked", "number"),
+        ReportColumn("proven", "proven", "number"),
+        ReportColumn("closure", "proven\nto closure", "number"),
+        ReportColumn("open", "not\nproven", "number"),
+        ReportColumn("none", "no\nposition", "number"),
+        ReportColumn("contradicted", "proven\nelsewhere", "number"),
     )
     asked = [tally for tally in tallies if FAMILIES[tally.family].proven]
     rows = [_proven(tally) | {"each": FAMILIES[tally.family].proven} for tally in asked]
     if len(asked) > 1:
         rows.append(_proven(_together(asked)))
-    return Table("proofs", "What --certify proves", columns, rows)
+    return ReportTable("proofs", "What --certify proves", columns, rows)
 
 
 def _proven(tally: Tally) -> dict[str, Cell]:
@@ -59,12 +59,12 @@ def _together(tallies: Sequence[Tally]) -> Tally:
     return total
 
 
-def _verdicts(tallies: Sequence[Tally]) -> Table:
+def _verdicts(tallies: Sequence[Tally]) -> ReportTable:
     columns = (
-        Column("family", "family"),
-        Column("mechanisms", "mecha-\nnisms", "number"),
-        Column("rows", "rows", "number"),
-        *(Column(key, label, "number") for key, _, label in COUNTS),
+        ReportColumn("family", "family"),
+        ReportColumn("mechanisms", "mecha-\nnisms", "number"),
+        ReportColumn("rows", "rows", "number"),
+        *(ReportColumn(key, label, "number") for key, _, label in COUNTS),
     )
     rows = [_counted(tally) for tally in tallies]
     if len(tallies) > 1:
@@ -75,7 +75,7 @@ def _verdicts(tallies: Sequence[Tally]) -> Table:
         for tally in tallies
         for fault in tally.faults
     ]
-    return Table("verdicts", "What became of the rows", columns, rows, faults)
+    return ReportTable("verdicts", "What became of the rows", columns, rows, faults)
 
 
 def _counted(tally: Tally) -> dict[str, Cell]:
@@ -89,16 +89,16 @@ def _counted(tally: Tally) -> dict[str, Cell]:
     return known | counts
 
 
-def _errors(tallies: Sequence[Tally]) -> Table:
+def _errors(tallies: Sequence[Tally]) -> ReportTable:
     columns = (
-        Column("family", "family"),
-        Column("unit", "errors in"),
+        ReportColumn("family", "family"),
+        ReportColumn("unit", "errors in"),
         *_level("position"),
         *_level("rate"),
         *_level("acceleration"),
         *_level("force"),
-        Column("bounded", "bound holds\n%", "text"),
-        Column("bound", "bound over\nerror", "text"),
+        ReportColumn("bounded", "bound holds\n%", "text"),
+        ReportColumn("bound", "bound over\nerror", "text"),
     )
     rows = [_measured(tally) for tally in tallies]
     notes = (
@@ -106,12 +106,14 @@ def _errors(tallies: Sequence[Tally]) -> Table:
         "u k^3.",
         "median and 99.9 %; positions in rad and sizes, or in parts of larger values.",
     )
-    return Table("errors", "Errors of the rows that are right", columns, rows, notes)
+    return ReportTable("errors", "Errors of the rows that are right", columns, rows, notes)
 
 
-def _level(name: str) -> tuple[Column, Column]:
+def _level(name: str) -> tuple[ReportColumn, ReportColumn]:
     label = "acceler-\nation" if name == "acceleration" else f"{name}\n"
-    return Column(f"{name}_median", label, "text"), Column(f"{name}_most", "99.9\n%", "text")
+    return ReportColumn(f"{name}_median", label, "text"), ReportColumn(
+        f"{name}_most", "99.9\n%", "text"
+    )
 
 
 def _measured(tally: Tally) -> dict[str, Cell]:
@@ -128,17 +130,17 @@ def _measured(tally: Tally) -> dict[str, Cell]:
     return row
 
 
-def _by_condition(tallies: Sequence[Tally]) -> Table:
+def _by_condition(tallies: Sequence[Tally]) -> ReportTable:
     together: dict[int, Histogram] = {}
     for tally in tallies:
         for decade, histogram in tally.by_condition.items():
             together.setdefault(decade, Histogram()).merge(histogram)
     columns = (
-        Column("condition", "condition"),
-        Column("rows", "rows", "number"),
-        Column("median", "median", "text"),
-        Column("most", "99.9 %", "text"),
-        Column("largest", "largest", "text"),
+        ReportColumn("condition", "condition"),
+        ReportColumn("rows", "rows", "number"),
+        ReportColumn("median", "median", "text"),
+        ReportColumn("most", "99.9 %", "text"),
+        ReportColumn("largest", "largest", "text"),
     )
     rows: list[dict[str, Cell]] = [
         {
@@ -151,7 +153,7 @@ def _by_condition(tallies: Sequence[Tally]) -> Table:
         for decade, histogram in sorted(together.items())
     ]
     notes = ("Errors of positions in u k, of all families.",)
-    return Table("by_condition", "Errors against condition", columns, rows, notes)
+    return ReportTable("by_condition", "Errors against condition", columns, rows, notes)
 
 
 def _shown(value: float | None) -> str | None:

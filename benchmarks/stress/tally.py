@@ -13,7 +13,7 @@ from benchmarks.stress.certify import Proofs
 from benchmarks.stress.histogram import Histogram
 from benchmarks.stress.judge import Judged
 from benchmarks.stress.quantity import Mask, Rows
-from mechkin_cli.bench.stress import ROUNDING, TOLERANCE, Verdict
+from mechkin_cli.bench.stress import ROUNDING, TOLERANCE, StressVerdict
 from mechkin_cli.verdict import Proof
 
 SHOWN = 5
@@ -70,12 +70,14 @@ class Tally:
     def add(self, judged: Judged, *, response: bool = False) -> None:
         """Rows of a block; mechanisms are counted apart."""
         self.rows += judged.verdict.size
-        for verdict in Verdict:
+        for verdict in StressVerdict:
             count = int((judged.verdict == verdict).sum())
             if count:
                 self.verdicts[verdict.name] += count
         # the bare errors of wrong rows are told as faults
-        right = (judged.verdict == Verdict.right) | (judged.verdict == Verdict.right_warned)
+        right = (judged.verdict == StressVerdict.right) | (
+            judged.verdict == StressVerdict.right_warned
+        )
         blank = np.where(right, 0.0, np.nan)
         self._add_errors(judged, blank, response=response)
         self._add_bounds(judged.bound + blank, judged.miss + blank)

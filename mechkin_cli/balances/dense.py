@@ -125,7 +125,7 @@ def borne_wrenches(result: Result, motion: RowMotion, row: int) -> dict[str, Wre
     return found
 
 
-def _own(link: RigidLink, motion: LinkMotion, gravity: Vector) -> Wrench:
+def _own(link: RigidLink, motion: RowLinkMotion, gravity: Vector) -> Wrench:
     """Gravity and inertia of a link."""
     centre = motion.point(link.center_of_mass)
     felt = subtract(gravity, motion.acceleration_of(link.center_of_mass))
@@ -222,7 +222,7 @@ class _Acting:
 _ORDERS = (("place", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERATION))
 
 
-class LinkMotion(NamedTuple):
+class RowLinkMotion(NamedTuple):
     """A link at one row, in ground axes (m, rad, s).
 
     `axes` are the ground axes as drawn on it; `reference` is a point of it as drawn, which is now
@@ -271,7 +271,7 @@ class LinkMotion(NamedTuple):
 class RowMotion(NamedTuple):
     """All links at one row."""
 
-    links: Mapping[str, LinkMotion]
+    links: Mapping[str, RowLinkMotion]
 
     def point(self, at: Attached) -> Vector:
         """Where a point of a link is."""
@@ -294,15 +294,15 @@ def row_motion(result: Result, row: int) -> RowMotion:
         return (x, y, z)
 
     motions = {name: _motion(mechanism, name, vector) for name in moving}
-    return RowMotion({GROUND_NAME: LinkMotion(), **motions})
+    return RowMotion({GROUND_NAME: RowLinkMotion(), **motions})
 
 
-def _motion(mechanism: Mechanism, name: str, vector: Callable[[str], Vector]) -> LinkMotion:
+def _motion(mechanism: Mechanism, name: str, vector: Callable[[str], Vector]) -> RowLinkMotion:
     x, y, z = (vector(f"{name} {axis}") for axis in AXES)
     at = [vector(f"{name} {word}") for word, _ in _ORDERS]
     reference = reference_point(mechanism, name).vector
     turning = (vector(f"{name}.omega"), vector(f"{name}.alpha"))
-    return LinkMotion((x, y, z), reference, at[0], at[1], at[2], *turning)
+    return RowLinkMotion((x, y, z), reference, at[0], at[1], at[2], *turning)
 
 
 def _read(name: str) -> Iterator[Wanted]:

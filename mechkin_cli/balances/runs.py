@@ -23,7 +23,7 @@ from mechkin_cli.derived import (
 )
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import atan2, cos, sin
-from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, WorkBalance
+from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, LoadWork
 from mechkin_cli.session import input_tie
 from mechkin_cli.sweep import stands_elsewhere
 from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, Words, column_of
@@ -250,7 +250,7 @@ class Item(NamedTuple):
     error: float
 
 
-def work_over_cycle(result: Result, balance: WorkBalance) -> tuple[list[Item], list[Diagnostic]]:
+def work_over_cycle(result: Result, balance: LoadWork) -> tuple[list[Item], list[Diagnostic]]:
     """Works of efforts, gravity, loads and inertia, and their sum, which is what is missing."""
     cycle, items, faults = balance.cycle, [], []
     parts = powers_along(result, cycle)
@@ -300,14 +300,14 @@ Table = tuple[Columns, list["Diagnostic"]]
 def balance_table(balance: AnyBalance, result: Result) -> Table:
     """A balance over the rows, and what is wrong with it; its cells are empty then."""
     fault = cycle_fault(result, balance)
-    if isinstance(balance, WorkBalance):
+    if isinstance(balance, LoadWork):
         return _work(balance, result, fault)
     if isinstance(balance, Harmonics):
         return _harmonics(balance, result, fault)
     return _flywheel(balance, result, fault)
 
 
-def _work(balance: WorkBalance, result: Result, fault: Diagnostic | None) -> Table:
+def _work(balance: LoadWork, result: Result, fault: Diagnostic | None) -> Table:
     if fault is not None:
         return _table(
             balance, [_words("of", ["sum"]), *_energies(result, [np.nan], [np.nan])], [fault]

@@ -24,7 +24,7 @@ GROUND = -1
 Place = tuple[float, float, float]
 
 
-class Displacement(NamedTuple):
+class TreeDisplacement(NamedTuple):
     """An elementary displacement of `kind` R, P, C, H, S or W from the frame `before` on one body
     to the frame `after` on the next; `first` is the number of its first coordinate."""
 
@@ -35,12 +35,12 @@ class Displacement(NamedTuple):
     first: int
 
 
-class Body(NamedTuple):
+class TreeBody(NamedTuple):
     """A body that a displacement carries on its parent, by number."""
 
     name: str
     parent: int
-    by: Displacement
+    by: TreeDisplacement
 
 
 class CommonPoint(NamedTuple):
@@ -69,13 +69,13 @@ class CommonFrame(NamedTuple):
 
     first: int
     second: int
-    chain: tuple[Displacement, ...]
+    chain: tuple[TreeDisplacement, ...]
 
 
 Closed = CommonPoint | Distance | CommonFrame
 
 
-class Coordinate(NamedTuple):
+class TreeCoordinate(NamedTuple):
     """A coordinate: its name in the file ("" without one), what a unit of it is there, and whether
     it is a length."""
 
@@ -85,7 +85,7 @@ class Coordinate(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Chain:
+class BodyTree:
     """Bodies in placing order (None where a leg hangs), closings, coordinates.
 
     `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states` says for
@@ -93,9 +93,9 @@ class Chain:
     None for coordinates of closing joints. `points` are (name, body, place).
     """
 
-    bodies: tuple[Body | None, ...]
+    bodies: tuple[TreeBody | None, ...]
     closings: tuple[Closed, ...]
-    coordinates: tuple[Coordinate, ...]
+    coordinates: tuple[TreeCoordinate, ...]
     inputs: tuple[int, ...]
     unknowns: tuple[int, ...]
     states: tuple[int | None, ...]
@@ -113,7 +113,7 @@ class Chain:
 EQUATIONS = {CommonPoint: 3, Distance: 1, CommonFrame: 6}
 
 
-def chain_of(layout: Layout, points: dict[str, tuple[str, Place]]) -> Chain:
+def chain_of(layout: Layout, points: dict[str, tuple[str, Place]]) -> BodyTree:
     """The chain of a mechanism in the kernel; `points` (link, place) by name are told along."""
     return _Builder(layout).chain(points)
 
@@ -121,13 +121,13 @@ def chain_of(layout: Layout, points: dict[str, tuple[str, Place]]) -> Chain:
 class _Builder:
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
-        self.coordinates: list[Coordinate] = []
+        self.coordinates: list[TreeCoordinate] = []
         self.states: list[int | None] = []
         self.balls: list[int] = []
-        self.bodies: list[Body | None] = []
+        self.bodies: list[TreeBody | None] = []
         self.first: dict[int, int] = {}
 
-    def chain(self, points: dict[str, tuple[str, Place]]) -> Chain:
+    def chain(self, points: dict[str, tuple[str, Place]]) -> BodyTree:
         layout = self.layout
         for number in range(len(layout.carriers)):
             self.bodies.append(self._body(number))
@@ -137,7 +137,7 @@ class _Builder:
         inside = {self._number(*u) for block in layout.graph.blocks for u in block.unknowns}
         unknowns = (*sorted(inside), *range(of_tree, len(self.coordinates)))
         known = [(name, layout.link_number[link], at) for name, (link, at) in points.items()]
-        return Chain(
+        return BodyTree(
             tuple(self.bodies),
             closings,
             tuple(self.coordinates),
@@ -154,7 +154,7 @@ class _Builder:
         number, local = self.layout.carrier_of(edge, freedom)
         return self.first[number] + local
 
-    def _body(self, number: int) -> Body | None:
+    def _body(self, number: int) -> TreeBody | None:
         carrier = self.layout.carriers[number]
         edge = self.layout.graph.edges[carrier.edge]
         if edge.hung:
@@ -162,11 +162,11 @@ class _Builder:
         self.first[number] = len(self.coordinates)
         by = self._displacement(carrier.part, edge.joint, carrier.first_freedom, carrier.state)
         hangs = carrier.parent != GROUND and self.bodies[carrier.parent] is None
-        return None if hangs else Body(edge.child, carrier.parent, by)
+        return None if hangs else TreeBody(edge.child, carrier.parent, by)
 
     def _displacement(
         self, part: Part, joint: Joint, first_freedom: int, state: int | None
-    ) -> Displacement:
+    ) -> TreeDisplacement:
         first = len(self.coordinates)
         kind = part.type
         names = {} if joint.type.is_free and "." in joint.name else joint.type.scalars
@@ -176,9 +176,9 @@ class _Builder:
         for local, freedom in enumerate(kind.freedoms):
             name = by_freedom.get(first_freedom + local, "")
             full = f"{joint.name}.{name}" if name and not kind.is_ball else ""
-            self.coordinates.append(Coordinate(full, 1.0, freedom.is_slide))
+            self.coordinates.append(TreeCoordinate(full, 1.0, freedom.is_slide))
             self.states.append(None if state is None else state + (0 if kind.is_ball else local))
-        return Displacement(part.letter, part.before, part.after, joint.pitch, first)
+        return TreeDisplacement(part.letter, part.before, part.after, joint.pitch, first)
 
     def _closing(self, closing: CutJoint) -> Closed:
         joint, leg, bodies = closing.joint, closing.leg, self.layout.link_number

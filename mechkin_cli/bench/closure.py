@@ -16,12 +16,12 @@ import numpy as np
 
 from mechkin_cli.bench.chain import (
     GROUND,
-    Chain,
+    BodyTree,
     CommonFrame,
     CommonPoint,
-    Displacement,
     Distance,
     Place,
+    TreeDisplacement,
 )
 from mechkin_cli.mechanism import Frame
 
@@ -60,7 +60,7 @@ class Algebra(Protocol):
 class Placing:
     """A chain in an algebra: its constant frames multiplied once."""
 
-    def __init__(self, chain: Chain, algebra: Algebra) -> None:
+    def __init__(self, chain: BodyTree, algebra: Algebra) -> None:
         self.chain, self.algebra = chain, algebra
         self._frames: dict[Frame, tuple[Any, Any]] = {}
 
@@ -82,7 +82,7 @@ class Placing:
             found.append(self.algebra.product(frame, self._constant(body.by.after)[1]))
         return found
 
-    def _moved(self, parent: Any, by: Displacement, q: Any, turned: Turned) -> Any:
+    def _moved(self, parent: Any, by: TreeDisplacement, q: Any, turned: Turned) -> Any:
         """The frame behind a displacement."""
         before, algebra = self._constant(by.before)[0], self.algebra
         frame = before if parent is None else algebra.product(parent, before)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mechkin_cli.bench.scene import Asked, Scene, Values
+from mechkin_cli.bench.scene import Asked, BenchScene, Values
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -158,7 +158,7 @@ class Measurement:
 class Bench:
     """All that a scene was measured by; errors are against `exact`."""
 
-    scene: Scene
+    scene: BenchScene
     measurements: tuple[Measurement, ...]
     skipped: tuple[Skipped, ...]
     exact: str

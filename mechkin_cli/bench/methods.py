@@ -3,8 +3,8 @@ systems of the sources.
 
 A dense system has all reactions and efforts of a position at once: six equations for every link and
 the conditions of the pairs (24, 34, 40, 50 unknowns in the dissertation on successive screws;
-`balances/newton_euler.py`). Only its solution by LAPACK is timed, not the motion that it needs nor its
-making.
+`balances/newton_euler.py`). Only its solution by LAPACK is timed, not the motion that it needs nor
+its making.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.balances import DenseSystem, dense_system, row_motion
 from mechkin_cli.bench.measurement import Method, Unable
-from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, Scene, Values
+from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, BenchScene, Values
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.mechanism import find_legs
 from mechkin_cli.plan import Demand
@@ -38,7 +38,7 @@ SPACINGS = tuple(2.0**-k for k in range(1, 7))
 """Longest steps of the skeleton (rad, length units); the first is that of every sweep."""
 
 
-def kernel_methods(scene: Scene) -> Iterator[Method]:
+def kernel_methods(scene: BenchScene) -> Iterator[Method]:
     """Newton's tolerance and steps, levels, widths, the sweep with its skeleton, verdicts."""
     for level in LEVELS:
         yield _kernel(scene, UNIT, level, level, scene.followed)
@@ -62,7 +62,7 @@ def kernel_methods(scene: Scene) -> Iterator[Method]:
 
 
 def _kernel(
-    scene: Scene,
+    scene: BenchScene,
     curve: str,
     setting: str,
     level: str,
@@ -87,7 +87,7 @@ def _kernel(
     return Method(FAMILY, curve, setting, level, call, BATCH, lambda: scene.found(level, once()))
 
 
-def _sweeps(scene: Scene) -> Iterator[Method]:
+def _sweeps(scene: BenchScene) -> Iterator[Method]:
     """Whole sweeps: followed by skeletons of some spacings, with verdicts and without."""
     rows = scene.result.rows
     if scene.session.route is None and scene.is_whole:
@@ -106,7 +106,7 @@ def _sweeps(scene: Scene) -> Iterator[Method]:
 
 
 def followed_by(
-    scene: Scene, level: str, spacing: float
+    scene: BenchScene, level: str, spacing: float
 ) -> tuple[Callable[[], object], Callable[[], Values]]:
     """Following all rows with steps up to `spacing`, and closing them: call, and what it finds."""
     session, inputs = scene.session, scene.session.inputs
@@ -127,7 +127,7 @@ def followed_by(
 
 
 def _analyzed(
-    scene: Scene, level: str, *, verdicts: bool
+    scene: BenchScene, level: str, *, verdicts: bool
 ) -> tuple[Callable[[], object], Callable[[], Values]]:
     names = scene.asked.level(level)
     session = scene.model.session.packed(ALONE)
@@ -145,7 +145,7 @@ EFFORT = 4
 """The rank of efforts among the unknowns."""
 
 
-def dense_methods(scene: Scene) -> Iterator[Method]:
+def dense_methods(scene: BenchScene) -> Iterator[Method]:
     """The solution of all places in one call."""
     if find_legs(scene.problem.mechanism):
         raise Unable("links between two balls spin freely, so that its system is singular")
@@ -171,7 +171,7 @@ def dense_methods(scene: Scene) -> Iterator[Method]:
     )
 
 
-def loads(scene: Scene, systems: list[DenseSystem], solution: Floats) -> Values:
+def loads(scene: BenchScene, systems: list[DenseSystem], solution: Floats) -> Values:
     """Efforts (1, rows) and wrenches (3, rows) about the joints' points, by name."""
     names = scene.asked.loads
     found: Values = {n: np.zeros((3 if _is_vector(n) else 1, scene.rows)) for n in names}

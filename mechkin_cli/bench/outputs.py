@@ -15,7 +15,15 @@ from statistics import median
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mechkin_cli.bench.methods import ANALYZED, FAMILY, FOLLOWED, UNIT
-from mechkin_cli.bench.report import Cell, Column, Table, bench_table, cell_text, csv_text, markdown
+from mechkin_cli.bench.report import (
+    Cell,
+    ReportColumn,
+    ReportTable,
+    bench_table,
+    cell_text,
+    csv_text,
+    markdown,
+)
 from mechkin_cli.tables import json_text
 from mechkin_cli.verdict import versions
 
@@ -41,7 +49,7 @@ path{fill:none;stroke-width:2}.grid{stroke-width:1}
 """
 
 
-class Curve(NamedTuple):
+class FigureCurve(NamedTuple):
     """A curve of the figure: which measurements, its words, its colours on light and on dark."""
 
     name: str
@@ -51,26 +59,26 @@ class Curve(NamedTuple):
 
 
 CURVES = (
-    Curve("kernel, by tolerance", "mechkin: kernel, by tolerance", "#0550ae", "#6cb6ff"),
-    Curve(
+    FigureCurve("kernel, by tolerance", "mechkin: kernel, by tolerance", "#0550ae", "#6cb6ff"),
+    FigureCurve(
         "sweep, by skeleton spacing",
         "mechkin: followed and closed, by spacing",
         "#1a7f7a",
         "#56d4cf",
     ),
-    Curve("sweep, verdicts", "mechkin: analyze, with verdicts", "#116329", "#57d364"),
-    Curve("compiled Newton", "CasADi: compiled Newton, by steps", "#8250df", "#d2a8ff"),
-    Curve("Newton on its Jacobians", "Pinocchio: Newton, by steps", "#9a6700", "#e3b341"),
-    Curve("fsolve", "scipy: fsolve, by tolerance", "#bc4c00", "#ffa657"),
-    Curve("least_squares", "scipy: least_squares, by tolerance", "#a40e26", "#ff7b72"),
-    Curve("Euler's method", "explicit stepping: Euler", "#57606a", "#b1bac4"),
-    Curve("Runge-Kutta method", "explicit stepping: Runge-Kutta", "#6e5494", "#a5a2ff"),
-    Curve("constrained steps", "MuJoCo: steps in time, by step", "#bf3989", "#ff9bce"),
+    FigureCurve("sweep, verdicts", "mechkin: analyze, with verdicts", "#116329", "#57d364"),
+    FigureCurve("compiled Newton", "CasADi: compiled Newton, by steps", "#8250df", "#d2a8ff"),
+    FigureCurve("Newton on its Jacobians", "Pinocchio: Newton, by steps", "#9a6700", "#e3b341"),
+    FigureCurve("fsolve", "scipy: fsolve, by tolerance", "#bc4c00", "#ffa657"),
+    FigureCurve("least_squares", "scipy: least_squares, by tolerance", "#a40e26", "#ff7b72"),
+    FigureCurve("Euler's method", "explicit stepping: Euler", "#57606a", "#b1bac4"),
+    FigureCurve("Runge-Kutta method", "explicit stepping: Runge-Kutta", "#6e5494", "#a5a2ff"),
+    FigureCurve("constrained steps", "MuJoCo: steps in time, by step", "#bf3989", "#ff9bce"),
 )
 """In the order of the legend."""
 
 
-class Panel(NamedTuple):
+class FigurePanel(NamedTuple):
     """A mechanism's name and what was measured of it."""
 
     name: str
@@ -92,7 +100,7 @@ class Axis(NamedTuple):
         return self.first + share * (self.last - self.first)
 
 
-def svg(panels: Sequence[Panel]) -> str:
+def svg(panels: Sequence[FigurePanel]) -> str:
     """The figure as one file."""
     points = [m for panel in panels for m in panel.measurements if _is_shown(m)]
     if not points:
@@ -131,7 +139,9 @@ def svg(panels: Sequence[Panel]) -> str:
     return _page(width, height, parts, used)
 
 
-def _panel(panel: Panel, x: Axis, y: Axis, used: Iterable[Curve], *, labelled: bool) -> list[str]:
+def _panel(
+    panel: FigurePanel, x: Axis, y: Axis, used: Iterable[FigureCurve], *, labelled: bool
+) -> list[str]:
     parts = [_text(x.first, y.last - 7.0, panel.name, "title")]
     for exponent in range(int(y.low), int(y.high) + 1):
         at = y.at(exponent)
@@ -170,7 +180,7 @@ def _text(x: float, y: float, words: str, kind: str, anchor: str = "start") -> s
     return f'<text class="{kind}" {at} text-anchor="{anchor}">{safe}</text>'
 
 
-def _page(width: float, height: float, parts: Sequence[str], used: Iterable[Curve]) -> str:
+def _page(width: float, height: float, parts: Sequence[str], used: Iterable[FigureCurve]) -> str:
     marks = [(CURVES.index(curve), curve) for curve in used]
     light = "".join(f".c{k}{{stroke:{c.light}}}.p{k}{{fill:{c.light}}}" for k, c in marks)
     dark = "".join(f".c{k}{{stroke:{c.dark}}}.p{k}{{fill:{c.dark}}}" for k, c in marks)
@@ -200,22 +210,22 @@ COMPILED_NOTE = (
 """Where it is among the methods."""
 
 BEST_COLUMNS = (
-    Column("scene", "mechanism"),
-    Column("level", "asked for"),
-    Column("peer", "fastest other method as exact"),
-    Column("peer_error", "its error", "error"),
-    Column("peer_us", "us per row", "time"),
-    Column("own_error", "mechkin's error", "error"),
-    Column("sweep_us", "`analyze` with verdicts, us per row", "time"),
-    Column("sweep_ratio", "times faster", "time"),
-    Column("followed_us", "followed and closed, us per row", "time"),
-    Column("followed_ratio", "times faster", "time"),
-    Column("kernel_us", "kernel alone, us per row", "time"),
-    Column("kernel_ratio", "times faster", "time"),
+    ReportColumn("scene", "mechanism"),
+    ReportColumn("level", "asked for"),
+    ReportColumn("peer", "fastest other method as exact"),
+    ReportColumn("peer_error", "its error", "error"),
+    ReportColumn("peer_us", "us per row", "time"),
+    ReportColumn("own_error", "mechkin's error", "error"),
+    ReportColumn("sweep_us", "`analyze` with verdicts, us per row", "time"),
+    ReportColumn("sweep_ratio", "times faster", "time"),
+    ReportColumn("followed_us", "followed and closed, us per row", "time"),
+    ReportColumn("followed_ratio", "times faster", "time"),
+    ReportColumn("kernel_us", "kernel alone, us per row", "time"),
+    ReportColumn("kernel_ratio", "times faster", "time"),
 )
 
 
-def best_table(benches: Sequence[Bench]) -> Table:
+def best_table(benches: Sequence[Bench]) -> ReportTable:
     """For positions and for the motion: the fastest other method whose error is no more than ten
     times that of mechkin's sweep."""
     rows = [
@@ -230,7 +240,9 @@ def best_table(benches: Sequence[Bench]) -> Table:
         "Kernel alone: guesses are given.",
         *(COMPILED_NOTE if COMPILED in families else ()),
     )
-    return Table("ahead", "The fastest other method that is as exact", BEST_COLUMNS, rows, notes)
+    return ReportTable(
+        "ahead", "The fastest other method that is as exact", BEST_COLUMNS, rows, notes
+    )
 
 
 def _beside(benches: Iterable[Bench]) -> list[str]:
@@ -249,7 +261,7 @@ def _beside(benches: Iterable[Bench]) -> list[str]:
     ]
 
 
-def summary(table: Table) -> str:
+def summary(table: ReportTable) -> str:
     """What `best_table` says, in a sentence."""
     parts = []
     for key, words in FASTER.items():
@@ -266,7 +278,7 @@ def summary(table: Table) -> str:
     )
 
 
-def responses_summary(tables: Iterable[Table]) -> list[str]:
+def responses_summary(tables: Iterable[ReportTable]) -> list[str]:
     """Of each response, how many times the fastest other method takes at no smaller error."""
     least: dict[str, float] = {}
     for row in (row for table in tables if table.name == "responses" for row in table.rows):
@@ -317,7 +329,7 @@ def _worst(m: Measurement) -> float | None:
 def page(
     machine: Mapping[str, str],
     benches: Sequence[Bench],
-    tables: Iterable[Table],
+    tables: Iterable[ReportTable],
     figure: str,
     command: str,
 ) -> str:
@@ -357,7 +369,7 @@ NAMES = {"json": "bench.json", "csv": "bench.csv", "page": "bench.md", "figure":
 
 
 def record(
-    machine: Mapping[str, str], benches: Sequence[Bench], tables: Sequence[Table]
+    machine: Mapping[str, str], benches: Sequence[Bench], tables: Sequence[ReportTable]
 ) -> dict[str, Any]:
     """The run as plain data: `mechanisms` with their measurements, then the tables by name."""
     return versions() | {
@@ -369,14 +381,14 @@ def record(
 
 def figure(benches: Sequence[Bench]) -> str:
     """The figure of a run."""
-    return svg([Panel(bench.scene.name, bench.measurements) for bench in benches])
+    return svg([FigurePanel(bench.scene.name, bench.measurements) for bench in benches])
 
 
 def write(
     folder: Path,
     machine: Mapping[str, str],
     benches: Sequence[Bench],
-    tables: Sequence[Table],
+    tables: Sequence[ReportTable],
     command: str,
 ) -> list[Path]:
     """Writes all four files into a folder that is there and says where they are.

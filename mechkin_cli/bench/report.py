@@ -43,7 +43,7 @@ Kind = Literal["text", "time", "error", "ratio", "percent", "number", "verdict"]
 
 
 @dataclass(frozen=True)
-class Column:
+class ReportColumn:
     """`key` names the column for programs, `label` (which may have two lines) for a person."""
 
     key: str
@@ -52,12 +52,12 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """One part of the report; each row maps column keys to values."""
 
     name: str
     title: str
-    columns: Sequence[Column]
+    columns: Sequence[ReportColumn]
     rows: Sequence[Mapping[str, Cell]]
     notes: Sequence[str] = field(default_factory=tuple)
 
@@ -103,13 +103,13 @@ def _significant(value: float) -> str:
     return f"{value:.1f}" if value >= 10.0 else f"{value:.2f}" if value >= 1.0 else f"{value:.3f}"
 
 
-def width(table: Table) -> int:
+def width(table: ReportTable) -> int:
     """Characters that the columns need side by side."""
     lines = plain_text(replace(table, notes=())).splitlines()
     return max(map(len, lines))
 
 
-def plain_text(table: Table) -> str:
+def plain_text(table: ReportTable) -> str:
     """Aligned columns, numbers to the right."""
     labels = [column.label.split("\n") for column in table.columns]
     depth = max(map(len, labels))
@@ -127,16 +127,16 @@ def plain_text(table: Table) -> str:
 
 
 COLUMNS = (
-    Column("family", "by"),
-    Column("curve", "method"),
-    Column("setting", "setting"),
-    Column("microseconds", "us per\nrow", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times\nkernel", "time"),
-    Column("position", "error:\nposi-\ntion", "error"),
-    Column("velocity", "velo-\ncity", "error"),
-    Column("acceleration", "acceler-\nation", "error"),
-    Column("loads", "\nloads", "error"),
+    ReportColumn("family", "by"),
+    ReportColumn("curve", "method"),
+    ReportColumn("setting", "setting"),
+    ReportColumn("microseconds", "us per\nrow", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times\nkernel", "time"),
+    ReportColumn("position", "error:\nposi-\ntion", "error"),
+    ReportColumn("velocity", "velo-\ncity", "error"),
+    ReportColumn("acceleration", "acceler-\nation", "error"),
+    ReportColumn("loads", "\nloads", "error"),
 )
 NOTES = (
     "times kernel: against one call of the kernel for the same quantities, in the same rounds.",
@@ -144,7 +144,7 @@ NOTES = (
 )
 
 
-def bench_table(bench: Bench) -> Table:
+def bench_table(bench: Bench) -> ReportTable:
     """Every method at every setting, and what could not run."""
     rows = [m.record() for m in bench.measurements]
     scene, chain = bench.scene, bench.scene.chain
@@ -155,7 +155,7 @@ def bench_table(bench: Bench) -> Table:
     )
     exact = f"exact: {bench.exact}."
     name = "bench_" + key_of(scene.name)
-    return Table(name, title, COLUMNS, rows, (*NOTES, exact, *skipped))
+    return ReportTable(name, title, COLUMNS, rows, (*NOTES, exact, *skipped))
 
 
 def csv_text(benches: Iterable[Bench]) -> str:
@@ -171,7 +171,7 @@ def csv_text(benches: Iterable[Bench]) -> str:
     return stream.getvalue()
 
 
-def markdown(table: Table) -> str:
+def markdown(table: ReportTable) -> str:
     """A table as Markdown, notes below."""
     # a word that a line end divides is whole again
     whole = [re.sub(r"(?<=[a-z])-\n", "", column.label) for column in table.columns]

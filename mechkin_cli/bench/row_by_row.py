@@ -21,7 +21,7 @@ from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.truth import BALL, State, coordinates_of, named_values
 
 if TYPE_CHECKING:
-    from mechkin_cli.bench.scene import Scene, Values
+    from mechkin_cli.bench.scene import BenchScene, Values
     from mechkin_cli.show import Floats
 
 
@@ -37,7 +37,7 @@ that the start is 1: solvers take their differences in parts of the unknowns."""
 class RowByRow:
     """A scene for solvers of one row at a time."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: BenchScene) -> None:
         self.scene, self.chain = scene, scene.chain
         self.placing = Placing(self.chain, Matrices())
         self.unknowns = list(self.chain.unknowns)
@@ -138,7 +138,7 @@ DIFFERENCES = tuple(10.0**-k for k in (2, 3, 4, 5))
 """Of the differences: how far inputs move between two positions (rad, m)."""
 
 
-def scipy_methods(scene: Scene) -> Iterator[Method]:
+def scipy_methods(scene: BenchScene) -> Iterator[Method]:
     """`fsolve` (`least_squares` where equations are more than unknowns), and differences."""
     from scipy.optimize import fsolve, least_squares
 
@@ -202,7 +202,7 @@ DIFFERENCE = 2.0**-18
 Rate = Callable[["Floats", dict[int, Any], "Floats"], "Floats"]
 
 
-def stepping_methods(scene: Scene) -> Iterator[Method]:
+def stepping_methods(scene: BenchScene) -> Iterator[Method]:
     """Both methods over their steps."""
     rows = RowByRow(scene)
     if rows.is_long:

@@ -18,14 +18,14 @@ from mechkin_cli.bench.measurement import (
     measured,
 )
 from mechkin_cli.bench.methods import FAMILY, UNIT, dense_methods, kernel_methods
-from mechkin_cli.bench.report import Table
+from mechkin_cli.bench.report import ReportTable
 from mechkin_cli.bench.row_by_row import scipy_methods, stepping_methods
-from mechkin_cli.bench.scene import Scene, Subject, Values
+from mechkin_cli.bench.scene import BenchScene, Subject, Values
 from mechkin_cli.bench.settings import demand_table, process_table, thread_table
 from mechkin_cli.bench.truth import exact_values
 from mechkin_cli.templates import template_text
 
-Family = Callable[[Scene], Iterator[Method]]
+Family = Callable[[BenchScene], Iterator[Method]]
 """From a scene to its methods at all their settings; raises `Unable` where they cannot run."""
 
 FAMILIES: dict[str, Family] = {
@@ -60,7 +60,7 @@ LONG = 0.5
 """Seconds of a sweep by a slow method from which on one round has to do."""
 
 
-def setting_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[Table]:
+def setting_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[ReportTable]:
     """What the settings of a run cost."""
     for subject in subjects:
         yield demand_table(subject, rounds.fast, rounds.processes)
@@ -75,7 +75,7 @@ def templates() -> list[Subject]:
     from mechkin_cli.model import loads
 
     texts = {name: template_text(name) for name in TEMPLATES}
-    return [Subject(Scene(name, loads(text, name)), text) for name, text in texts.items()]
+    return [Subject(BenchScene(name, loads(text, name)), text) for name, text in texts.items()]
 
 
 class Suite(NamedTuple):
@@ -92,14 +92,14 @@ class Suite(NamedTuple):
     command: str
     subjects: Callable[[], list[Subject]]
     families: Mapping[str, Family]
-    tables: Callable[[Sequence[Subject], Rounds], Iterator[Table]]
+    tables: Callable[[Sequence[Subject], Rounds], Iterator[ReportTable]]
     words: str
 
 
 SUITE = Suite("mechkin bench", templates, FAMILIES, setting_tables, "demand plan, threads")
 
 
-def methods_of(scene: Scene, family: str, make: Family) -> list[Method | Skipped]:
+def methods_of(scene: BenchScene, family: str, make: Family) -> list[Method | Skipped]:
     """All methods of a family that can run, then the reason why others cannot."""
     found: list[Method | Skipped] = []
     try:
@@ -114,7 +114,7 @@ def methods_of(scene: Scene, family: str, make: Family) -> list[Method | Skipped
     return found
 
 
-def bench(scene: Scene, rounds: Rounds, families: Mapping[str, Family] = FAMILIES) -> Bench:
+def bench(scene: BenchScene, rounds: Rounds, families: Mapping[str, Family] = FAMILIES) -> Bench:
     """Measures a scene by some families of methods; ours is always among them."""
     wanted = {FAMILY: kernel_methods, **families}
     found = [each for name, make in wanted.items() for each in methods_of(scene, name, make)]

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.bench.chain import Chain, chain_of
+from mechkin_cli.bench.chain import BodyTree, chain_of
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import find_legs
 from mechkin_cli.plan import Demand, demand_of
@@ -68,7 +68,7 @@ class Asked:
         ]
 
 
-class Scene:
+class BenchScene:
     """A mechanism whose sweep is closed.
 
     Args:
@@ -123,7 +123,7 @@ class Scene:
         return int(self.places.size)
 
     @cached_property
-    def chain(self) -> Chain:
+    def chain(self) -> BodyTree:
         """The mechanism for other solvers, with its named points."""
         at = {name: (a.link, a.vector) for name, a in self._points().items()}
         return chain_of(self.session.layout, at)
@@ -256,7 +256,7 @@ class Scene:
 class Subject(NamedTuple):
     """A scene with its file, or the text of one that is known."""
 
-    scene: Scene
+    scene: BenchScene
     source: Path | str
 
     @property

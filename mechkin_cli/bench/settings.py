@@ -17,8 +17,8 @@ from tempfile import TemporaryDirectory
 from time import perf_counter
 
 from mechkin_cli.bench.measurement import Timing, in_turns
-from mechkin_cli.bench.report import Cell, Column, Table, key_of
-from mechkin_cli.bench.scene import BATCH, Scene, Subject
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, key_of
+from mechkin_cli.bench.scene import BATCH, BenchScene, Subject
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.plan import Demand
 from mechkin_cli.session import Packing
@@ -32,17 +32,17 @@ MILLI = 1000.0
 MICRO = MILLI * MILLI
 
 DEMAND_COLUMNS = (
-    Column("part", "computed"),
-    Column("kernel", "kernel,\nus a row", "time"),
-    Column("share", "% of\nall", "percent"),
-    Column("analyze", "analyze,\nus a row", "time"),
-    Column("analyze_share", "% of\nall", "percent"),
-    Column("process", "process,\nms", "time"),
-    Column("process_share", "% of\nall", "percent"),
+    ReportColumn("part", "computed"),
+    ReportColumn("kernel", "kernel,\nus a row", "time"),
+    ReportColumn("share", "% of\nall", "percent"),
+    ReportColumn("analyze", "analyze,\nus a row", "time"),
+    ReportColumn("analyze_share", "% of\nall", "percent"),
+    ReportColumn("process", "process,\nms", "time"),
+    ReportColumn("process_share", "% of\nall", "percent"),
 )
 
 
-def steps(scene: Scene) -> list[tuple[str, tuple[str, ...], Demand]]:
+def steps(scene: BenchScene) -> list[tuple[str, tuple[str, ...], Demand]]:
     """What is computed, the quantities, and what is demanded beside them."""
     asked = scene.asked
     efforts = tuple(name for name in asked.loads if name.endswith(".effort"))
@@ -57,7 +57,7 @@ def steps(scene: Scene) -> list[tuple[str, tuple[str, ...], Demand]]:
     return [*found, ("+ verdicts of all rows", found[-1][1], scene.verdicts("everything"))]
 
 
-def demand_table(subject: Subject, rounds: int, processes: int) -> Table:
+def demand_table(subject: Subject, rounds: int, processes: int) -> ReportTable:
     """One line for every step; `processes` are the rounds of processes (0: none)."""
     scene = subject.scene
     plan, session = steps(scene), scene.model.session.packed(Packing(0, 1))
@@ -96,7 +96,7 @@ def demand_table(subject: Subject, rounds: int, processes: int) -> Table:
         "each line computes all lines above it as well.",
     )
     name = "demand_" + key_of(scene.name)
-    return Table(name, f"{scene.name}: what skipping saves", DEMAND_COLUMNS, rows, notes)
+    return ReportTable(name, f"{scene.name}: what skipping saves", DEMAND_COLUMNS, rows, notes)
 
 
 def _processes(asked: list[tuple[str, ...]], subject: Subject, rounds: int) -> dict[int, Timing]:
@@ -112,15 +112,15 @@ def _processes(asked: list[tuple[str, ...]], subject: Subject, rounds: int) -> d
 THREAD_ROWS = 50_000
 
 THREAD_COLUMNS = (
-    Column("scene", "mechanism"),
-    Column("threads", "threads", "number"),
-    Column("microseconds", "us a row", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("gain", "times one\nthread", "ratio"),
+    ReportColumn("scene", "mechanism"),
+    ReportColumn("threads", "threads", "number"),
+    ReportColumn("microseconds", "us a row", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("gain", "times one\nthread", "ratio"),
 )
 
 
-def thread_table(scenes: list[Scene], rounds: int, rows: int = THREAD_ROWS) -> Table:
+def thread_table(scenes: list[BenchScene], rounds: int, rows: int = THREAD_ROWS) -> ReportTable:
     """Everything that is asked of every scene, on 1, 2, 4 ... threads, as many as there are."""
     most = _kernel.available_processors()
     counts = [n for n in (1, 2, 4, 8, 16, 32, 64) if n < most] + [most]
@@ -142,21 +142,21 @@ def thread_table(scenes: list[Scene], rounds: int, rows: int = THREAD_ROWS) -> T
                 }
             )
     notes = (f"{rows} rows a call with everything; by the clock on the wall.",)
-    return Table("threads", "What threads gain", THREAD_COLUMNS, lines, notes)
+    return ReportTable("threads", "What threads gain", THREAD_COLUMNS, lines, notes)
 
 
 LIBRARIES = ("numpy", "scipy.optimize", "pinocchio", "casadi", "mujoco")
 """What a script imports."""
 
 PROCESS_COLUMNS = (
-    Column("process", "process"),
-    Column("milliseconds", "ms", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times the\nfirst", "ratio"),
+    ReportColumn("process", "process"),
+    ReportColumn("milliseconds", "ms", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times the\nfirst", "ratio"),
 )
 
 
-def process_table(subject: Subject, rounds: int) -> Table:
+def process_table(subject: Subject, rounds: int) -> ReportTable:
     """The whole command on one file, and the imports of the libraries that are here."""
     python = [sys.executable, "-P"]
     with subject.on_disk() as file, TemporaryDirectory(prefix="mechkin-bench-") as folder:
@@ -181,4 +181,4 @@ def process_table(subject: Subject, rounds: int) -> Table:
     ]
     notes = ("a script of another library takes at least its import, before it reads or solves.",)
     key = "processes_" + key_of(subject.name)
-    return Table(key, f"{subject.name}: whole processes", PROCESS_COLUMNS, rows, notes)
+    return ReportTable(key, f"{subject.name}: whole processes", PROCESS_COLUMNS, rows, notes)

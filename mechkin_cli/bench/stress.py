@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.model import loads
 from mechkin_cli.verdict import Status, has_solution
 
@@ -54,7 +54,7 @@ SHOWN = 5
 """Faults of each mechanism that are told."""
 
 
-class Verdict(IntEnum):
+class StressVerdict(IntEnum):
     """What became of a row."""
 
     right = 0
@@ -78,17 +78,22 @@ class Verdict(IntEnum):
     or points coincide (`COMMON_MOTION`, `LOOP_RANK`): a documented limit."""
 
 
-FAULTS = (Verdict.false_ok, Verdict.wrong_warned, Verdict.false_alarm, Verdict.rates_lost)
+FAULTS = (
+    StressVerdict.false_ok,
+    StressVerdict.wrong_warned,
+    StressVerdict.false_alarm,
+    StressVerdict.rates_lost,
+)
 COUNTS = (
-    ("right", Verdict.right, "right"),
-    ("warned", Verdict.right_warned, "right,\nwarned"),
-    ("none", Verdict.rightly_none, "rightly\nnone"),
-    ("undecided", Verdict.undecided, "un-\ndecided"),
-    ("taken", Verdict.taken_as_drawn, "as\ndrawn"),
-    ("rates_lost", Verdict.rates_lost, "rates\nlost"),
-    ("wrong_warned", Verdict.wrong_warned, "wrong,\nwarned"),
-    ("false_alarm", Verdict.false_alarm, "false\nalarms"),
-    ("false_ok", Verdict.false_ok, "false\nok"),
+    ("right", StressVerdict.right, "right"),
+    ("warned", StressVerdict.right_warned, "right,\nwarned"),
+    ("none", StressVerdict.rightly_none, "rightly\nnone"),
+    ("undecided", StressVerdict.undecided, "un-\ndecided"),
+    ("taken", StressVerdict.taken_as_drawn, "as\ndrawn"),
+    ("rates_lost", StressVerdict.rates_lost, "rates\nlost"),
+    ("wrong_warned", StressVerdict.wrong_warned, "wrong,\nwarned"),
+    ("false_alarm", StressVerdict.false_alarm, "false\nalarms"),
+    ("false_ok", StressVerdict.false_ok, "false\nok"),
 )
 """Columns of tables, as (key, verdict, label)."""
 
@@ -116,13 +121,15 @@ def verdicts_of(
     solved = has_solution(codes)
     certain = codes == Status.ok
     good = solved & exists & ~wrong
-    verdict = np.where(solved, np.where(certain, Verdict.false_ok, Verdict.wrong_warned), 0)
-    right = np.where(well, Verdict.right, Verdict.rates_lost)
-    verdict = np.where(good, np.where(certain, right, Verdict.right_warned), verdict)
-    none = np.where(exists, Verdict.false_alarm, Verdict.rightly_none)
+    verdict = np.where(
+        solved, np.where(certain, StressVerdict.false_ok, StressVerdict.wrong_warned), 0
+    )
+    right = np.where(well, StressVerdict.right, StressVerdict.rates_lost)
+    verdict = np.where(good, np.where(certain, right, StressVerdict.right_warned), verdict)
+    none = np.where(exists, StressVerdict.false_alarm, StressVerdict.rightly_none)
     verdict = np.where(solved, verdict, none)
-    verdict = np.where(noted & np.isin(verdict, FAULTS), Verdict.taken_as_drawn, verdict)
-    return np.where(decided, verdict, Verdict.undecided).astype(np.int8)
+    verdict = np.where(noted & np.isin(verdict, FAULTS), StressVerdict.taken_as_drawn, verdict)
+    return np.where(decided, verdict, StressVerdict.undecided).astype(np.int8)
 
 
 class Outcome(NamedTuple):
@@ -136,7 +143,7 @@ class Outcome(NamedTuple):
     @property
     def is_wrong(self) -> bool:
         """Whether a row is wrong and says ok, or the file is refused."""
-        return bool(self.verdicts[Verdict.false_ok.name] or self.verdicts[REFUSED])
+        return bool(self.verdicts[StressVerdict.false_ok.name] or self.verdicts[REFUSED])
 
     def record(self) -> dict[str, Any]:
         """As plain data."""
@@ -179,10 +186,10 @@ def _outcome(known: Mapping[str, Any]) -> Outcome:
     wrong = _is_wrong(analysis, known)
     noted = np.array(any(note.code in TAKEN for note in analysis.diagnostics))
     judged = verdicts_of(codes, exists, decided, wrong, np.ones(rows, bool), noted)
-    counts = Counter(Verdict(code).name for code in judged.tolist())
+    counts = Counter(StressVerdict(code).name for code in judged.tolist())
     at = np.flatnonzero(np.isin(judged, FAULTS))[:SHOWN].tolist()
     faults = tuple(
-        f"row {row + 1}: {Verdict(int(judged[row])).name.replace('_', ' ')}: "
+        f"row {row + 1}: {StressVerdict(int(judged[row])).name.replace('_', ' ')}: "
         f"{Status(int(codes[row])).label}"
         for row in at
     )
@@ -225,19 +232,19 @@ def _apart(given: Any, right: Any, kind: str) -> Any:
     return np.abs(miss)
 
 
-def stress_table(found: Sequence[Outcome]) -> Table:
+def stress_table(found: Sequence[Outcome]) -> ReportTable:
     """What became of the rows of each mechanism."""
     columns = (
-        Column("family", "family"),
-        Column("rows", "rows", "number"),
-        *(Column(key, label, "number") for key, _, label in COUNTS),
+        ReportColumn("family", "family"),
+        ReportColumn("rows", "rows", "number"),
+        *(ReportColumn(key, label, "number") for key, _, label in COUNTS),
     )
     rows: list[dict[str, Cell]] = []
     for outcome in found:
         counts: dict[str, Cell] = {key: outcome.verdicts[v.name] for key, v, _ in COUNTS}
         rows.append({"family": outcome.family, "rows": outcome.rows, **counts})
     faults = [f"{outcome.family}, {words}" for outcome in found for words in outcome.faults]
-    return Table("verdicts", "What became of hard mechanisms' rows", columns, rows, faults)
+    return ReportTable("verdicts", "What became of hard mechanisms' rows", columns, rows, faults)
 
 
 def stress(heard: Callable[[str], None]) -> list[Outcome]:

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.bench.chain import EQUATIONS, Chain, CommonFrame
+from mechkin_cli.bench.chain import EQUATIONS, BodyTree, CommonFrame
 from mechkin_cli.bench.closure import Entries, Jet, Placing, Turned, jet
-from mechkin_cli.bench.scene import Scene, Values
+from mechkin_cli.bench.scene import BenchScene, Values
 from mechkin_cli.errors import NotRepeated, wide_run
 from mechkin_cli.plan import demand_of
 from mechkin_cli.tape import eliminate
@@ -46,7 +46,7 @@ def width() -> str:
     return f"numpy longdouble, rounding {float(np.finfo(np.longdouble).eps):.0e}"
 
 
-def true_values(scene: Scene) -> Values:
+def true_values(scene: BenchScene) -> Values:
     """All positions, velocities and accelerations that are asked of a scene, at its places.
 
     Arrays (1, rows) and (3, rows) of the widest numbers, SI.
@@ -54,7 +54,7 @@ def true_values(scene: Scene) -> Values:
     return named_values(scene.chain, true_states(scene))
 
 
-def true_states(scene: Scene) -> State:
+def true_states(scene: BenchScene) -> State:
     """The closed coordinates at the places of a scene."""
     chain, at = scene.chain, slice(None)
     inputs, real = scene.session.inputs, scene.places
@@ -73,7 +73,7 @@ def true_states(scene: Scene) -> State:
     return State(q, rates, accelerations, turned)
 
 
-def coordinates_of(scene: Scene, rows: Any) -> tuple[Any, Turned]:
+def coordinates_of(scene: BenchScene, rows: Any) -> tuple[Any, Turned]:
     """Closed coordinates (coordinates, rows) of a scene in SI as the kernel has them, and what
     balls count from; a ball that closes a loop has none."""
     chain, states = scene.chain, scene.states[:, rows]
@@ -106,7 +106,7 @@ def rotation(quaternion: Any) -> list[list[Any]]:
 class Closure:
     """The closing equations of a chain over many rows, and systems of their unknowns."""
 
-    def __init__(self, chain: Chain, turned: Turned) -> None:
+    def __init__(self, chain: BodyTree, turned: Turned) -> None:
         self.chain, self.turned = chain, turned
         self.placing = Placing(chain, JETS)
 
@@ -161,7 +161,7 @@ class Closure:
         return [jet(g) for g in self.placing.gaps(places, q, self.turned)]
 
 
-def named_values(chain: Chain, state: State) -> Values:
+def named_values(chain: BodyTree, state: State) -> Values:
     """Coordinates and points by name, with their derivatives."""
     q = [Jet(*entry) for entry in zip(state.values, state.rates, state.accelerations, strict=True)]
     found: Values = {}
@@ -219,7 +219,7 @@ JETS = Entries(_cos, _sin, np.longdouble)
 TEXT = "double-double, from the numbers of the file's text"
 
 
-def exact_values(scene: Scene) -> tuple[Values, str]:
+def exact_values(scene: BenchScene) -> tuple[Values, str]:
     """Everything that is asked of a scene, at its places (width, places), and what it is by.
 
     Where the text cannot be followed in double-double, positions and motion are those of the

@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli.building.tables import ColumnSample
 from mechkin_cli.expressions import ExpressionError, Vector
-from mechkin_cli.mechanism import AnyBalance, Cycle, Flywheel, Harmonics, WorkBalance
+from mechkin_cli.mechanism import AnyBalance, Cycle, Flywheel, Harmonics, LoadWork
 from mechkin_cli.schema import tables as written
 from mechkin_cli.session import turn_of
 from mechkin_cli.tolerances import EQUAL_STEPS
@@ -60,7 +60,7 @@ class _BalanceBuilder:
             if cycle is None or rate is None:
                 return None
             return Flywheel(section.name, title, place, cycle, unevenness, rate)
-        return None if cycle is None else WorkBalance(section.name, title, place, cycle)
+        return None if cycle is None else LoadWork(section.name, title, place, cycle)
 
     # --- the cycle ------------------------------------------------------------------------
 

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from rich.table import Table as RichTable
 
     from mechkin_cli.bench.measurement import Bench
-    from mechkin_cli.bench.report import Table
+    from mechkin_cli.bench.report import ReportTable
     from mechkin_cli.bench.runs import Rounds, Suite
-    from mechkin_cli.bench.scene import Scene, Subject
+    from mechkin_cli.bench.scene import BenchScene, Subject
 
 
 Quick = Annotated[
@@ -169,7 +169,7 @@ def _not_written(folder: Path, error: OSError) -> UsageError:
 
 def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Record]]:
     """The files that can be measured; others are told."""
-    from mechkin_cli.bench.scene import Scene, Subject
+    from mechkin_cli.bench.scene import BenchScene, Subject
     from mechkin_cli.model import load
 
     code, found = int(ExitCode.OK), []
@@ -177,7 +177,7 @@ def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Record]]:
     for file, name in _names(files).items():
         try:
             refuse_stdin(file, "bench reads a file several times, and - is none")
-            found.append(Subject(Scene(name, load(file)), file))
+            found.append(Subject(BenchScene(name, load(file)), file))
         except (InvalidFile, UsageError) as error:
             own, record = refusal(file, error)
             code, refused = max(code, own), [*refused, record]
@@ -208,7 +208,7 @@ def _names(files: Sequence[Path]) -> dict[Path, str]:
 
 
 def _benches(
-    suite: Suite, scenes: Sequence[Scene], rounds: Rounds, *, shown: bool
+    suite: Suite, scenes: Sequence[BenchScene], rounds: Rounds, *, shown: bool
 ) -> Iterator[Bench]:
     """Each scene's measurements, shown as soon as they are there."""
     from mechkin_cli.bench.report import bench_table
@@ -224,7 +224,7 @@ def _benches(
 
 def _tables(
     suite: Suite, subjects: Sequence[Subject], rounds: Rounds, *, shown: bool
-) -> Iterator[Table]:
+) -> Iterator[ReportTable]:
     """What else a suite measures, each table shown as soon as it is there."""
     found = suite.tables(subjects, rounds) if subjects else iter(())
     while True:
@@ -237,7 +237,7 @@ def _tables(
         yield table
 
 
-def show(table: Table) -> None:
+def show(table: ReportTable) -> None:
     """Styled on a terminal wide enough, else aligned text."""
     from mechkin_cli.bench.report import plain_text, width
 
@@ -257,7 +257,7 @@ def show(table: Table) -> None:
         console.print(note, style="dim", highlight=False, markup=False)
 
 
-def _styled(table: Table) -> RichTable:
+def _styled(table: ReportTable) -> RichTable:
     from rich import box
     from rich.table import Table as RichTable
 

@@ -136,11 +136,11 @@ if TYPE_CHECKING:
         Effort as Effort,
         Flywheel as Flywheel,
         Harmonics as Harmonics,
+        LoadWork as LoadWork,
         ResponseProblem as ResponseProblem,
         StartValue as StartValue,
         Stop as Stop,
         TurnsEnd as TurnsEnd,
-        WorkBalance as WorkBalance,
     )
     from mechkin_cli.mechanism.runs import read_by as read_by, response_problem as response_problem
     from mechkin_cli.mechanism.vectors import (
@@ -280,11 +280,11 @@ __getattr__, __dir__ = lazy_names(
             "Effort",
             "Flywheel",
             "Harmonics",
+            "LoadWork",
             "ResponseProblem",
             "StartValue",
             "Stop",
             "TurnsEnd",
-            "WorkBalance",
         ],
         "runs": ["read_by", "response_problem"],
         "vectors": [

@@ -240,7 +240,7 @@ class Balance:
 
 
 @dataclass(frozen=True)
-class WorkBalance(Balance):
+class LoadWork(Balance):
     """Work of every effort and load."""
 
 
@@ -261,4 +261,4 @@ class Flywheel(Balance):
     rate: float
 
 
-AnyBalance = WorkBalance | Harmonics | Flywheel
+AnyBalance = LoadWork | Harmonics | Flywheel

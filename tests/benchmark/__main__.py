@@ -22,13 +22,13 @@ from benchmark import demand_steps, routes, stress, targets
 from benchmark.exact import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
-from mechkin_cli.bench.report import Table, machine, plain_text
+from mechkin_cli.bench.report import ReportTable, machine, plain_text
 from mechkin_cli.tables.json import json_text
 
 RCSR_FILE = HERE.parents[1] / "mechanisms" / "dissertation" / "rcsr.yaml"
 
 
-def timing_tables() -> Iterator[Table]:
+def timing_tables() -> Iterator[ReportTable]:
     """Routes, demand plan, and the targets as far as their programs are there."""
     specimens = (rcsr_specimen(), sevenr_specimen())
     yield from routes.tables(*specimens)

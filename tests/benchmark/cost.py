@@ -28,7 +28,7 @@ from mpmath import mp, mpf
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.case import drawn
 
-from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
 from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
@@ -40,13 +40,13 @@ MET = 1e-3
 """A discriminant (in parts of its scale) with a minimum below this is a gap met."""
 
 COST = (
-    Column("case", "case"),
-    Column("before", "before", "time"),
-    Column("after", "after", "time"),
-    Column("unit", "unit"),
-    Column("ratio", "ratio", "time"),
-    Column("limit", "limit", "time"),
-    Column("met", "met", "verdict"),
+    ReportColumn("case", "case"),
+    ReportColumn("before", "before", "time"),
+    ReportColumn("after", "after", "time"),
+    ReportColumn("unit", "unit"),
+    ReportColumn("ratio", "ratio", "time"),
+    ReportColumn("limit", "limit", "time"),
+    ReportColumn("met", "met", "verdict"),
 )
 
 
@@ -88,7 +88,7 @@ def in_turns(versions: dict[str, Version], text: str, rounds: int) -> dict[str, 
     return found
 
 
-def ratios(versions: dict[str, Version], rounds: int) -> Table:
+def ratios(versions: dict[str, Version], rounds: int) -> ReportTable:
     """Generic mechanisms: steps, and times of following and of whole sweeps."""
     lines: list[dict[str, Cell]] = []
     for name, text in generic():
@@ -104,7 +104,7 @@ def ratios(versions: dict[str, Version], rounds: int) -> Table:
             met = None if ratio is None or limit is None else ratio <= limit
             line = {"case": f"{name}, {what}", "before": before, "after": after, "unit": unit}
             lines.append({**line, "ratio": ratio, "limit": limit, "met": met})
-    return Table("generic", "generic mechanisms", COST, lines, ())
+    return ReportTable("generic", "generic mechanisms", COST, lines, ())
 
 
 def near_change_point(gap: str, pairs: str, copies: int) -> str:
@@ -118,7 +118,7 @@ def near_change_point(gap: str, pairs: str, copies: int) -> str:
     return file_of(links, joints, "{inputs: {A.theta: {from: 0, to: 360, step: 10}}}")
 
 
-def four_bars(versions: dict[str, Version]) -> Table:
+def four_bars(versions: dict[str, Version]) -> ReportTable:
     lines = []
     for gap in GAPS:
         for copies in (1, 2):
@@ -131,7 +131,7 @@ def four_bars(versions: dict[str, Version]) -> Table:
             }
             what = f"gap {gap}" + (", drawn twice" if copies == 2 else "")
             lines.append(attempts_line(what, cells))
-    return Table("gaps", "most attempts a turn, four-bars with one gap", COST, lines, ())
+    return ReportTable("gaps", "most attempts a turn, four-bars with one gap", COST, lines, ())
 
 
 def attempts_line(case: str, cells: dict[str, float]) -> dict[str, Cell]:
@@ -156,7 +156,7 @@ def gaps_met(number: int) -> tuple[str, int] | None:
     return (whole.replace(case.travel.head, "") if case.travel.head else whole), met
 
 
-def random_mechanisms(versions: dict[str, Version], count: int) -> Table:
+def random_mechanisms(versions: dict[str, Version], count: int) -> ReportTable:
     """Attempts for every gap met in a turn, over mechanisms that turn fully."""
     found: dict[str, list[float]] = {name: [] for name in versions}
     for number in range(count):
@@ -174,7 +174,7 @@ def random_mechanisms(versions: dict[str, Version], count: int) -> Table:
         }
         if cells:
             lines.append(attempts_line(f"{len(found['after'])} mechanisms, {what}", cells))
-    return Table("random", "attempts a turn for every gap met", COST, lines, ())
+    return ReportTable("random", "attempts a turn for every gap met", COST, lines, ())
 
 
 def main() -> None:

@@ -14,7 +14,7 @@ from benchmark.kernel_case import (
 from benchmark.specimen import Specimen
 
 from mechkin_cli.bench.measurement import ROUNDS, in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.plan.codes import Demand
 
@@ -35,7 +35,7 @@ def steps(specimen: Specimen) -> list[Step]:
     ]
 
 
-def table(specimen: Specimen, rounds: int = ROUNDS) -> Table:
+def table(specimen: Specimen, rounds: int = ROUNDS) -> ReportTable:
     """Microseconds per row for every step and width."""
     case = KernelCase(specimen, degree_rows(specimen))
     inputs, guesses = repeated(case.inputs), repeated(case.second_order_guesses())
@@ -55,10 +55,10 @@ def table(specimen: Specimen, rounds: int = ROUNDS) -> Table:
     for row, name in zip(rows, planned, strict=True):
         row["part_of_all"] = times[name, widest].ratio(times[last, widest])
     columns = (
-        Column("part", "computed"),
-        *(Column(f"lanes_{n}", f"{n} lanes\nus per row", "time") for n in widths()),
-        Column("part_of_all", f"% of all\n({widest} lanes)", "percent"),
+        ReportColumn("part", "computed"),
+        *(ReportColumn(f"lanes_{n}", f"{n} lanes\nus per row", "time") for n in widths()),
+        ReportColumn("part_of_all", f"% of all\n({widest} lanes)", "percent"),
     )
     notes = (f"{BATCH} rows a call; each line computes all lines above it as well.",)
     title = f"{specimen.name}: what the parts of the demand plan cost"
-    return Table(f"demand_{specimen.name.lower()}", title, columns, rows, notes)
+    return ReportTable(f"demand_{specimen.name.lower()}", title, columns, rows, notes)

@@ -35,7 +35,7 @@ from benchmark.specimens import sevenr_specimen
 
 import mechkin_cli as mk
 from mechkin_cli.bench.measurement import Timing, in_turns
-from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.tables.json import json_text
 
@@ -46,12 +46,12 @@ LOOPS = (10, 20, 40, 100)
 ROUNDS = 5
 
 COLUMNS = (
-    Column("case", "case"),
-    Column("value", "value", "time"),
-    Column("unit", "unit"),
-    Column("spread", "+-\n%", "percent"),
-    Column("limit", "limit", "time"),
-    Column("met", "met", "verdict"),
+    ReportColumn("case", "case"),
+    ReportColumn("value", "value", "time"),
+    ReportColumn("unit", "unit"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("limit", "limit", "time"),
+    ReportColumn("met", "met", "verdict"),
 )
 
 
@@ -102,7 +102,7 @@ def platform_text(rows: int) -> str:
     return text.replace("motion:\n", f"motion:\n  time: {{from: 0, to: 1, count: {rows}}}\n")
 
 
-def platform(rounds: int, rows: int) -> Table:
+def platform(rounds: int, rows: int) -> ReportTable:
     """A platform on six legs whose inputs have laws of time, with all that its tables read."""
     model = mk.loads(platform_text(rows), "stewart.yaml")
     motion = partial(model.analyze, ["tool.position"], tables=[])
@@ -111,10 +111,10 @@ def platform(rounds: int, rows: int) -> Table:
     lines = [
         row(name, 1e6 * t.median / rows, "us a row", t.spread, 2.0) for name, t in times.items()
     ]
-    return Table("platform", f"platform with laws of time, {rows} rows", COLUMNS, lines, ())
+    return ReportTable("platform", f"platform with laws of time, {rows} rows", COLUMNS, lines, ())
 
 
-def million(rounds: int, _: int) -> Table:
+def million(rounds: int, _: int) -> ReportTable:
     """RCSR from its file to CSV with a million rows; the file has no tables: nine columns."""
     text = with_rows(
         "rcsr.yaml", "from: 150, to: 202, step: 2", f"from: 150, to: 200, count: {MILLION}"
@@ -139,10 +139,10 @@ def million(rounds: int, _: int) -> Table:
         times = timed(calls, rounds)
     rows = [row(name, t.median, "s", t.spread) for name, t in times.items()]
     rows[0] = row("mechkin analyze, 10^6 rows", rows[0]["value"], "s", rows[0]["spread"], 1.5)
-    return Table("million", "RCSR from file to CSV", COLUMNS, rows, ())
+    return ReportTable("million", "RCSR from file to CSV", COLUMNS, rows, ())
 
 
-def verdicts(_: int, __: int) -> Table:
+def verdicts(_: int, __: int) -> ReportTable:
     """What the condition costs a general 7R of which only positions are asked."""
     specimen = sevenr_specimen()
     case = KernelCase(specimen, degree_rows(specimen))
@@ -168,10 +168,10 @@ def verdicts(_: int, __: int) -> Table:
         ),
         row("ratio", ratio, "", None, 1.25),
     ]
-    return Table("verdicts", "general 7R, positions only", COLUMNS, rows, ())
+    return ReportTable("verdicts", "general 7R, positions only", COLUMNS, rows, ())
 
 
-def closing(_: int, __: int) -> Table:
+def closing(_: int, __: int) -> ReportTable:
     """What a column of the angle at which a 7R closes, and of its rates, costs against a column of
     the joints' points, which are only read, and against one of their wrenches."""
     specimen = sevenr_specimen()
@@ -201,10 +201,10 @@ def closing(_: int, __: int) -> Table:
     rows = [row(name, value, "ns a column and row") for name, value in cost.items()]
     for name in ("points", "wrenches"):
         rows.append(row(f"angle over {name}", cost["closing angle"] / cost[name], ""))
-    return Table("closing", "general 7R, columns of its closing joint", COLUMNS, rows, ())
+    return ReportTable("closing", "general 7R, columns of its closing joint", COLUMNS, rows, ())
 
 
-def threads(rounds: int, count: int) -> Table:
+def threads(rounds: int, count: int) -> ReportTable:
     """One thread against two, for everything that RCSR and the 7R can be asked."""
     sources = {
         "RCSR": with_rows(
@@ -225,7 +225,7 @@ def threads(rounds: int, count: int) -> Table:
         rows.append(row(f"{name}, one thread", 1e6 * one.median / count, "us a row", one.spread))
         rows.append(row(f"{name}, two threads", 1e6 * two.median / count, "us a row", two.spread))
         rows.append(row(f"{name}, one over two", one.ratio(two), "times", None, least=1.8))
-    return Table("threads", f"threads over {count} rows", COLUMNS, rows, ())
+    return ReportTable("threads", f"threads over {count} rows", COLUMNS, rows, ())
 
 
 def graph_of(text: str) -> object:
@@ -233,7 +233,7 @@ def graph_of(text: str) -> object:
     return mk.loads(text).graph
 
 
-def chains(rounds: int, _: int) -> Table:
+def chains(rounds: int, _: int) -> ReportTable:
     """Reading, building and the solver graph of four-bars in a chain."""
     calls: dict[str, Callable[[], object]] = {}
     rows = []
@@ -247,13 +247,13 @@ def chains(rounds: int, _: int) -> Table:
         calls[str(loops)] = partial(graph_of, text)
     for name, t in timed(calls, rounds).items():
         rows.append(row(f"{name} loops", 1e3 * t.median / int(name), "ms a loop", t.spread, 1.0))
-    return Table("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
+    return ReportTable("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
 
 
 FIGURES = {f.__name__: f for f in (platform, million, verdicts, closing, threads, chains)}
 
 
-def tables(names: list[str], rounds: int, count: int) -> Iterator[Table]:
+def tables(names: list[str], rounds: int, count: int) -> Iterator[ReportTable]:
     for name in names or FIGURES:
         yield FIGURES[name](rounds, count)
 

@@ -39,7 +39,7 @@ from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.targets import YARDSTICK_NAMES
 from benchmark.yardstick_kernel import LEVELS, Yardstick
 
-from mechkin_cli.bench.report import Cell, Column, Table, plain_text
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, plain_text
 from mechkin_cli.plan.codes import Demand
 from mechkin_cli.session.following import follow
 from mechkin_cli.tables.json import json_text
@@ -49,9 +49,9 @@ MARK = "getppid"
 """A function that nothing else calls: valgrind writes its counts whenever it is entered."""
 
 COLUMNS = (
-    Column("case", "case"),
-    Column("instructions", "instructions\nper row", "count"),
-    Column("rows", "rows\na call", "count"),
+    ReportColumn("case", "case"),
+    ReportColumn("instructions", "instructions\nper row", "count"),
+    ReportColumn("rows", "rows\na call", "count"),
 )
 
 
@@ -119,14 +119,16 @@ def total(dump: Path) -> int:
     raise ValueError(f"{dump} has no sum")
 
 
-def table(name: str, lanes: int) -> Table:
+def table(name: str, lanes: int) -> ReportTable:
     """A specimen's counts."""
     lines: list[dict[str, Cell]] = [
         {"case": case, "instructions": round(instructions / rows), "rows": rows}
         for case, (rows, instructions) in counted(name, lanes).items()
     ]
     notes = (f"{lanes} lanes; each line of the demand plan computes all lines above it as well.",)
-    return Table(f"instructions_{name.lower()}", f"{name}: instructions", COLUMNS, lines, notes)
+    return ReportTable(
+        f"instructions_{name.lower()}", f"{name}: instructions", COLUMNS, lines, notes
+    )
 
 
 def main() -> None:

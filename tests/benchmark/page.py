@@ -30,7 +30,7 @@ from benchmarks.peers import FAMILIES
 from benchmarks.scenes import subjects
 from benchmarks.suite import whole_tables
 from mechkin_cli.bench.outputs import figure, page
-from mechkin_cli.bench.report import Table, csv_text, machine
+from mechkin_cli.bench.report import ReportTable, csv_text, machine
 from mechkin_cli.bench.runs import FULL, QUICK, bench
 
 RCSR_FILE = ROOT / "mechanisms" / "dissertation" / "rcsr.yaml"
@@ -41,7 +41,7 @@ COMMAND = "python -P tests/benchmark/page.py"
 SCRIPT_RUNS, QUICK_RUNS = 11, 1
 
 
-def against(runs: int) -> Iterator[Table]:
+def against(runs: int) -> Iterator[ReportTable]:
     """The yardstick, and whole processes; scripts of other libraries in so many rounds."""
     yardstick = load()
     if isinstance(yardstick, Yardstick):

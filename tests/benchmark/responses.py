@@ -39,7 +39,7 @@ from references import exact
 import mechkin_cli as mk
 from benchmarks import sevenr
 from mechkin_cli.bench.measurement import in_turns
-from mechkin_cli.bench.report import Cell, Column, Table, machine, plain_text
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
 from mechkin_cli.response.integration import MotionRows, MotionStart, integrate
 from mechkin_cli.response.runs import Prepared, prepare, read, rows_of
 from mechkin_cli.session.kernel_run import Ask, RowInputs
@@ -121,31 +121,31 @@ RCSR_RUBBING = """
 STIFFNESS, DAMPING, STRETCHED = 8e5, 4e4, 1e-3
 
 COLUMNS = (
-    Column("case", "case"),
-    Column("tolerance", "tole-\nrance", "error"),
-    Column("evaluations", "evalu-\nations", "number"),
-    Column("steps", "steps", "number"),
-    Column("error", "largest\nerror", "error"),
-    Column("energy", "energy\nerror", "error"),
-    Column("time", "time\nms", "time"),
-    Column("rows", "in rows", "time"),
-    Column("spread", "+-\n%", "percent"),
+    ReportColumn("case", "case"),
+    ReportColumn("tolerance", "tole-\nrance", "error"),
+    ReportColumn("evaluations", "evalu-\nations", "number"),
+    ReportColumn("steps", "steps", "number"),
+    ReportColumn("error", "largest\nerror", "error"),
+    ReportColumn("energy", "energy\nerror", "error"),
+    ReportColumn("time", "time\nms", "time"),
+    ReportColumn("rows", "in rows", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
 )
 SLOPES = (
-    Column("case", "case"),
-    Column("step", "step\nms", "number"),
-    Column("evaluations", "evalu-\nations", "number"),
-    Column("error", "largest\nerror", "error"),
-    Column("order", "order", "ratio"),
-    Column("digits", "right digits"),
+    ReportColumn("case", "case"),
+    ReportColumn("step", "step\nms", "number"),
+    ReportColumn("evaluations", "evalu-\nations", "number"),
+    ReportColumn("error", "largest\nerror", "error"),
+    ReportColumn("order", "order", "ratio"),
+    ReportColumn("digits", "right digits"),
 )
 COSTS = (
-    Column("case", "case"),
-    Column("value", "value", "time"),
-    Column("unit", "unit"),
-    Column("spread", "+-\n%", "percent"),
-    Column("limit", "asked", "time"),
-    Column("met", "met", "verdict"),
+    ReportColumn("case", "case"),
+    ReportColumn("value", "value", "time"),
+    ReportColumn("unit", "unit"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("limit", "asked", "time"),
+    ReportColumn("met", "met", "verdict"),
 )
 
 
@@ -249,7 +249,7 @@ def sevenr_response(falls: bool) -> str:
     return f"{links}{gravity}responses:\n  run: {{{start}, time: {{from: 0, to: 2, step: 1}}}}\n"
 
 
-def speed(rounds: int, _: int) -> Table:
+def speed(rounds: int, _: int) -> ReportTable:
     """The kernel's time of whole responses at the tolerance that is asked for."""
     known = loops()
     times = in_turns(
@@ -260,7 +260,7 @@ def speed(rounds: int, _: int) -> Table:
         evaluations = case.integrate(ASKED)[0].report.evaluations
         text = f"{name}: {evaluations} evaluations"
         lines.append(cost(text, 1e3 * times[name].median, "ms", times[name].spread, limit=limit))
-    return Table("speed", f"2 s of response, tolerance {ASKED:g}", COSTS, lines, ())
+    return ReportTable("speed", f"2 s of response, tolerance {ASKED:g}", COSTS, lines, ())
 
 
 def yardstick() -> Callable[[], object]:
@@ -271,11 +271,11 @@ def yardstick() -> Callable[[], object]:
     return partial(planned, repeated(case.inputs), repeated(case.second_order_guesses()))
 
 
-def accuracy(rounds: int, _: int) -> Table:
+def accuracy(rounds: int, _: int) -> ReportTable:
     """Error against evaluations."""
     lines = [line for case in cases() for line in accuracy_of(case, rounds)]
     note = "time also in rows of RCSR with all that its tables may ask, in calls of 2048"
-    return Table("accuracy", "responses: error against work", COLUMNS, lines, (note,))
+    return ReportTable("accuracy", "responses: error against work", COLUMNS, lines, (note,))
 
 
 def accuracy_of(case: Case, rounds: int) -> Iterator[dict[str, Cell]]:
@@ -302,7 +302,7 @@ def accuracy_of(case: Case, rounds: int) -> Iterator[dict[str, Cell]]:
         }
 
 
-def slopes(_: int, __: int) -> Table:
+def slopes(_: int, __: int) -> ReportTable:
     """Error against evaluations in equal steps, and by which power of the step it falls."""
     case = cases()[1]
     known = case.known(case)
@@ -325,10 +325,12 @@ def slopes(_: int, __: int) -> Table:
             )
             before = error
     note = "order: power of the step in the error; DOP853 has 8, Radau IIA 5; ## is a right digit"
-    return Table("slopes", "responses: error against work in equal steps", SLOPES, lines, (note,))
+    return ReportTable(
+        "slopes", "responses: error against work in equal steps", SLOPES, lines, (note,)
+    )
 
 
-def lanes(rounds: int, variants: int) -> Table:
+def lanes(rounds: int, variants: int) -> ReportTable:
     """What a variant costs among many, against one alone."""
     lines = []
     for case in cases()[:2]:
@@ -340,10 +342,10 @@ def lanes(rounds: int, variants: int) -> Table:
             cost(f"one of {variants}", 1e6 * each.median / variants, "us", each.spread),
             cost("alone over one of many", one.ratio(each, 1.0 / variants), least=LEAST_GAIN),
         ]
-    return Table("lanes", f"{variants} variants in lanes, tolerance 1e-10", COSTS, lines, ())
+    return ReportTable("lanes", f"{variants} variants in lanes, tolerance 1e-10", COSTS, lines, ())
 
 
-def friction(rounds: int, _: int) -> Table:
+def friction(rounds: int, _: int) -> ReportTable:
     """A sweep's row with friction in its joints against the same without."""
     calls = {name: sweep_call(*case) for name, case in sweep_cases().items()}
     times = in_turns(calls, rounds)
@@ -353,7 +355,7 @@ def friction(rounds: int, _: int) -> Table:
         if where != "none":
             ratio = times[name].ratio(times[f"{own}, none"])
             lines.append(cost(f"{name} over none", ratio, limit=MOST_FRICTION))
-    return Table("friction", "sweep with friction", COSTS, lines, ())
+    return ReportTable("friction", "sweep with friction", COSTS, lines, ())
 
 
 def cost(

@@ -26,7 +26,7 @@ from benchmark.reference import POSITIONS
 
 from benchmarks.rcsr import Dimensions, dimensions
 from mechkin_cli.bench.measurement import Timing, in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -35,14 +35,14 @@ BY_HAND_ROUNDS = 5
 """The peers in Python take a thousand times as long; they are timed in few rounds."""
 
 COLUMNS = (
-    Column("route", "route"),
-    Column("microseconds", "us per\nrow", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times\nkernel", "time"),
-    Column("position", "error:\nposi-\ntion", "error"),
-    Column("velocity", "velo-\ncity", "error"),
-    Column("acceleration", "acceler-\nation", "error"),
-    Column("loads", "\nloads", "error"),
+    ReportColumn("route", "route"),
+    ReportColumn("microseconds", "us per\nrow", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times\nkernel", "time"),
+    ReportColumn("position", "error:\nposi-\ntion", "error"),
+    ReportColumn("velocity", "velo-\ncity", "error"),
+    ReportColumn("acceleration", "acceler-\nation", "error"),
+    ReportColumn("loads", "\nloads", "error"),
 )
 
 
@@ -67,7 +67,7 @@ BY_HAND_NOTES = (
 )
 
 
-def tables(rcsr: ExactSpecimen, sevenr: ExactSpecimen) -> Iterator[Table]:
+def tables(rcsr: ExactSpecimen, sevenr: ExactSpecimen) -> Iterator[ReportTable]:
     """Times and errors of all routes: RCSR with what is done by hand, 7R without."""
     yield _table(rcsr, partial(_rcsr_routes, dimensions()), BY_HAND_NOTES)
     yield _table(sevenr, lambda specimen, case: [], ())
@@ -77,7 +77,7 @@ def _table(
     specimen: ExactSpecimen,
     peers: Callable[[ExactSpecimen, KernelCase], list[Route]],
     notes: tuple[str, ...],
-) -> Table:
+) -> ReportTable:
     coarse = KernelCase(specimen, degree_rows(specimen))
     fine = KernelCase(specimen, sweep_rows(specimen))
     native = [*_kernel_routes(specimen, coarse), *_sweep_routes(specimen, fine)]
@@ -91,7 +91,9 @@ def _table(
     ]
     measure = f"errors in parts of the largest value; exact: {extended().name}."
     name, title = f"routes_{specimen.name.lower()}", f"run time against error, {specimen.name}"
-    return Table(name, f"{title}, one thread", COLUMNS, rows, (*NATIVE_NOTES, *notes, measure))
+    return ReportTable(
+        name, f"{title}, one thread", COLUMNS, rows, (*NATIVE_NOTES, *notes, measure)
+    )
 
 
 def exact_solution(specimen: ExactSpecimen, case: KernelCase) -> dict[str, Any]:

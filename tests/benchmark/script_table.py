@@ -15,7 +15,7 @@ from benchmark.process import command, environment
 from benchmark.script_problem import Script, scripts
 
 from mechkin_cli.bench.measurement import in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 
 FOLDER = Path(__file__).resolve().parent / "scripts"
 LIBRARIES = {"Pinocchio": "pinocchio", "MuJoCo": "mujoco", "CasADi": "casadi"}
@@ -23,16 +23,16 @@ MILLI = 1000.0
 TABLE = "motion.csv"
 
 COLUMNS = (
-    Column("mechanism", "mechanism"),
-    Column("process", "process"),
-    Column("milliseconds", "ms", "time"),
-    Column("spread", "+-\n%", "percent"),
-    Column("ratio", "times\nmechkin", "ratio"),
-    Column("difference", "largest\ndifference", "error"),
+    ReportColumn("mechanism", "mechanism"),
+    ReportColumn("process", "process"),
+    ReportColumn("milliseconds", "ms", "time"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("ratio", "times\nmechkin", "ratio"),
+    ReportColumn("difference", "largest\ndifference", "error"),
 )
 
 
-def script_table(runs: int, names: Collection[str] = ()) -> Table:
+def script_table(runs: int, names: Collection[str] = ()) -> ReportTable:
     """RCSR, 7R and Stewart's platform, or some of them, each in turns with scripts of the libraries
     that are here; the others are left out by name.
 
@@ -53,7 +53,7 @@ def script_table(runs: int, names: Collection[str] = ()) -> Table:
         "difference: from mechkin's table, in parts of a column's largest value.",
         *(f"{label} is left out: it is not installed." for label in missing),
     ]
-    return Table("scripts", "whole scripts of other libraries", COLUMNS, rows, notes)
+    return ReportTable("scripts", "whole scripts of other libraries", COLUMNS, rows, notes)
 
 
 def _mechanism(

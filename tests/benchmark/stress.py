@@ -20,7 +20,7 @@ from benchmark.kernel_case import sweep_rows
 from benchmark.specimen import values
 
 from benchmarks.rcsr import SPAN, dimensions
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.model.model import loads
 from mechkin_cli.verdict import Status
@@ -42,19 +42,19 @@ EPSILON = 2.0**-53
 OTHER_BRANCH = "on the other branch"
 
 _ERRORS = (
-    Column("position", "error:\nposi-\ntion", "error"),
-    Column("velocity", "velo-\ncity", "error"),
-    Column("acceleration", "acceler-\nation", "error"),
-    Column("loads", "\nloads", "error"),
+    ReportColumn("position", "error:\nposi-\ntion", "error"),
+    ReportColumn("velocity", "velo-\ncity", "error"),
+    ReportColumn("acceleration", "acceler-\nation", "error"),
+    ReportColumn("loads", "\nloads", "error"),
 )
 _VERDICT = (
-    Column("residual", "resi-\ndual", "error"),
-    Column("condition", "condi-\ntion", "error"),
-    Column("status", "\nstatus"),
+    ReportColumn("residual", "resi-\ndual", "error"),
+    ReportColumn("condition", "condi-\ntion", "error"),
+    ReportColumn("status", "\nstatus"),
 )
 
 
-def tables() -> Iterator[Table]:
+def tables() -> Iterator[ReportTable]:
     """Sizes of both mechanisms, and the dead centre."""
     arithmetic = best()
     yield size_table(rcsr_specimen, SIZES, arithmetic)
@@ -64,7 +64,7 @@ def tables() -> Iterator[Table]:
 
 def size_table(
     scaled: Callable[[float], ExactSpecimen], sizes: Sequence[float], arithmetic: Arithmetic
-) -> Table:
+) -> ReportTable:
     """One row per size: worst errors of a sweep in parts of the columns' largest values."""
     rows: list[dict[str, Cell]] = []
     for scale in sizes:
@@ -87,12 +87,12 @@ def size_table(
             }
         )
     notes = (f"{SIZE_ROWS} rows a size; exact: {arithmetic.name}, 4x4 matrices and dense loads.",)
-    columns = (Column("scale", "\nsize", "error"), *_ERRORS, *_VERDICT)
+    columns = (ReportColumn("scale", "\nsize", "error"), *_ERRORS, *_VERDICT)
     title = f"{specimen.name}: lengths times 1e-6 to 1e6"
-    return Table(f"sizes_{specimen.name.lower()}", title, columns, rows, notes)
+    return ReportTable(f"sizes_{specimen.name.lower()}", title, columns, rows, notes)
 
 
-def dead_centre_table(arithmetic: Arithmetic) -> Table:
+def dead_centre_table(arithmetic: Arithmetic) -> ReportTable:
     """One row per distance: errors of that position in parts of its own values."""
     specimen = rcsr_specimen()
     fold = dead_centre(drawing(dimensions(), arithmetic), NEAR_DEAD_CENTRE)
@@ -106,16 +106,16 @@ def dead_centre_table(arithmetic: Arithmetic) -> Table:
     ]
     degrees = float(fold.theta1 * 180 / arithmetic.radians(180))
     columns = (
-        Column("distance", "\ndegrees", "error"),
+        ReportColumn("distance", "\ndegrees", "error"),
         *_ERRORS,
-        Column("share", "of\neps c", "ratio"),
+        ReportColumn("share", "of\neps c", "ratio"),
         *_VERDICT,
     )
     notes = (
         f"dead centre at {degrees:.13f} degrees; one sweep from {SPAN[0]:g}",
         f"exact: {arithmetic.name}; eps c: 2^-53 times the condition (one rounding).",
     )
-    return Table("dead_centre", "RCSR towards the dead centre", columns, rows, notes)
+    return ReportTable("dead_centre", "RCSR towards the dead centre", columns, rows, notes)
 
 
 def _position_row(

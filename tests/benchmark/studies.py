@@ -29,7 +29,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2]))
 
 import mechkin_cli as mk
 from benchmarks import rcsr, sevenr
-from mechkin_cli.bench.scene import Scene
+from mechkin_cli.bench.scene import BenchScene
 
 ROWS = 361
 ROUNDS = 3
@@ -91,7 +91,7 @@ def peer(case: Case) -> Callable[[], None] | None:
         return None
     from benchmarks.peers.with_casadi import methods
 
-    scene = Scene(case.name, mk.loads(case.text, case.name), most_places=ROWS)
+    scene = BenchScene(case.name, mk.loads(case.text, case.name), most_places=ROWS)
     assert scene.rows == ROWS
     found = next(m for m in methods(scene) if m.level == "motion")
 

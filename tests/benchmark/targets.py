@@ -23,7 +23,7 @@ from benchmark.yardstick_kernel import LEVELS, Yardstick
 
 from benchmarks import sevenr
 from mechkin_cli.bench.measurement import Timing, in_turns
-from mechkin_cli.bench.report import Cell, Column, Table
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.kernel.functions import widths
 
 KERNEL_LIMIT = 1.6
@@ -31,13 +31,13 @@ SWEEP_LIMIT = 2.5
 PROCESS_LIMIT = 1.45
 
 COLUMNS = (
-    Column("case", "case"),
-    Column("microseconds", "mechkin\nus", "time"),
-    Column("other", "other\nus", "time"),
-    Column("ratio", "\nratio", "ratio"),
-    Column("spread", "+-\n%", "percent"),
-    Column("limit", "\nlimit", "ratio"),
-    Column("met", "\nmet", "verdict"),
+    ReportColumn("case", "case"),
+    ReportColumn("microseconds", "mechkin\nus", "time"),
+    ReportColumn("other", "other\nus", "time"),
+    ReportColumn("ratio", "\nratio", "ratio"),
+    ReportColumn("spread", "+-\n%", "percent"),
+    ReportColumn("limit", "\nlimit", "ratio"),
+    ReportColumn("met", "\nmet", "verdict"),
 )
 
 YARDSTICK_NAMES = {"RCSR": "rcsr", "7R": "sevenr"}
@@ -45,7 +45,7 @@ YARDSTICK_NAMES = {"RCSR": "rcsr", "7R": "sevenr"}
 Owner = Literal["mechkin", "yardstick"]
 
 
-def table(specimen: Specimen, yardstick: Yardstick) -> Table:
+def table(specimen: Specimen, yardstick: Yardstick) -> ReportTable:
     """Kernel and sweep against the yardstick on its own copy, per lane width."""
     coarse = KernelCase(specimen, degree_rows(specimen))
     fine = KernelCase(specimen, sweep_rows(specimen))
@@ -76,10 +76,10 @@ def table(specimen: Specimen, yardstick: Yardstick) -> Table:
         "sweep: follow and run with everything, against as many rows of the yardstick.",
     )
     title = f"{specimen.name} against the yardstick"
-    return Table(f"yardstick_{specimen.name.lower()}", title, COLUMNS, rows, notes)
+    return ReportTable(f"yardstick_{specimen.name.lower()}", title, COLUMNS, rows, notes)
 
 
-def process_table(rcsr: Path, peer: Sequence[str] = ()) -> Table:
+def process_table(rcsr: Path, peer: Sequence[str] = ()) -> ReportTable:
     """Whole processes: `mechkin analyze` of RCSR and of 361 rows of 7R, against bare imports.
 
     Args:
@@ -107,7 +107,7 @@ def process_table(rcsr: Path, peer: Sequence[str] = ()) -> Table:
         "mechkin analyze FILE, us, medians of processes in turns; bare imports:",
         f'python -c "{idle[-1]}"',
     )
-    return Table("process", "the whole process", COLUMNS, rows, notes)
+    return ReportTable("process", "the whole process", COLUMNS, rows, notes)
 
 
 def _row(

@@ -18,7 +18,7 @@ import mechkin_cli as mk
 from mechkin_cli.bench.outputs import write
 from mechkin_cli.bench.report import bench_table, machine
 from mechkin_cli.bench.runs import Rounds, bench
-from mechkin_cli.bench.scene import Scene
+from mechkin_cli.bench.scene import BenchScene
 from mechkin_cli.diagnostics import UsageError
 
 ONCE = Rounds(1, 1)
@@ -31,7 +31,7 @@ def test_a_kept_mechanism_is_measured_or_refused_in_words(path: Path, tmp_path: 
     """Files agree with each other, and no number is none."""
     scene, why = None, ""
     try:
-        scene = Scene(path.stem, mk.load(path))
+        scene = BenchScene(path.stem, mk.load(path))
     except UsageError as error:
         why = str(error)
     assert any(words in why for words in REFUSED) == bool(why)

@@ -25,7 +25,7 @@ from oracle import fold, mp, read
 
 from benchmarks.rcsr import COORDINATES, dimensions
 from mechkin_cli.bench.measurement import SHORTEST, Timing, in_turns
-from mechkin_cli.bench.report import Column, Table, cell_text, plain_text, width
+from mechkin_cli.bench.report import ReportColumn, ReportTable, cell_text, plain_text, width
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.tape.double_double import eliminate
 
@@ -226,8 +226,10 @@ def test_short_calls_are_repeated_within_a_round():
 
 
 def test_tables_are_aligned():
-    columns = (Column("name", "name"), Column("us", "time\nus", "time"))
-    table = Table("t", "title", columns, [{"name": "one", "us": 0.0123}, {"name": "b", "us": None}])
+    columns = (ReportColumn("name", "name"), ReportColumn("us", "time\nus", "time"))
+    table = ReportTable(
+        "t", "title", columns, [{"name": "one", "us": 0.0123}, {"name": "b", "us": None}]
+    )
     assert plain_text(table) == "title\n\n       time\nname     us\none   0.012\nb\n"
     assert width(table) == 11
 

@@ -16,22 +16,22 @@ from benchmarks import scenes
 from benchmarks.peers import FAMILIES
 from benchmarks.responses.pendulum import exact_motion
 from mechkin_cli.bench import runs
-from mechkin_cli.bench.chain import Body
+from mechkin_cli.bench.chain import TreeBody
 from mechkin_cli.bench.measurement import Bench, Measurement, Skipped, errors_of
 from mechkin_cli.bench.methods import ANALYZED
 from mechkin_cli.bench.outputs import (
     CURVES,
     NAMES,
-    Panel,
+    FigurePanel,
     best_table,
     record,
     summary,
     svg,
     write,
 )
-from mechkin_cli.bench.report import Table, bench_table, csv_text, markdown
+from mechkin_cli.bench.report import ReportTable, bench_table, csv_text, markdown
 from mechkin_cli.bench.runs import Rounds, bench, methods_of
-from mechkin_cli.bench.scene import Scene
+from mechkin_cli.bench.scene import BenchScene
 from mechkin_cli.bench.truth import TEXT, exact_values, true_values
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import widths
@@ -51,27 +51,27 @@ def short(text: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def rcsr() -> Scene:
-    return Scene("RCSR", mk.loads(short(scenes.texts()["RCSR"]())))
+def rcsr() -> BenchScene:
+    return BenchScene("RCSR", mk.loads(short(scenes.texts()["RCSR"]())))
 
 
 @pytest.fixture(scope="module")
-def platform() -> Scene:
-    return Scene("platform", mk.loads(scenes.platform(9)))
+def platform() -> BenchScene:
+    return BenchScene("platform", mk.loads(scenes.platform(9)))
 
 
 @pytest.fixture(scope="module")
-def measured(rcsr: Scene) -> Bench:
+def measured(rcsr: BenchScene) -> Bench:
     return bench(rcsr, ONCE, chosen(*HAND))
 
 
-def errors(scene: Scene, values: dict, true: dict) -> dict:
+def errors(scene: BenchScene, values: dict, true: dict) -> dict:
     lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
     return errors_of(scene.asked, lengths, values, true)
 
 
 def test_what_is_right_is_what_40_digits_say() -> None:
-    scene = Scene("RCSR", mk.load(RCSR))
+    scene = BenchScene("RCSR", mk.load(RCSR))
     true = true_values(scene)
     inch = mk.load(RCSR).problem.units.to_si(
         1.0, mk.load(RCSR).problem.quantities()["O2.s"].dimension
@@ -91,7 +91,7 @@ def test_what_is_right_is_what_40_digits_say() -> None:
 @pytest.mark.parametrize("name", ["RCSR", "RSSR", "7R", "RCHCH", "Stewart", "platform on laws"])
 def test_double_double_and_the_closure_of_another_formula_agree(name: str) -> None:
     """But for the rounding of the file's numbers to doubles, from which the closure starts."""
-    scene = Scene(name, mk.loads(scenes.texts()[name]()))
+    scene = BenchScene(name, mk.loads(scenes.texts()[name]()))
     exact, said = exact_values(scene)
     assert said == TEXT
     worst = errors(scene, true_values(scene), exact)
@@ -107,11 +107,11 @@ def test_reactions_have_errors_too(measured: Bench) -> None:
     assert all(0.0 < m.loads < 1e-12 for m in everything)
 
 
-def test_errors_rest_on_nothing_of_the_kernel(rcsr: Scene) -> None:
+def test_errors_rest_on_nothing_of_the_kernel(rcsr: BenchScene) -> None:
     """Another mechanism in the exact closure is seen as an error of that size."""
-    moved = Scene("RCSR", rcsr.model)
+    moved = BenchScene("RCSR", rcsr.model)
     first, *rest = rcsr.chain.bodies
-    assert isinstance(first, Body)
+    assert isinstance(first, TreeBody)
     frame = first.by.before
     off = first.by._replace(before=frame._replace(o=(frame.o[0], frame.o[1] + 1e-6, frame.o[2])))
     moved.__dict__["chain"] = replace(rcsr.chain, bodies=(first._replace(by=off), *rest))
@@ -122,7 +122,7 @@ def test_errors_rest_on_nothing_of_the_kernel(rcsr: Scene) -> None:
 
 @pytest.mark.parametrize("name", ["RSSR", "7R", "RCHCH", "Stewart", "platform on laws"])
 def test_the_exact_closure_holds_for_every_kind_of_loop(name: str) -> None:
-    scene = Scene(name, mk.loads(scenes.texts()[name]()))
+    scene = BenchScene(name, mk.loads(scenes.texts()[name]()))
     found = scene.found("motion", scene.kernel("motion", scene.followed)())
     worst = errors(scene, found, true_values(scene))
     assert worst["position"] < 1e-14
@@ -134,7 +134,7 @@ def test_a_train_of_loops_with_redundant_constraints_is_measured() -> None:
     from benchmarks import train
 
     motion = "{from: 0 deg, to: 40 deg, step: 10 deg}"
-    scene = Scene("train", mk.loads(train.text(3, motion)))
+    scene = BenchScene("train", mk.loads(train.text(3, motion)))
     found = bench(scene, ONCE, chosen(*(("CasADi",) if "casadi" in sys.modules else ())))
     assert all(s.family == "CasADi" and "redundant" in s.reason for s in found.skipped)
     exact_enough = [m for m in found.measurements if m.curve == ANALYZED and m.level == "motion"]
@@ -187,7 +187,7 @@ def test_levels_find_what_they_say(measured: Bench) -> None:
 
 
 @pytest.mark.parametrize("limit", [1e-2, 1e-6, 1e-14])
-def test_errors_do_not_depend_on_the_lanes(rcsr: Scene, limit: float) -> None:
+def test_errors_do_not_depend_on_the_lanes(rcsr: BenchScene, limit: float) -> None:
     from mechkin_cli.session.session import Packing
 
     tests = (limit, limit**0.5, limit)
@@ -199,7 +199,9 @@ def test_errors_do_not_depend_on_the_lanes(rcsr: Scene, limit: float) -> None:
     assert len({errors(rcsr, values, true)["position"] for values in found}) == 1
 
 
-def test_a_library_that_is_missing_is_named(rcsr: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_library_that_is_missing_is_named(
+    rcsr: BenchScene, monkeypatch: pytest.MonkeyPatch
+) -> None:
     for name in ("scipy.optimize", "casadi", "pinocchio", "mujoco"):
         monkeypatch.setitem(sys.modules, name, None)
     for family, library in (
@@ -214,7 +216,7 @@ def test_a_library_that_is_missing_is_named(rcsr: Scene, monkeypatch: pytest.Mon
         assert f"{library} is not installed (pip install {how})" in found.reason
 
 
-def test_a_mechanism_that_a_method_cannot_take_is_named(platform: Scene) -> None:
+def test_a_mechanism_that_a_method_cannot_take_is_named(platform: BenchScene) -> None:
     pytest.importorskip("mujoco")
     (found,) = methods_of(platform, "MuJoCo", FAMILIES["MuJoCo"])
     assert isinstance(found, Skipped)
@@ -222,7 +224,7 @@ def test_a_mechanism_that_a_method_cannot_take_is_named(platform: Scene) -> None
 
 
 @pytest.mark.parametrize("family", ["CasADi", "MuJoCo", "Pinocchio"])
-def test_peers_that_are_here_are_sound(rcsr: Scene, family: str) -> None:
+def test_peers_that_are_here_are_sound(rcsr: BenchScene, family: str) -> None:
     found = bench(rcsr, ONCE, chosen(family))
     if found.skipped:
         pytest.skip(found.skipped[0].reason)
@@ -234,14 +236,14 @@ def test_peers_that_are_here_are_sound(rcsr: Scene, family: str) -> None:
 
 def test_a_file_that_cannot_be_measured_says_why() -> None:
     with pytest.raises(UsageError, match="has no sweep to measure"):
-        Scene("response", mk.load(FILE_OF["rcsr_response"]))
+        BenchScene("response", mk.load(FILE_OF["rcsr_response"]))
     pendulum = (
         "format: 1\nname: crank\nlinks: {bar: {}}\njoints:\n"
         "  A: {type: R, links: [ground, bar], point: [0, 0, 0], axis: [0, 0, 1]}\n"
         "motion: {inputs: {A.theta: {from: 0, to: 90, step: 10}}}\n"
     )
     with pytest.raises(UsageError, match="nothing that is solved for"):
-        Scene("crank", mk.loads(pendulum))
+        BenchScene("crank", mk.loads(pendulum))
 
 
 def test_the_record_has_its_schema(measured: Bench, tmp_path) -> None:
@@ -272,7 +274,7 @@ def measurement(curve: str, us: float, error: float | None) -> Measurement:
 def test_the_figure_shows_every_curve_and_its_points() -> None:
     given = [measurement(CURVES[0].name, 1.0, 1e-15), measurement(CURVES[0].name, 0.1, 1e-3)]
     given += [measurement(CURVES[5].name, 100.0, 1e-8), measurement("not in the figure", 1.0, 1e-4)]
-    text = svg([Panel("A & B", given)])
+    text = svg([FigurePanel("A & B", given)])
     root = ET.fromstring(text)
     space = "{http://www.w3.org/2000/svg}"
     said = [e.text for e in root.iter(f"{space}text")]
@@ -284,7 +286,7 @@ def test_the_figure_shows_every_curve_and_its_points() -> None:
     # two points and one, and a mark of each in the legend
     assert dots.count("p0") == 3
     assert dots.count("p5") == 2
-    assert text == svg([Panel("A & B", given)])
+    assert text == svg([FigurePanel("A & B", given)])
 
 
 def test_the_figure_of_nothing_is_a_figure() -> None:
@@ -294,7 +296,7 @@ def test_the_figure_of_nothing_is_a_figure() -> None:
 def test_points_lie_as_their_numbers_do() -> None:
     text = svg(
         [
-            Panel(
+            FigurePanel(
                 "A",
                 [measurement(CURVES[0].name, 10.0, 1e-12), measurement(CURVES[0].name, 1.0, 1e-4)],
             )
@@ -317,18 +319,18 @@ def test_the_best_of_the_others_is_as_exact(measured: Bench) -> None:
 
 def test_the_page_sums_up_what_its_table_says() -> None:
     rows = [{"kernel_ratio": 2.0, "sweep_ratio": 0.5}, {"kernel_ratio": 8.0}]
-    said = summary(Table("ahead", "", (), rows))
+    said = summary(ReportTable("ahead", "", (), rows))
     assert "the kernel alone is 2.00 to 8.00 times" in said
     assert "0.500 to 0.500 times" in said
     assert "followed" not in said
-    assert summary(Table("ahead", "", (), [])) == "No other method was measured."
+    assert summary(ReportTable("ahead", "", (), [])) == "No other method was measured."
 
 
 def test_tables_become_markdown() -> None:
-    from mechkin_cli.bench.report import Column
+    from mechkin_cli.bench.report import ReportColumn
 
-    columns = (Column("a", "posi-\ntion"), Column("t", "+-\n%", "time"))
-    text = markdown(Table("t", "title", columns, [{"a": "x|y", "t": 1.5}], ("note",)))
+    columns = (ReportColumn("a", "posi-\ntion"), ReportColumn("t", "+-\n%", "time"))
+    text = markdown(ReportTable("t", "title", columns, [{"a": "x|y", "t": 1.5}], ("note",)))
     assert text == ("### title\n\n| position | +- % |\n| --- | ---: |\n| x\\|y | 1.50 |\n\nnote\n")
 
 

@@ -15,7 +15,7 @@ from benchmarks.responses.extrapolation import extrapolated
 from benchmarks.responses.table import OWN, response_table
 from benchmarks.responses.tree import Tree
 from mechkin_cli.bench.outputs import responses_summary
-from mechkin_cli.bench.report import Table
+from mechkin_cli.bench.report import ReportTable
 
 NAMES = ("double pendulum", "three hinges in space", "RCSR", "stiff spring and damper")
 
@@ -109,7 +109,7 @@ def test_the_page_tells_the_fastest_other() -> None:
         {"case": "A", "method": "MuJoCo", "ratio": 0.5},
         {"case": "B", "method": "scipy", "ratio": 20.0},
     ]
-    (_, said) = responses_summary([Table("responses", "", (), rows)])
+    (_, said) = responses_summary([ReportTable("responses", "", (), rows)])
     assert "A 0.500, B 20.0 times as fast" in said
 
 

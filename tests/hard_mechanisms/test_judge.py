@@ -15,7 +15,7 @@ from benchmarks.stress.numbers.double_double import DEGREE
 from benchmarks.stress.quantity import Truth
 from benchmarks.stress.solve import solve
 from benchmarks.stress.tally import Tally, of_record
-from mechkin_cli.bench.stress import Verdict
+from mechkin_cli.bench.stress import StressVerdict
 from mechkin_cli.verdict import Proof, Status
 
 ROW = 7
@@ -38,27 +38,27 @@ def spoilt(found: Found, name: str, value: float) -> Found:
     return replace(found, values=values)
 
 
-def verdict(judged: Judged) -> Verdict:
+def verdict(judged: Judged) -> StressVerdict:
     others = np.delete(judged.verdict[0], ROW)
-    assert np.isin(others, (Verdict.right, Verdict.rightly_none)).all()
-    return Verdict(judged.verdict[0, ROW])
+    assert np.isin(others, (StressVerdict.right, StressVerdict.rightly_none)).all()
+    return StressVerdict(judged.verdict[0, ROW])
 
 
 def test_nothing_is_wrong_as_it_is(solved: tuple[Found, Truth]) -> None:
-    assert verdict(judge(*solved)) == Verdict.right
+    assert verdict(judge(*solved)) == StressVerdict.right
 
 
 def test_a_row_on_the_other_branch(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     (quantity,) = truth.quantities
     other = float((quantity.other / DEGREE).high[0, ROW])
-    assert verdict(judge(spoilt(found, "D.theta", other), truth)) == Verdict.false_ok
+    assert verdict(judge(spoilt(found, "D.theta", other), truth)) == StressVerdict.false_ok
 
 
 def test_a_row_that_is_off(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     near = found.values["D.theta"][0, ROW] * (1.0 + 1e-7)
-    assert verdict(judge(spoilt(found, "D.theta", near), truth)) == Verdict.false_ok
+    assert verdict(judge(spoilt(found, "D.theta", near), truth)) == StressVerdict.false_ok
 
 
 def test_the_same_with_a_warning(solved: tuple[Found, Truth]) -> None:
@@ -66,13 +66,13 @@ def test_the_same_with_a_warning(solved: tuple[Found, Truth]) -> None:
     codes = found.codes.copy()
     codes[0, ROW] = Status.near_singular
     off = spoilt(replace(found, codes=codes), "D.theta", 1.0)
-    assert verdict(judge(off, truth)) == Verdict.wrong_warned
+    assert verdict(judge(off, truth)) == StressVerdict.wrong_warned
 
 
 def test_rates_that_are_off(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     fast = found.values["D.theta_dot"][0, ROW] + 1e-5
-    assert verdict(judge(spoilt(found, "D.theta_dot", fast), truth)) == Verdict.rates_lost
+    assert verdict(judge(spoilt(found, "D.theta_dot", fast), truth)) == StressVerdict.rates_lost
 
 
 @pytest.mark.parametrize("key", ["C.force.y", "A.effort"])
@@ -80,32 +80,32 @@ def test_forces_that_are_off(key: str) -> None:
     block = drawn(FAMILIES["forces"], 1, [0])
     truth = block.truth(block.places)
     found, _, _ = solve(block.texts, block.places.shape[1], truth.cells())
-    assert verdict(judge(found, truth)) == Verdict.right
+    assert verdict(judge(found, truth)) == StressVerdict.right
     off = float(truth.heaviest[0, ROW] * truth.size[0, 0]) * 1e-6  # type: ignore[index]
     assert off > 0.0
     near = found.values[key][0, ROW] * (1.0 + 1e-5) + off
-    assert verdict(judge(spoilt(found, key, near), truth)) == Verdict.rates_lost
-    assert verdict(judge(spoilt(found, key, np.nan), truth)) == Verdict.rates_lost
+    assert verdict(judge(spoilt(found, key, near), truth)) == StressVerdict.rates_lost
+    assert verdict(judge(spoilt(found, key, np.nan), truth)) == StressVerdict.rates_lost
 
 
 def test_a_row_that_is_lost(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     codes = found.codes.copy()
     codes[0, ROW] = Status.branch_lost
-    assert verdict(judge(replace(found, codes=codes), truth)) == Verdict.false_alarm
+    assert verdict(judge(replace(found, codes=codes), truth)) == StressVerdict.false_alarm
 
 
 def test_a_row_that_cannot_be(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     exists = truth.exists.copy()
     exists[0, ROW] = False
-    assert verdict(judge(found, replace(truth, exists=exists))) == Verdict.false_ok
+    assert verdict(judge(found, replace(truth, exists=exists))) == StressVerdict.false_ok
 
 
 def test_what_a_run_says_it_takes_as_drawn_is_no_fault(solved: tuple[Found, Truth]) -> None:
     found, truth = solved
     noted = replace(spoilt(found, "D.theta", 1.0), noted=np.ones((1, 1), bool))
-    assert verdict(judge(noted, truth)) == Verdict.taken_as_drawn
+    assert verdict(judge(noted, truth)) == StressVerdict.taken_as_drawn
 
 
 @pytest.mark.parametrize("key", ["D.theta", "D.theta_dot", "D.theta_ddot", "C.force.y", "A.effort"])
