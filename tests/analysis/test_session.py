@@ -8,6 +8,7 @@ from mechanisms.runs import LECTURES, NAMES
 from references import FILE_OF
 
 import mechkin_cli as mk
+from mechkin_cli.search import search
 from mechkin_cli.session.session import Session
 
 
@@ -25,14 +26,16 @@ class Calls:
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     found = Calls()
-    for verb in found.count:
-        own = getattr(Session, verb)
+    homes = {"follow": Session, "run": Session, "search": search}
+    for verb, home in homes.items():
+        name = "assemblies" if verb == "search" else verb
+        own = getattr(home, name)
 
-        def counted(self, *args, _own=own, _verb=verb, **more):
+        def counted(*args, _own=own, _verb=verb, **more):
             found.count[_verb] += 1
-            return _own(self, *args, **more)
+            return _own(*args, **more)
 
-        monkeypatch.setattr(Session, verb, counted)
+        monkeypatch.setattr(home, name, counted)
     return found
 
 

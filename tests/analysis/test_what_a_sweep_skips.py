@@ -19,7 +19,8 @@ OPEN = ("rchch", "sevenr", "stewart", "five_link_suspension", "rprhrrr")
 
 
 def searches(session) -> list[object]:
-    return [key for key in session._kept if isinstance(key, tuple) and key[0] == "search"]
+    memo = session.structure.memo
+    return [key for key in memo if isinstance(key, tuple) and key[0].__name__ == "_everywhere"]
 
 
 @pytest.mark.parametrize("name", [*PROVEN, *OPEN])

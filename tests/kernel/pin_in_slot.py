@@ -21,7 +21,7 @@ struct PinInTrack
 TABLE = """\
     JointType(
         "Rg",
-        (Step("P", _X1), Step("R")),
+        (PairStep("P", _X1), PairStep("R")),
         (_length("s", 0, _X1), _angle("theta", 1)),
         Drawing("plane", ("axis", "slot")),
         axis=_Z2,

@@ -107,7 +107,7 @@ def test_the_size_is_that_of_the_box_of_the_joint_points(path: Any) -> None:
     if start.state is None:
         pytest.skip("has no assembly")
     first = inputs[:, start.row]
-    _, moving = Probe.of(session).read(first, start.state[:, None])
+    _, moving = Probe(session).read(first, start.state[:, None])
     points = [at.vector for _, at in problem.mechanism.joint_points() if at.link == "ground"]
     every = [*moving[:, :, 0].tolist(), *points]
     extent = [max(p[i] for p in every) - min(p[i] for p in every) for i in range(3)]

@@ -12,7 +12,7 @@ from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.proofs import enclose as enclosures
+from mechkin_cli.proofs import enclose as enclosures, enclosed_rows
 from mechkin_cli.proofs.certificate import not_enclosed
 
 DOUBLES = 1e-13
@@ -80,7 +80,8 @@ def test_a_row_outside_its_box_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
         assert found.all()
         return found & (np.arange(found.size) != 4)
 
-    monkeypatch.setattr(enclosures, "_are_inside", but_one)
+    for module in (enclosures, enclosed_rows):
+        monkeypatch.setattr(module, "_are_inside", but_one)
     proofs = mk.load(RCSR).certify()
     low, high = proofs.enclosure("O4.theta_dot")
     assert np.flatnonzero(np.isnan(low) | np.isnan(high)).tolist() == [4]

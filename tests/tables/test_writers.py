@@ -42,7 +42,7 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
 
     monkeypatch.setattr(analyze, "WRITERS", {**writers.WRITERS, "tsv": tsv})
     monkeypatch.setattr(writers, "WRITERS", {**writers.WRITERS, "tsv": tsv})
-    assert analyze._formats(["tsv", "csv"]) == ("tsv", "csv")
+    assert analyze.AnalyzeCommand([], None, ["tsv", "csv"]).formats == ("tsv", "csv")
     assert list(writers.written_files([results], ["tsv", "csv"])) == [
         "table.tsv",
         "table.csv",
@@ -52,4 +52,4 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
 
 def test_an_unknown_format_is_refused_with_the_list():
     with pytest.raises(UsageError, match="--format xml: formats are csv, md, json, tex"):
-        analyze._formats(["xml"])
+        _ = analyze.AnalyzeCommand([], None, ["xml"]).formats
