@@ -85,7 +85,7 @@ def machines(folder: Path) -> Iterator[Machines]:
 
 def command(study: Path, out: Path, *more: str) -> list[str]:
     code = (
-        "import sys; from mechkin_cli.model.model import studies; studies.MOST_IN_PIECE = 20; "
+        "import sys; from mechkin_cli.studies import study; study.MOST_IN_PIECE = 20; "
         "from mechkin_cli.cli.main import main; sys.exit(main())"
     )
     words = ["study", str(study), "--out", str(out), "--quiet", *more]

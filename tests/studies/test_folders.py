@@ -215,7 +215,7 @@ def test_a_full_disk_keeps_what_was_written(
 
 def command(study: Path, out: Path, *more: str) -> list[str]:
     code = (
-        "import sys; from mechkin_cli.model.model import studies; studies.MOST_IN_PIECE = 4; "
+        "import sys; from mechkin_cli.studies import study; study.MOST_IN_PIECE = 4; "
         "from mechkin_cli.cli.main import main; sys.exit(main())"
     )
     words = ["study", str(study), "--out", str(out), "--quiet", *more]
