@@ -14,7 +14,7 @@ from mechkin_cli.fit.slopes import nearest_places
 from mechkin_cli.tables import row_weights
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.variants import way_of
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.verdict import SWEEP, has_solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -135,7 +135,6 @@ class FitModels:
 
 
 TIME = "time"
-SOLVED = np.array([status.has_solution for status in Status])
 
 
 class FitValues:
@@ -233,10 +232,10 @@ class FitValues:
         asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
         if run == SWEEP:
             variants = model.vary(values, asked)
-            lost = ~SOLVED[variants.codes]
+            lost = ~has_solution(variants.codes)
         else:
             variants = model.vary(values, list(dict.fromkeys((*asked, TIME))), run=run)
-            lost = ~SOLVED[variants.codes] | ~self.on_time(run, variants[TIME])
+            lost = ~has_solution(variants.codes) | ~self.on_time(run, variants[TIME])
         found = {}
         for text in asked:
             value = variants[text]

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.arguments import a_whole_number
-from mechkin_cli.fit.measure import SOLVED, TIME, FitModels, FitValues, deviations, margins_of
+from mechkin_cli.fit.measure import TIME, FitModels, FitValues, deviations, margins_of
 from mechkin_cli.fit.request import Constraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, found
 from mechkin_cli.fit.slopes import FitSlopes, nearest_places
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.verdict import SWEEP, Status, has_solution
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -271,7 +271,7 @@ class Fit(Listed):
     def _solved(self, run: str) -> Bools:
         """Which of the rows that were asked for have a solution at their places."""
         rows = self._rows(run)
-        found = SOLVED[rows.result.status]
+        found = has_solution(rows.result.status)
         if run == SWEEP:
             return found
         times = self._padded(run, TIME)

@@ -27,7 +27,7 @@ from mechkin_cli.session import (
 )
 from mechkin_cli.sweep import analyze, closed_rows
 from mechkin_cli.units import ANGLE, Conversion
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -120,7 +120,7 @@ class Solver:
         whole += [0.0] * len(self.held)
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
-        if found is None or not found[1] <= tolerances.CONDITION_RATES_UNCLEAR:
+        if found is None or not rates_are_clear(found[1]):
             return self._judged(places, values)
         outputs = found[0]
         cells: dict[str, float | NDArray[np.float64]] = {}

@@ -23,7 +23,7 @@ from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import CONDITION_LIMITS, Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -168,18 +168,13 @@ def _is_unique(result: RunRows, text: str) -> bool:
 def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
     """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
     found = []
-    for status, limit, cost in (
-        (
-            Status.near_singular,
-            tolerances.CONDITION_NEAR_SINGULAR,
-            "rates and loads there keep fewer than nine digits",
-        ),
-        (
-            Status.rank_unclear,
-            tolerances.CONDITION_RANK_UNCLEAR,
-            "the rank of the constraints cannot be decided there; rates and reactions stay empty",
-        ),
-    ):
+    for status, limit in CONDITION_LIMITS.items():
+        cost = (
+            "rates and loads there keep fewer than nine digits"
+            if status.has_rates
+            else "the rank of the constraints cannot be decided there; rates and reactions stay "
+            "empty"
+        )
         numbers = np.flatnonzero(rows.status == status)
         if not numbers.size:
             continue

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.arguments import a_text, a_whole_number, shown, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName, Vector
@@ -39,7 +38,7 @@ from mechkin_cli.tables import (
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.model import Base, VariedModel, file_values, parameter_arrays
 from mechkin_cli.variants.variation import Runs, SessionVariation, VariantReadout, run_variants
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.verdict import SWEEP, Status, by_condition, has_solution, labels, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -430,10 +429,9 @@ def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
 
     `states` are the slots that tell the rows without an answer of friction.
     """
-    codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
-    if not np.isnan(runs.condition).all():
-        codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
-        codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
+    # without loops there is no condition
+    loops = not np.isnan(runs.condition).all()
+    codes = by_condition(runs.condition if loops else np.zeros_like(runs.condition))
     for slot in states:
         undecided = ~(runs.outputs[:, slot, :] == 0.0) & (codes != int(Status.rank_unclear))
         codes[undecided] = int(Status.friction_undecided)
@@ -444,7 +442,7 @@ def _doubtful(runs: Runs) -> Bools:
     """Variants (variants,) with a row whose rates may be rounding."""
     if np.isnan(runs.condition).all():
         return np.zeros(len(runs.condition), dtype=bool)
-    doubtful: Bools = np.any(~(runs.condition <= tolerances.CONDITION_RATES_UNCLEAR), axis=1)
+    doubtful: Bools = np.any(~rates_are_clear(runs.condition), axis=1)
     return doubtful
 
 
@@ -503,9 +501,7 @@ class Variants:
     @cached_property
     def status(self) -> NDArray[np.str_]:
         """The verdict of every variant and row, in words (variants, rows)."""
-        words = np.array([status.label for status in Status])
-        found: NDArray[np.str_] = words[self._codes]
-        return found
+        return labels(self._codes)
 
     @property
     def complete(self) -> NDArray[np.bool_]:
@@ -513,9 +509,8 @@ class Variants:
 
         A row at a dead centre has one: `status` tells it, and what has no bound there is infinite.
         """
-        solved = np.array([status.has_solution for status in Status])
-        found: NDArray[np.bool_] = np.logical_and.reduce(solved[self._codes], axis=1)
-        return found
+        complete: NDArray[np.bool_] = np.logical_and.reduce(has_solution(self._codes), axis=1)
+        return complete
 
 
 def vary(
