@@ -44,14 +44,15 @@ TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
     from typing import Any
 
+    from mechkin_cli.analysis import Analysis
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
-    from mechkin_cli.model import Analysis, Model, load, loads
+    from mechkin_cli.model import Model, load, loads
     from mechkin_cli.verdict import Status
 
 
 _PLACES = {
-    "Analysis": "model",
+    "Analysis": "analysis",
     "Diagnostic": "diagnostics",
     "ExpressionError": "expressions",
     "InvalidFile": "diagnostics",

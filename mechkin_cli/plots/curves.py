@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep import Readable
     from mechkin_cli.tables import Columns, TableLayout
-    from mechkin_cli.view import Readable
 
 
 class PlotCurve(NamedTuple):

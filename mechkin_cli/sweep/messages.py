@@ -8,18 +8,19 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, UsageError
 from mechkin_cli.expressions import parse
 from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
+    find_legs,
     is_written,
     quantities_read,
     undefined_laws,
 )
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
@@ -353,3 +354,25 @@ def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
     known = result.problem.quantities()
     result.read([known[name] for name in quantities_read(result.problem)])
     return undefined_laws(result.problem, result.quantity, lost)
+
+
+def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
+    """Forces and energies need what spins freely to have no cause to spin.
+
+    Raises:
+        UsageError: one of some quantities is such, and something would spin.
+    """
+    problem = session.problem
+    if not names or not (find_legs(problem.mechanism) or problem.held):
+        return
+    for diagnostic in _causes_of_spin(session):
+        known = problem.quantities()
+        if needs_all_links(problem.mechanism, [known[name] for name in names]):
+            raise UsageError(str(diagnostic))
+
+
+@remembered
+def _causes_of_spin(session: Session) -> list[Diagnostic]:
+    from mechkin_cli.idle import spin_errors
+
+    return [diagnostic for _, diagnostic in spin_errors(session.problem)]
