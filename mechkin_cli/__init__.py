@@ -7,7 +7,8 @@ m = mk.loads(text)                     the same from a text
 r = m.analyze()                        an Analysis: the sweep; m.respond("NAME"): a response
 
 Of a model
-    m.analyze()  m.respond()           the runs
+    m.parameters                       values by name in the file's units; m.parameters.unit("P1")
+    m.analyze()  m.respond()           the runs; m.analyses(): all of the file
     m.modes()                          the ways to assemble it
     m.ranges()                         how far an input can go: dead centres, circuits
     m.mobility()                       what can move

@@ -12,7 +12,7 @@ from mechkin_cli import balances, errors, plots, tables, view
 from mechkin_cli.arguments import a_path, a_text, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.expressions import Expression, Vector
-from mechkin_cli.show import MOST_ROWS, Listed, Listing, Named, html_table
+from mechkin_cli.show import Listed, Listing, Named, html_table, shortened
 from mechkin_cli.tables import (
     ROW_NUMBERS,
     ROW_PROOF,
@@ -552,26 +552,10 @@ def _labels(table: Columns) -> str:
 
 def _folded(table: Columns) -> str:
     """A table of a notebook, opened by a click."""
-    from mechkin_cli.tables import Words, column_texts
-
-    count = table.columns[0].rows
-    half = MOST_ROWS // 2
-    chosen = (
-        list(range(count)) if count <= MOST_ROWS else [*range(half), *range(count - half, count)]
-    )
-    cells = [
-        c.values.texts(range(len(chosen)))
-        if isinstance(c.values, Words)
-        else c.texts(column_texts(c.values, c.decimals))
-        for c in (column.part(chosen) for column in table.columns)
-    ]
-    rows = list(zip(*cells, strict=True))
-    if count > len(chosen):
-        rows.insert(half, ("...",) * len(cells))
-    labels = [f"{c.label} [{c.unit}]" if c.unit else c.label for c in table.columns]
-    title = Listing(f"{table.name}: {table.title}" if table.title else table.name)
-    head = title.html().removeprefix("<div><p>").removesuffix("</p></div>")
-    return f"<details><summary>{head}</summary>{html_table(labels, rows)}</details>"
+    listing = table.listing
+    head = Listing(listing.head).html().removeprefix("<div><p>").removesuffix("</p></div>")
+    cells = html_table(listing.labels, shortened(listing.rows))
+    return f"<details><summary>{head}</summary>{cells}</details>"
 
 
 def _asked_again(

@@ -44,6 +44,10 @@ class Design:
         self.built, self.stem, self.given = built, stem, given
         self.memo: Memo = {}
 
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.10g}" for name, value in self.values.items())
+        return f"Design of {self.stem}" + (f" with {values} in SI" if values else "")
+
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled and copied as the text of the file and of the tables that it names."""
         document = self.built.read.document

@@ -26,6 +26,7 @@ from mechkin_cli.session import (
     step_limits,
     turn_of,
 )
+from mechkin_cli.show import Listing
 from mechkin_cli.sweep import analyze, closed_rows
 from mechkin_cli.units import ANGLE, Conversion
 from mechkin_cli.verdict import Status, rates_are_clear
@@ -59,6 +60,18 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
     def __init__(self, values: Mapping[str, float | NDArray[np.float64]], status: str) -> None:
         super().__init__(values)
         self.status = status
+
+    @property
+    def listing(self) -> Listing:
+        """Names and values, and the verdict."""
+        rows = tuple((name, np.array2string(np.asarray(v))) for name, v in self.items())
+        return Listing(f"Position: {self.status}", ("quantity", "value"), rows)
+
+    def __repr__(self) -> str:
+        return self.listing.text()
+
+    def _repr_html_(self) -> str:
+        return self.listing.html()
 
 
 class _PositionColumn(NamedTuple):

@@ -131,6 +131,10 @@ class Picture(NamedTuple):
     solved: Bools
     doubtful: tuple[tuple[str, Bools], ...]
 
+    def __repr__(self) -> str:
+        curves = ", ".join(curve.words for panel in self.panels for curve in panel.curves)
+        return f"Picture of {curves} over {', '.join(dict.fromkeys(c.words for c in self.x))}"
+
 
 def picture(
     analysis: Readable, title: str, y: Sequence[str | PlotCurve], x: str | PlotCurve | None = None

@@ -11,7 +11,7 @@ import numpy as np
 from mechkin_cli.arguments import a_text, shown, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName
-from mechkin_cli.show import Floats
+from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.tables import (
     OVER_THE_WAY,
     REDUCTIONS,
@@ -34,7 +34,7 @@ LONGEST_MESSAGE = 400
 Reduce = str | Callable[["Floats"], "Floats"]
 
 
-class Variants:
+class Variants(Listed):
     """Results of `Model.vary`: `r["O4.theta"]` is an array over the variants, in the file's units.
 
     Attributes:
@@ -53,6 +53,15 @@ class Variants:
         self.errors = errors
         self._values = values
         self._codes = codes
+
+    @property
+    def listing(self) -> Listing:
+        """What was varied and what was asked for, with the least and the largest value."""
+        count, complete = len(self), int(self.complete.sum())
+        head = f"{count} variants, {complete} complete"
+        columns = {**self.parameters, **self._values}
+        rows = tuple((name, *_extremes(values)) for name, values in columns.items())
+        return Listing(head, ("column", "least", "largest"), rows)
 
     def __len__(self) -> int:
         return len(self._codes)
@@ -89,6 +98,11 @@ class Variants:
         """
         complete: NDArray[np.bool_] = np.logical_and.reduce(has_solution(self._codes), axis=1)
         return complete
+
+
+def _extremes(values: Floats) -> tuple[str, str]:
+    known = values[np.isfinite(values)]
+    return (f"{known.min():.6g}", f"{known.max():.6g}") if known.size else ("", "")
 
 
 # What is asked for.
