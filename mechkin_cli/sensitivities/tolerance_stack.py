@@ -18,8 +18,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.arguments import a_setting, a_whole_number, refusal, shown
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.sensitivities import sensitivities
-from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters
+from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters
 

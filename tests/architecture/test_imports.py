@@ -102,6 +102,14 @@ def test_other_rooms_are_entered_by_the_door(path: Path) -> None:
     assert wrong == []
 
 
+@pytest.mark.parametrize("path", PRODUCT, ids=[str(path.relative_to(ROOT)) for path in PRODUCT])
+def test_a_room_does_not_enter_by_its_own_door(path: Path) -> None:
+    door = f"mechkin_cli.{room(path)}"
+    names = [name for module, name in imported_names(path) if module == door]
+    wrong = [name for name in names if f"{door}.{name}" not in MODULES]
+    assert wrong == [] or room(path) in DOORLESS
+
+
 @pytest.mark.parametrize("path", FILES, ids=NAMES)
 def test_libraries_stay_in_their_rooms(path: Path) -> None:
     wrong = [
