@@ -107,6 +107,11 @@ class Model(Listed):
         return self.problem.mechanism.name
 
     @property
+    def stem(self) -> str:
+        """The name of the file without its ending."""
+        return self.design.stem
+
+    @property
     def source(self) -> str:
         """Where the mechanism comes from, as its file says; "" where it does not."""
         return self.built.source
