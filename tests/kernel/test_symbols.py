@@ -42,7 +42,7 @@ PLAIN = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
 OF_DOUBLES = [f"{kind}_{name}" for kind in ("unit", "motion") for name in UNITS]
 OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
 OF_INTERVALS = [f"enclosing_{name}" for name in DOUBLE_DOUBLE]
-FOLDERS = {"unit": "", "motion": "", "double_double": "", "enclosing": "certify"}
+FOLDERS = {"unit": "rows", "motion": "response", "double_double": "rows", "enclosing": "proofs"}
 NAMES = {"unit": "UNIT", "motion": "MOTION", "double_double": "UNIT", "enclosing": "ENCLOSING"}
 
 

@@ -1,0 +1,111 @@
+// Collects the records of a plan, checks each, and freezes them.
+//
+// Wrong indices, codes, sizes and numbers that are not finite raise std::invalid_argument, as does every call after
+// finish(). The order of the calls numbers the plan's constants (frozen_plan.hpp).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "plan/frozen_plan.hpp"
+#include "plan/program_store.hpp"
+
+using Triple = std::array<double, 3>;
+using FrameData = std::array<double, 12>;  // x, y, z axes, origin
+using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
+
+class PlanBuilder {
+ public:
+  // The length unit (m), the kernel's origin (m) and the mechanism's size (m).
+  PlanBuilder(double length, const Triple& origin, double size);
+
+  void add_tree_joint(int type, int parent, double pitch, const FrameData& at);
+  void add_closing_joint(int type, int first, int second, const FrameData& on_first, const FrameData& on_second,
+                         double parameter, const Loop& loop);
+  // The next closing equation: a leg of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
+  void add_leg(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
+               double length, const Triple& line, double slide_sign, const Loop& loop);
+  // The next joint as its user knows it, see JointPlace; returns its number.
+  int add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
+  // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
+  int add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector);
+  // The next free motion of a joint, see FreeMotion; those of one joint in a row.
+  void add_free_motion(int place, bool slide, int code, int link, const Triple& vector);
+  // The next closing joints, the tree joints that they place, parents first, and the columns that they solve for.
+  // `charts`: coordinates of a chart that take the place of inputs; of one block, which may then close no joint.
+  void add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown, int charts);
+  // The tree joints that no block places, parents first.
+  void set_rest(const std::vector<int>& joints);
+  // `axis` -1: a coordinate that no user knows; `scale`: effort along the axis per generalised force of the column.
+  void add_input(int column, int axis, double scale);
+  void set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor);
+  void set_gravity(const Triple& g);
+  // A varying load takes its value from the next outputs of the load program: one along a coordinate, else three.
+  void add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
+                const Triple& vector, bool varying);
+  // The values of the loads that vary.
+  void set_load_program(const ProgramRecord& program);
+  // The first `inputs` inputs are driven by motors; the others are held.
+  void set_driven(int inputs);
+  // The next actuator: a coordinate as that of a load along it.
+  void add_actuator(int axis, int reference, int freedom);
+  // Input `input` is moved by the motor of input `leader`, see Tie.
+  void add_tie(int input, int leader);
+  // The friction of a joint, see Friction; at most one a joint.
+  void add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
+                    double pitch, double at_rest, double sliding, double speed);
+  // The next contact of the last friction, see Contact.
+  void add_contact(int code, double weight, double share, double tilt, double roll, const Triple& direction);
+  // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
+  void add_size_point(int link, const Triple& point);
+  // Checks that the parts fit together; the builder is spent after it.
+  FrozenPlan finish();
+
+  int states() const { return plan_.states; }
+  int columns() const { return plan_.columns; }
+
+ private:
+  static constexpr int NOT_PLACED = -1, REST = -2;
+
+  void open() const;
+  void check_link(int link) const;
+  void check_joint(int joint, const char* message) const;
+  void check_load(int type, int link, int other, int freedom, bool varying) const;
+  std::pair<int, int> add_loop(const Loop& loop);
+  // The next `count` constants stand in a row from here on.
+  std::size_t in_plan(const double* number) const;
+  void number(int array, std::size_t offset, int count);
+  void place_joints(int block, const std::vector<int>& joints);
+  void check_order() const;
+  void check_actuators() const;
+  void sort_drives();
+  void find_turns();
+  Plan arrays() const;
+
+  Plan plan_{};
+  bool spent_ = false, gravity_ = false, rest_set_ = false, program_set_ = false, driven_set_ = false;
+  std::vector<ConstantPlace> constants_;
+  std::vector<std::pair<int, ConstantPlace>> repeated_;
+  std::vector<TreeJoint> joints_;
+  std::vector<JointPlace> place_;
+  std::vector<CoordinateAxis> axis_;
+  std::vector<Drive> drive_;
+  std::vector<FreeMotion> free_;
+  std::vector<ClosingJoint> closing_;
+  std::vector<Leg> leg_;
+  std::vector<LoopEntry> loop_;
+  std::vector<Block> block_;
+  std::vector<int> order_, unknown_, rest_, input_column_;
+  std::vector<int> column_state_, column_joint_, column_block_, column_place_;
+  std::vector<int> placed_by_;  // tree joint -> block, NOT_PLACED, or REST
+  std::vector<double> column_weight_;
+  std::vector<LinkInertia> inertia_;
+  std::vector<Load> load_;
+  std::vector<Actuator> actuator_;
+  std::vector<Tie> tie_;
+  std::vector<Friction> friction_;
+  std::vector<Contact> contact_;
+  std::vector<Output> size_point_;
+  ProgramStore program_;
+};

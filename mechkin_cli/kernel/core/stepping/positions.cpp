@@ -1,0 +1,155 @@
+#include "stepping/positions.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "plan/program_store.hpp"
+#include "plan/requirements.hpp"
+#include "rows/units.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand,
+                     int iterations, const StepLimits& limits, std::vector<TurningOutput> angles)
+    : plan_(plan), outputs_(outputs), rows_(std::move(rows)), demand_(demand), iterations_(iterations),
+      limits_(limits), angles_(std::move(angles)) {
+  const Plan& p = plan.view();
+  turn_slots_ = ::turn_slots(p, *kernel_unit(2));
+  const std::size_t n = rows_.rows, table = n * p.inputs;
+  require(n > 0, "rows: none");
+  require(rows_.rows <= MOST_ROWS, "rows: more than 100000000");
+  require(outputs.fits(plan), "outputs: of a plan with another structure");
+  for (const auto* values : {&rows_.inputs, &rows_.rates, &rows_.accelerations, &rows_.jerks, &rows_.whole})
+    require(values->size() == table, "inputs: wrong shape");
+  require(are_whole_turns(rows_.whole.data(), rows_.whole.size()), "whole: numbers of turns");
+  require(rows_.state.size() == n * p.states, "states: wrong shape");
+  require(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
+  require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
+  require(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
+  require(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  require(!(demand & DEMAND_POWER), "no place for a power error");
+  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  require(iterations >= 0 && iterations <= 10000, "iterations: 0 to 10000");
+  for (const TurningOutput& a : angles_)
+    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs &&
+                a.turn < turn_slots_,
+            "angles: no slot");
+  memory_.resize(kernel_unit(2)->workspace_size(p));
+  kernel_unit(2)->prepare(p, memory_.data());
+  path_.resize(2 * p.inputs), path_whole_.resize(2 * p.inputs), start_.resize(p.states), turn_.resize(turn_slots_);
+  guess_.resize(2 * p.states), limit_.resize(2), way_turn_.resize(2 * turn_slots_);
+  rates_.resize(p.inputs), accelerations_.resize(p.inputs), jerks_.resize(p.inputs);
+}
+
+long Positions::nearest(const double* inputs, const double* whole) const {
+  long best = 0;
+  double least = HUGE_VAL;
+  for (long row = 0; row < rows_.rows; ++row) {
+    double distance = 0.0;
+    for (int i = 0; i < plan_.view().inputs; ++i)
+      distance = std::fmax(distance, std::fabs(rows_.inputs[i * rows_.rows + row] - inputs[i] +
+                                               FULL_TURN * (rows_.whole[i * rows_.rows + row] - whole[i])));
+    if (distance < least) least = distance, best = row;
+  }
+  return best;
+}
+
+bool Positions::solve(const double* inputs, const double* whole, const double* full, double* outputs, double* condition) {
+  const Plan& p = plan_.view();
+  const KernelUnit& unit = *kernel_unit(2);
+  const long row = nearest(inputs, whole), n = rows_.rows;
+  for (int i = 0; i < p.inputs; ++i) {
+    path_[2 * i] = rows_.inputs[i * n + row], path_[2 * i + 1] = inputs[i];
+    path_whole_[2 * i] = rows_.whole[i * n + row], path_whole_[2 * i + 1] = whole[i];
+    rates_[i] = rows_.rates[i * n + row], accelerations_[i] = rows_.accelerations[i * n + row];
+    jerks_[i] = rows_.jerks[i * n + row];
+  }
+  for (int s = 0; s < p.states; ++s) start_[s] = rows_.state[s * n + row];
+  for (int s = 0; s < turn_slots_; ++s) turn_[s] = rows_.turn[s * n + row];
+  const RowGuesses out = {2, guess_.data(), limit_.data(), way_turn_.data()};
+  const Followed way = follow_rows(p, unit, path_.data(), path_whole_.data(), start_.data(), turn_, false, limits_, out);
+  if (way.end != TrackEnd::finished) return false;
+  for (int s = 0; s < p.states; ++s) start_[s] = guess_[2 * s + 1];
+  double residual = 0.0, correction = 0.0;
+  unsigned char flags = 0;
+  Request r = {};
+  r.rows = 1;
+  r.inputs = inputs, r.rates = rates_.data(), r.accelerations = accelerations_.data(), r.jerks = jerks_.data();
+  r.guess = start_.data();
+  std::vector<double> turned(turn_slots_);
+  for (int s = 0; s < turn_slots_; ++s) turned[s] = way_turn_[2 * s + 1];
+  r.turned = turned.data(), r.whole = whole, r.full = full;
+  r.wanted = outputs_.view(), r.outputs = outputs;
+  r.residual = &residual, r.correction = &correction, r.flags = &flags, r.condition = condition;
+  r.demand = demand_, r.iterations = iterations_;
+  r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
+  unit.run_row(p, r, memory_.data());
+  for (const TurningOutput& a : angles_) {
+    const double known = a.turn >= 0 ? turned[a.turn] : whole[-2 - a.turn];
+    outputs[a.slot] += FULL_TURN * (a.closing ? std::rint((known - outputs[a.slot]) / FULL_TURN) : known);
+  }
+  return flags == 0 && correction <= limit_[1];
+}
+
+namespace {
+
+using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+std::vector<double> copy_of(const Table& a, long rows, const char* name) {
+  if ((long)a.shape(1) != rows) throw nb::value_error((std::string(name) + ": wrong number of rows").c_str());
+  return {a.data(), a.data() + a.shape(0) * a.shape(1)};
+}
+
+// The outputs at some inputs in kernel units and the condition there, 0 where it is not demanded; None where there is no
+// position.
+nb::object solve(Positions& positions, const std::vector<double>& inputs, const std::vector<double>& whole,
+                 const std::vector<double>& full) {
+  for (const auto* values : {&inputs, &whole, &full})
+    if ((int)values->size() != positions.inputs()) throw nb::value_error("one number for each input");
+  if (!are_whole_turns(whole.data(), whole.size()))
+    throw nb::value_error("whole: numbers of turns");
+  std::vector<double> outputs(positions.slots());
+  double condition = 0.0;
+  FloatingPointState state;
+  if (!positions.solve(inputs.data(), whole.data(), full.data(), outputs.data(), &condition)) return nb::none();
+  return nb::make_tuple(outputs, condition);
+}
+
+}  // namespace
+
+void bind_positions(nb::module_& m) {
+  nb::class_<Positions>(m, "Positions")
+      .def("__init__",
+           [](Positions* at, const FrozenPlan& plan, const OutputList& outputs, const Table& inputs,
+              const Table& whole, const Table& rates, const Table& accelerations, const Table& jerks, const Table& states,
+              const Table& turns, unsigned demand, int iterations, const StepLimits& limits,
+              const std::vector<std::tuple<int, int, bool>>& angles) {
+             const long n = (long)inputs.shape(1);
+             KnownRows rows = {n,
+                               copy_of(inputs, n, "inputs"),
+                               copy_of(rates, n, "rates"),
+                               copy_of(accelerations, n, "accelerations"),
+                               copy_of(jerks, n, "jerks"),
+                               copy_of(whole, n, "whole"),
+                               copy_of(states, n, "states"),
+                               copy_of(turns, n, "turns")};
+             std::vector<TurningOutput> turning;
+             for (const auto& [slot, turn, closing] : angles) turning.push_back({slot, turn, closing});
+             new (at) Positions(plan, outputs, std::move(rows), demand, iterations, limits, std::move(turning));
+           },
+           nb::kw_only(), "plan"_a, "outputs"_a, "inputs"_a, "whole"_a, "rates"_a, "accelerations"_a, "jerks"_a, "states"_a,
+           "turns"_a, "demand"_a, "iterations"_a, "limits"_a, "angles"_a, nb::keep_alive<1, 2>(),
+           nb::keep_alive<1, 3>())
+      .def("solve", &solve, "inputs"_a, "whole"_a, "full"_a);
+}

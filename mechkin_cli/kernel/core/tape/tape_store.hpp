@@ -1,0 +1,32 @@
+// Owns the arrays of a tape, checked once.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tape/tape.hpp"
+
+namespace nanobind {
+class module_;
+}
+
+class TapeStore {
+ public:
+  // Throws std::invalid_argument for an operation or a register that is none.
+  TapeStore(int inputs, std::vector<double> constants, std::vector<std::uint8_t> operations,
+            std::vector<std::int32_t> operands, std::vector<std::int32_t> outputs, std::vector<std::int32_t> guards,
+            std::vector<std::uint8_t> expected, std::vector<std::uint8_t> advice);
+  TapeStore(const TapeStore&) = delete;
+  const Tape& view() const { return tape_; }
+  // Instructions that choose: their ways are given where a tape is replayed with derivatives.
+  int switches() const;
+
+ private:
+  std::vector<double> constants_;
+  std::vector<std::uint8_t> operations_;
+  std::vector<std::int32_t> operands_, outputs_, guards_;
+  std::vector<std::uint8_t> expected_, advice_;
+  Tape tape_;
+};
+
+void bind_tape(nanobind::module_& m);
