@@ -130,7 +130,7 @@ def test_the_built_module_fuses_nothing_else() -> None:
 
 def test_the_build_compiles_the_same_units() -> None:
     """The flags above are those of CMakeLists.txt."""
-    build = (SOURCES.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+    build = (SOURCES / "CMakeLists.txt").read_text(encoding="utf-8")
     assert "-ffp-contract=off" in build
     units = re.findall(r"^ *mechkin_unit\((\w+) (\d)([^)]*)\)", build, re.MULTILINE)
     assert {name: (int(lanes), flags.split()) for name, lanes, flags in units} == UNITS

@@ -18,6 +18,15 @@ void bind_certify(nanobind::module_& m);
 void bind_enclosing(nanobind::module_& m);
 // PlanBuilder, Plan, Outputs.
 void bind_plan(nanobind::module_& m);
+// Numbers and tables as text.
+void bind_text(nanobind::module_& m);
+// Tapes, and the courses of inputs that are tapes.
+void bind_tape(nanobind::module_& m);
+void bind_course(nanobind::module_& m);
+// The stepper and following rows; single positions; variants. They need the class Plan bound before.
+void bind_stepper(nanobind::module_& m);
+void bind_positions(nanobind::module_& m);
+void bind_variants(nanobind::module_& m);
 
 // The unit of some width; ValueError if this machine does not have it.
 const KernelUnit& unit_or_throw(int lanes);

@@ -6,9 +6,10 @@
 
 #include <tuple>
 
-#include "stepping/course.hpp"
+#include "bindings.hpp"
 #include "new_array.hpp"
 #include "rows/units.hpp"
+#include "stepping/course.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -6,13 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "text/number_text.hpp"
 #include "arithmetic/operations.hpp"
-#include "plan/frozen_plan.hpp"
-#include "stepper_binding.hpp"
-#include "tape/tape_store.hpp"
-#include "stepping/positions.hpp"
-#include "stepping/variants.hpp"
 #include "rows/units.hpp"
 
 namespace nb = nanobind;

@@ -1,5 +1,5 @@
-#include "stepper_binding.hpp"
-
+// Python's view of the stepper and of following rows.
+#include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 
+#include "bindings.hpp"
 #include "stepping/dimension_path.hpp"
 #include "plan/frozen_plan.hpp"
 #include "plan/same_layout.hpp"

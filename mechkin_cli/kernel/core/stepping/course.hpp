@@ -7,10 +7,6 @@
 #include "stepping/stepper.hpp"
 #include "tape/tape_store.hpp"
 
-namespace nanobind {
-class module_;
-}
-
 // A smooth piece from row `first` to row `last`. The parameter runs from `begin` to `end`. Where all inputs rest at one
 // of them, a length sigma of their way goes as a power of the distance from there: with u the part of the parameter's
 // way, sigma = scale u^power, or scale (1 - (1 - u)^-power) where `power` < 0 and they rest at the end.
@@ -67,5 +63,3 @@ class CoursePath : public Path {
   RowPlaces rows_;
   mutable std::vector<char> memory_;
 };
-
-void bind_course(nanobind::module_& m);

@@ -8,10 +8,6 @@
 #include "plan/output_list.hpp"
 #include "stepping/tracker.hpp"
 
-namespace nanobind {
-class module_;
-}
-
 // Rows to start from; tables are columns x rows.
 struct KnownRows {
   long rows;
@@ -54,5 +50,3 @@ class Positions {
   std::vector<char> memory_;
   std::vector<double> path_, path_whole_, start_, turn_, guess_, limit_, way_turn_, rates_, accelerations_, jerks_;
 };
-
-void bind_positions(nanobind::module_& m);

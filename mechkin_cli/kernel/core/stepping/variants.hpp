@@ -13,10 +13,6 @@
 #include "tape/tape_store.hpp"
 #include "stepping/tracker.hpp"
 
-namespace nanobind {
-class module_;
-}
-
 // How a variant ended.
 enum class VariantEnd : int {
   complete = 0,    // every row is closed, on the branch of the first
@@ -96,5 +92,3 @@ class Variants {
   const OutputList& outputs_;
   VariantBase base_;
 };
-
-void bind_variants(nanobind::module_& m);

@@ -6,10 +6,6 @@
 
 #include "tape/tape.hpp"
 
-namespace nanobind {
-class module_;
-}
-
 class TapeStore {
  public:
   // Throws std::invalid_argument for an operation or a register that is none.
@@ -28,5 +24,3 @@ class TapeStore {
   std::vector<std::uint8_t> expected_, advice_;
   Tape tape_;
 };
-
-void bind_tape(nanobind::module_& m);

@@ -7,10 +7,6 @@
 
 #include <cstddef>
 
-namespace nanobind {
-class module_;
-}
-
 // Room for the longest number, `-0.000012345678901234567`.
 constexpr std::size_t NUMBER_TEXT_SIZE = 32;
 
@@ -35,5 +31,3 @@ std::size_t fixed_text(double x, int decimals, char* out);
 
 // x with one digit, `decimals` decimals and an exponent: `-1.50000e+09`; zero is `0`.
 std::size_t scientific_text(double x, int decimals, char* out);
-
-void bind_text(nanobind::module_& m);
