@@ -8,6 +8,7 @@
 
 #include "bindings.hpp"
 #include "new_array.hpp"
+#include "refusals.hpp"
 #include "rows/units.hpp"
 #include "stepping/course.hpp"
 
@@ -52,7 +53,8 @@ void bind_course(nb::module_& m) {
              std::vector<CoursePiece> list;
              for (const auto& [first, last, begin, end, scale, power] : pieces)
                list.push_back({first, last, begin, end, scale, power});
-             new (self) Course(tape, list, copy_of(constants), copy_of(ways), copy_of(units), copy_of(parameter));
+             new (self) Course(value_of(make<Course>(tape, list, copy_of(constants), copy_of(ways), copy_of(units),
+                                                     copy_of(parameter))));
            },
            "tape"_a, "pieces"_a, "constants"_a, "ways"_a, "units"_a, "parameter"_a, nb::keep_alive<1, 2>())
       .def("at", &at, "piece"_a, "sigma"_a)

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "new_array.hpp"
+#include "refusals.hpp"
 #include "integrator/tape_motion.hpp"
 
 namespace nb = nanobind;
@@ -50,13 +51,13 @@ nb::tuple integrate_tape(const TapeStore& tape, int freedoms, int quadratures,
     shape.stops.push_back(stop);
   }
   const IntegratorSettings settings{tolerance, fixed_step, least_step, most_steps, dense_rows, (MethodChoice)method};
-  TapeMotion motion(tape, shape, copy_of(state), copy_of(parameters), scales, (long)rows.shape(0));
-  std::vector<LaneReport> reports;
-  {
+  TapeMotion motion = value_of(
+      make<TapeMotion>(tape, shape, copy_of(state), copy_of(parameters), scales, (long)rows.shape(0)));
+  const std::vector<LaneReport> reports = value_of([&] {
     nb::gil_scoped_release released;
     FloatingPointState floating;
-    reports = integrate(motion, settings, time.data(), motion.start(), {rows.data(), (long)rows.shape(0), 0});
-  }
+    return integrate(motion, settings, time.data(), motion.start(), {rows.data(), (long)rows.shape(0), 0});
+  }());
   double* out;
   auto states = new_array<double>(&out, {rows.shape(0), size, lanes});
   std::copy(motion.rows().begin(), motion.rows().end(), out);

@@ -17,6 +17,7 @@
 #include "plan/output_list.hpp"
 #include "plan/plan_builder.hpp"
 #include "precise_binding.hpp"
+#include "refusals.hpp"
 #include "run_request.hpp"
 #include "stepping/stepper.hpp"
 #include "rows/threads.hpp"
@@ -171,43 +172,45 @@ ProgramRecord program_record(const std::vector<std::array<int, 5>>& reads, const
 // name, type, parent: as PlanBuilder names them
 void bind_builder(nb::module_& m) {
   nb::class_<PlanBuilder>(m, "PlanBuilder", "Collects the records of a plan; spent by finish().")
-      .def(nb::init<double, const Triple&, double>(), "length"_a, "origin"_a, "size"_a)
-      .def("add_tree_joint", &PlanBuilder::add_tree_joint, "type"_a, "parent"_a, "pitch"_a, "at"_a)
-      .def("add_closing_joint", &PlanBuilder::add_closing_joint, "type"_a, "first"_a, "second"_a, "on_first"_a,
+      .def("__init__", [](PlanBuilder* self, double length, const Triple& origin, double size) {
+        new (self) PlanBuilder(value_of(PlanBuilder::make(length, origin, size)));
+      }, "length"_a, "origin"_a, "size"_a)
+      .def("add_tree_joint", raising(&PlanBuilder::add_tree_joint), "type"_a, "parent"_a, "pitch"_a, "at"_a)
+      .def("add_closing_joint", raising(&PlanBuilder::add_closing_joint), "type"_a, "first"_a, "second"_a, "on_first"_a,
            "on_second"_a, "parameter"_a, "loop"_a)
-      .def("add_leg", &PlanBuilder::add_leg, "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
+      .def("add_leg", raising(&PlanBuilder::add_leg), "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
            "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
-      .def("add_place", &PlanBuilder::add_place, "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,
+      .def("add_place", raising(&PlanBuilder::add_place), "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,
            "sign"_a)
-      .def("add_axis", &PlanBuilder::add_axis, "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
+      .def("add_axis", raising(&PlanBuilder::add_axis), "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
            "other_vector"_a)
-      .def("add_free_motion", &PlanBuilder::add_free_motion, "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
-      .def("add_block", &PlanBuilder::add_block, "closing_joints"_a, "joints"_a, "unknown"_a,
+      .def("add_free_motion", raising(&PlanBuilder::add_free_motion), "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
+      .def("add_block", raising(&PlanBuilder::add_block), "closing_joints"_a, "joints"_a, "unknown"_a,
            "charts"_a = 0)
-      .def("set_rest", &PlanBuilder::set_rest, "joints"_a)
-      .def("add_input", &PlanBuilder::add_input, "column"_a, "axis"_a, "scale"_a)
-      .def("set_inertia", &PlanBuilder::set_inertia, "link"_a, "mass"_a, "centre"_a, "tensor"_a)
-      .def("set_gravity", &PlanBuilder::set_gravity, "g"_a)
-      .def("add_load", &PlanBuilder::add_load, "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
+      .def("set_rest", raising(&PlanBuilder::set_rest), "joints"_a)
+      .def("add_input", raising(&PlanBuilder::add_input), "column"_a, "axis"_a, "scale"_a)
+      .def("set_inertia", raising(&PlanBuilder::set_inertia), "link"_a, "mass"_a, "centre"_a, "tensor"_a)
+      .def("set_gravity", raising(&PlanBuilder::set_gravity), "g"_a)
+      .def("add_load", raising(&PlanBuilder::add_load), "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
            "other_point"_a, "vector"_a, "varying"_a = false)
       .def("set_load_program",
            [](PlanBuilder* builder, const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
               const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
               const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
               const std::vector<int>& outputs, const std::vector<int>& kinks) {
-             builder->set_load_program(
-                 program_record(reads, numbers, curves, constants, operations, operands, outputs, kinks));
+             value_of(builder->set_load_program(
+                 program_record(reads, numbers, curves, constants, operations, operands, outputs, kinks)));
            },
            "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
-      .def("set_driven", &PlanBuilder::set_driven, "inputs"_a)
-      .def("add_actuator", &PlanBuilder::add_actuator, "axis"_a, "reference"_a, "freedom"_a)
-      .def("add_tie", &PlanBuilder::add_tie, "input"_a, "leader"_a)
-      .def("add_friction", &PlanBuilder::add_friction, "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
+      .def("set_driven", raising(&PlanBuilder::set_driven), "inputs"_a)
+      .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)
+      .def("add_tie", raising(&PlanBuilder::add_tie), "input"_a, "leader"_a)
+      .def("add_friction", raising(&PlanBuilder::add_friction), "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
            "radius"_a, "pitch"_a, "at_rest"_a, "sliding"_a, "speed"_a)
-      .def("add_contact", &PlanBuilder::add_contact, "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
+      .def("add_contact", raising(&PlanBuilder::add_contact), "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
            "direction"_a)
-      .def("add_size_point", &PlanBuilder::add_size_point, "link"_a, "point"_a)
-      .def("finish", &PlanBuilder::finish)
+      .def("add_size_point", raising(&PlanBuilder::add_size_point), "link"_a, "point"_a)
+      .def("finish", raising(&PlanBuilder::finish))
       .def_prop_ro("states", &PlanBuilder::states)
       .def_prop_ro("columns", &PlanBuilder::columns);
 }
@@ -217,7 +220,7 @@ void bind_outputs(nb::module_& m) {
       .def("__init__", [](OutputList* self, const FrozenPlan& plan, const std::vector<OutputTuple>& records) {
         std::vector<OutputRecord> list;
         for (const OutputTuple& record : records) list.push_back(output_record(record));
-        new (self) OutputList(plan, list);
+        new (self) OutputList(value_of(OutputList::make(plan, list)));
       }, "plan"_a, "records"_a)
       .def_prop_ro("slots", [](const OutputList& o) { return o.view().slots; })
       .def_prop_ro("demand", [](const OutputList& o) { return (Demand)o.demand(); })

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "refusals.hpp"
 #include "rows/units.hpp"
 #include "stepping/positions.hpp"
 
@@ -60,7 +61,8 @@ void bind_positions(nb::module_& m) {
                                copy_of(turns, n, "turns")};
              std::vector<TurningOutput> turning;
              for (const auto& [slot, turn, closing] : angles) turning.push_back({slot, turn, closing});
-             new (at) Positions(plan, outputs, std::move(rows), demand, iterations, limits, std::move(turning));
+             new (at) Positions(value_of(make<Positions>(plan, outputs, std::move(rows), demand, iterations, limits,
+                                                         std::move(turning))));
            },
            nb::kw_only(), "plan"_a, "outputs"_a, "inputs"_a, "whole"_a, "rates"_a, "accelerations"_a, "jerks"_a, "states"_a,
            "turns"_a, "demand"_a, "iterations"_a, "limits"_a, "angles"_a, nb::keep_alive<1, 2>(),

@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "plan/frozen_plan.hpp"
 #include "new_array.hpp"
+#include "refusals.hpp"
 #include "response/response.hpp"
 #include "rows/units.hpp"
 
@@ -134,12 +135,11 @@ nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Tab
                          all.turn + v * slots * (rows + 1),
                          all.friction_told + v * numbers * (rows + 1), all.work + v * 2 * (rows + 1), all.flags + v * (rows + 1)});
   }
-  std::vector<ResponseReport> reports;
-  {
+  const std::vector<ResponseReport> reports = value_of([&] {
     nb::gil_scoped_release released;
     FloatingPointState floating;
-    reports = respond(task, lanes, threads);
-  }
+    return respond(task, lanes, threads);
+  }());
   nb::list told;
   for (const ResponseReport& r : reports) told.append(report_of(r));
   return nb::make_tuple(told, states, directions, rates, seconds, turns, frictions, work, flags);
@@ -149,8 +149,13 @@ nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Tab
 
 void bind_response(nb::module_& m) {
   nb::class_<DrivenLaws>(m, "DrivenLaws", "Coordinates driven by laws of time.")
-      .def(nb::init<const TapeStore*, std::vector<double>, std::vector<double>, std::vector<double>, std::vector<double>,
-                    double, std::vector<double>>(),
+      .def("__init__",
+           [](DrivenLaws* self, const TapeStore* tape, std::vector<double> edges, std::vector<double> constants,
+              std::vector<double> ways, std::vector<double> units, double time_unit, std::vector<double> held) {
+             new (self) DrivenLaws(value_of(make<DrivenLaws>(tape, std::move(edges), std::move(constants),
+                                                             std::move(ways), std::move(units), time_unit,
+                                                             std::move(held))));
+           },
            "tape"_a.none(), "edges"_a, "constants"_a, "ways"_a, "units"_a, "time_unit"_a, "held"_a, nb::keep_alive<1, 2>())
       .def("at", [](const DrivenLaws& laws, double time) {
         // value, rate and acceleration of each input at a moment (s)

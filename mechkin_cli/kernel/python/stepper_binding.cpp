@@ -9,8 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "bindings.hpp"
 #include "stepping/dimension_path.hpp"
@@ -58,28 +62,36 @@ nb::object copied(const Numbers& values) {
   return nb::cast(nb::ndarray<nb::numpy, double, nb::ndim<1>>(data, {values.size()}, owner));
 }
 
-// A path whose points, and whose plan where that changes, come from Python functions.
+// A path whose points, and whose plan where that changes, come from Python functions. Where one raises there is no place
+// from then on, nothing closes, and the call that asked raises once the stepper has come back.
 class GivenPath : public Path {
  public:
   GivenPath(nb::object at, nb::object plan, bool varies)
-      : at_(std::move(at)), plan_(std::move(plan)), varies_(varies) {}
+      : at_(std::move(at)), plan_(std::move(plan)), varies_(varies), first_(varies ? plan_(0.0) : plan_) {
+    plan_of(first_);
+  }
   void at(double sigma, PathPoint* point) const override {
-    const nb::object found = at_(sigma);
-    std::tuple<Numbers, Numbers, Numbers> numbers;
-    if (!nb::try_cast(found, numbers)) throw nb::type_error("at: does not give three lists of numbers");
-    std::tie(point->inputs, point->first, point->second) = std::move(numbers);
-    const long n = plan_of(varies_ ? first_ : plan_).inputs;
-    need_length(point->inputs, n, "the path's inputs");
-    need_length(point->first, n, "the path's first derivatives");
-    need_length(point->second, n, "the path's second derivatives");
+    const std::size_t n = (std::size_t)plan_of(first_).inputs;
+    if (!raised_ && asked([&] { ask(sigma, (long)n, point); })) return;
+    point->inputs.assign(n, std::numeric_limits<double>::quiet_NaN());
+    point->first.assign(n, 0.0), point->second.assign(n, 0.0);
   }
   const Plan& plan(double sigma) const override {
-    if (!varies_) return plan_of(plan_);
-    current_ = plan_(sigma);
-    const Plan& p = plan_of(current_);
-    if (!first_.is_valid()) first_ = current_;
-    need(same_layout(p, plan_of(first_)), "the plans of a path must have one structure");
-    return p;
+    const bool begins = !current_.is_valid();  // with the plan that is there already
+    if (begins) current_ = first_;
+    if (!varies_ || begins || raised_) return plan_of(first_);
+    const Plan* found = &plan_of(first_);
+    asked([&] {
+      current_ = plan_(sigma);
+      const Plan& p = plan_of(current_);
+      need(same_layout(p, plan_of(first_)), "the plans of a path must have one structure");
+      found = &p;
+    });
+    return *found;
+  }
+  // What a function raised since the last time.
+  void raise() const {
+    if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
   }
   bool varies() const override { return varies_; }
 
@@ -94,6 +106,24 @@ class GivenPath : public Path {
   }
 
  private:
+  void ask(double sigma, long inputs, PathPoint* point) const {
+    const nb::object found = at_(sigma);
+    std::tuple<Numbers, Numbers, Numbers> numbers;
+    if (!nb::try_cast(found, numbers)) throw nb::type_error("at: does not give three lists of numbers");
+    std::tie(point->inputs, point->first, point->second) = std::move(numbers);
+    need_length(point->inputs, inputs, "the path's inputs");
+    need_length(point->first, inputs, "the path's first derivatives");
+    need_length(point->second, inputs, "the path's second derivatives");
+  }
+  template <class Question>
+  bool asked(const Question& question) const {
+    try {
+      question();
+    } catch (...) {
+      raised_ = std::current_exception();
+    }
+    return !raised_;
+  }
   static const Plan& plan_of(const nb::object& object) {
     const FrozenPlan* plan = nullptr;
     if (!nb::try_cast(object, plan, false) || !plan) throw nb::type_error("plan: not a Plan, or none at this sigma");
@@ -102,7 +132,9 @@ class GivenPath : public Path {
 
   nb::object at_, plan_;
   bool varies_;
-  mutable nb::object first_, current_;
+  nb::object first_;
+  mutable nb::object current_;
+  mutable std::exception_ptr raised_;
 };
 
 // A stepper that owns its path and limits. A straight path keeps its numbers here.
@@ -124,6 +156,9 @@ class Turn {
     s.busy = true;
   }
   ~Turn() { stepper_.busy = false; }
+  void end() const {
+    if (stepper_.given) stepper_.given->raise();
+  }
 
  private:
   OwnedStepper& stepper_;
@@ -176,8 +211,9 @@ std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess
   const Turn turn(s);
   FloatingPointState state;
   Node node;
-  if (!s.stepper->close(sigma, guess.data(), &node)) return std::nullopt;
-  return node;
+  const bool closes = s.stepper->close(sigma, guess.data(), &node);
+  turn.end();
+  return closes ? std::optional<Node>(node) : std::nullopt;
 }
 
 void need_node(const OwnedStepper& s, const Node& node) {
@@ -196,7 +232,9 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   const Turn turn(s);
   FloatingPointState state;
   Node next;
-  if (!s.stepper->step(node, h, &next)) return std::nullopt;
+  const bool taken = s.stepper->step(node, h, &next);
+  turn.end();
+  if (!taken) return std::nullopt;
   continue_turns(*s.stepper, node, &next);
   return next;
 }
@@ -206,8 +244,9 @@ std::optional<Node> to_target(OwnedStepper& s, const Numbers& start) {
   const Turn turn(s);
   FloatingPointState state;
   Node node;
-  if (!follow_to_target(*s.stepper, start.data(), &node)) return std::nullopt;
-  return node;
+  const bool reached = follow_to_target(*s.stepper, start.data(), &node);
+  turn.end();
+  return reached ? std::optional<Node>(node) : std::nullopt;
 }
 
 // (kind, block, inputs, states, derivatives of the columns by arclength, second ones, sigma's second; inputs and states
@@ -346,7 +385,9 @@ void bind_stepper(nb::module_& m) {
              need_node(s, a), need_node(s, b);
              const Turn turn(s);
              FloatingPointState state;
-             return s.stepper->judge(a, &b);
+             const bool is_on_branch = s.stepper->judge(a, &b);
+             turn.end();
+             return is_on_branch;
            }, "a"_a, "b"_a)
       .def("step", &step_from, "node"_a, "h"_a)
       .def("to_target", &to_target, "start"_a)

@@ -8,6 +8,7 @@
 
 #include "bindings.hpp"
 #include "new_array.hpp"
+#include "refusals.hpp"
 #include "rows/units.hpp"
 #include "tape/tape_store.hpp"
 
@@ -108,8 +109,9 @@ void bind_tape(nb::module_& m) {
            [](TapeStore* self, int inputs, Row<double> constants, Row<std::uint8_t> operations,
               Rows<std::int32_t> operands, Row<std::int32_t> outputs, Rows<std::int32_t> guards,
               Row<std::uint8_t> expected, Row<std::uint8_t> advice) {
-             new (self) TapeStore(inputs, copy_of(constants), copy_of(operations), copy_of(operands), copy_of(outputs),
-                                  copy_of(guards), copy_of(expected), copy_of(advice));
+             new (self) TapeStore(value_of(TapeStore::make(inputs, copy_of(constants), copy_of(operations),
+                                                           copy_of(operands), copy_of(outputs), copy_of(guards),
+                                                           copy_of(expected), copy_of(advice))));
            },
            "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a, "advice"_a)
       .def("replay", &replay, "inputs"_a, "lanes"_a = 0)

@@ -121,8 +121,7 @@ nb::bytes written(const Write& write) {
   const Room room = [&bytes](std::size_t size) {
     const nb::gil_scoped_acquire held;
     bytes = PyBytes_FromStringAndSize(nullptr, (Py_ssize_t)size);
-    if (!bytes) throw nb::python_error();
-    return PyBytes_AS_STRING(bytes);
+    return bytes ? PyBytes_AS_STRING(bytes) : nullptr;
   };
   try {
     const nb::gil_scoped_release released;
@@ -131,6 +130,7 @@ nb::bytes written(const Write& write) {
     Py_XDECREF(bytes);
     throw;
   }
+  if (!bytes) throw nb::python_error();
   return nb::steal<nb::bytes>(bytes);
 }
 

@@ -11,6 +11,7 @@
 
 #include "bindings.hpp"
 #include "new_array.hpp"
+#include "refusals.hpp"
 #include "rows/units.hpp"
 #include "stepping/variants.hpp"
 
@@ -91,7 +92,7 @@ void bind_variants(nb::module_& m) {
              for (const auto& [slot, turn, closing] : angles) base.angles.push_back({slot, turn, closing});
              for (const auto& [step, places, values, course] : ways)
                base.ways.push_back({step, places, copy_of(values, (long)places.size(), "ways"), course});
-             new (at) Variants(tape, plan, outputs, std::move(base));
+             new (at) Variants(value_of(make<Variants>(tape, plan, outputs, std::move(base))));
            },
            nb::kw_only(), "tape"_a, "plan"_a, "outputs"_a, "parameters"_a, "inputs"_a, "whole"_a, "full"_a, "time"_a, "rates"_a, "accelerations"_a,
            "jerks"_a, "state"_a, "size"_a, "start_row"_a, "demand"_a, "iterations"_a, "continuation"_a, "following"_a,

@@ -10,6 +10,8 @@
 
 #include <vector>
 
+#include "result.hpp"
+
 // Places that a motion is asked about. y = (u [freedoms], v [freedoms], w [quadratures]): coordinates in the lane's present
 // chart, zero at its origin, their rates, and what is integrated along (work, dissipation).
 struct Places {
@@ -143,7 +145,7 @@ struct LaneReport {
   long evaluations = 0, steps = 0, rejections = 0;
 };
 
-// Integrates from `time` (lanes) and y, u = 0 in the motion's present charts, over all rows. Throws
-// std::invalid_argument where rows do not rise, begin before `time` or settings are none.
-std::vector<LaneReport> integrate(Motion& motion, const IntegratorSettings& settings, const double* time,
+// Integrates from `time` (lanes) and y, u = 0 in the motion's present charts, over all rows. Refuses
+// rows that do not rise or begin before `time`, and settings that are none.
+Result<std::vector<LaneReport>> integrate(Motion& motion, const IntegratorSettings& settings, const double* time,
                                   const std::vector<double>& y, const RowTimes& rows);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/requirements.hpp"
-
 namespace {
 
 constexpr long MOST_STEPS = 1000000;
@@ -12,27 +10,31 @@ constexpr double FAULT_MARGIN = 0.85;  // of the way to a fault, for the next tr
 constexpr double FAULT_FACTOR = 0.5;   // of it where that failed, too
 constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled with each step taken since
 
-void check(const Motion& motion, const IntegratorSettings& s, const double* time, const RowTimes& rows) {
-  require(motion.lanes() > 0 && motion.freedoms() > 0, "at least one lane and one freedom");
-  require(s.tolerance > 0.0 && s.least_step > 0.0 && s.fixed_step >= 0.0 && s.dense_rows > 0 && s.most_steps > 0,
+Refusal check(const Motion& motion, const IntegratorSettings& s, const double* time, const std::vector<double>& y,
+              const RowTimes& rows) {
+  REQUIRE(motion.lanes() > 0 && motion.freedoms() > 0, "at least one lane and one freedom");
+  REQUIRE(s.tolerance > 0.0 && s.least_step > 0.0 && s.fixed_step >= 0.0 && s.dense_rows > 0 && s.most_steps > 0,
           "tolerance, least step, steps and rows are positive numbers");
-  require(s.most_steps <= MOST_STEPS, "1 to 1000000 steps");
+  REQUIRE(s.most_steps <= MOST_STEPS, "1 to 1000000 steps");
+  const std::size_t entries = 2 * (std::size_t)motion.freedoms() + motion.quadratures();
+  REQUIRE(y.size() == entries * motion.lanes(), "one y for each lane");
   for (int i = 0; i < motion.lanes(); ++i) {
     double before = time[i];
-    require(std::isfinite(before), "times are finite");
+    REQUIRE(std::isfinite(before), "times are finite");
     for (long r = 0; r < rows.count; ++r) {
       const double t = rows.time[i * rows.stride + r];
-      require(std::isfinite(t) && (r ? t > before : t >= before), "the times of rows rise from the start on");
+      REQUIRE(std::isfinite(t) && (r ? t > before : t >= before), "the times of rows rise from the start on");
       before = t;
     }
   }
+  return {};
 }
 
 }  // namespace
 
-std::vector<LaneReport> integrate(Motion& motion, const IntegratorSettings& settings, const double* time,
-                                  const std::vector<double>& y, const RowTimes& rows) {
-  check(motion, settings, time, rows);
+Result<std::vector<LaneReport>> integrate(Motion& motion, const IntegratorSettings& settings, const double* time,
+                                          const std::vector<double>& y, const RowTimes& rows) {
+  CHECK(check(motion, settings, time, y, rows));
   return March(motion, settings, time, y, rows).run();
 }
 
@@ -41,8 +43,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
     : states_(motion, settings), rows_(rows), explicit_(states_), control_(states_.lanes),
       size_((1 + states_.quadratures) * (std::size_t)states_.lanes),
       place_(states_.entries), values_(states_.side.size()), part_(states_.lanes), at_(states_.lanes),
-      row_(states_.lanes), other_slope_(states_.entries), scale_(states_.entries), muted_(states_.side.size(), 0) {
-  require((long)y.size() == states_.entries, "one y for each lane");
+      other_slope_(states_.entries), scale_(states_.entries), muted_(states_.side.size(), 0), row_(states_.lanes) {
   for (LaneControl& c : control_) {
     c.passed.assign(states_.kinds.size(), 0);
     c.met.assign(states_.kinds.size(), 0);

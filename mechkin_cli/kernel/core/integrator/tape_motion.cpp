@@ -4,24 +4,24 @@
 #include <limits>
 #include <utility>
 
-#include "plan/requirements.hpp"
-
 TapeMotion::TapeMotion(const TapeStore& tape, Shape shape, const std::vector<double>& state,
                        std::vector<double> parameters, std::vector<double> scales, long rows)
     : tape_(tape), shape_(std::move(shape)), parameters_(std::move(parameters)), scales_(std::move(scales)),
-      start_(state), now_(state) {
+      row_count_(rows), start_(state), now_(state) {}
+
+Refusal TapeMotion::prepare() {
   const Tape& t = tape_.view();
   const std::size_t lanes = shape_.lanes, switches = shape_.switches.size();
-  require(shape_.lanes > 0 && shape_.freedoms >= 0 && shape_.quadratures >= 0, "no such motion");
-  require(state.size() == size() * lanes, "one state for each lane");
-  require(parameters_.size() % lanes == 0, "parameters for each lane");
-  require(shape_.stops.size() == switches, "each switch stops or does not");
-  require(!scales_.empty(), "a chart has a scale");
-  for (double s : scales_) require(s > 0.0, "a chart's scale is positive");
-  require(t.inputs == 1 + size() + (int)switches + (int)(parameters_.size() / lanes) &&
+  REQUIRE(shape_.lanes > 0 && shape_.freedoms >= 0 && shape_.quadratures >= 0, "no such motion");
+  REQUIRE(start_.size() == size() * lanes, "one state for each lane");
+  REQUIRE(parameters_.size() % lanes == 0, "parameters for each lane");
+  REQUIRE(shape_.stops.size() == switches, "each switch stops or does not");
+  REQUIRE(!scales_.empty(), "a chart has a scale");
+  for (double s : scales_) REQUIRE(s > 0.0, "a chart's scale is positive");
+  REQUIRE(t.inputs == 1 + size() + (int)switches + (int)(parameters_.size() / lanes) &&
               t.outputs == shape_.freedoms + shape_.quadratures + (int)switches + 1,
           "the tape is of another motion");
-  origin_.assign(state.begin(), state.begin() + shape_.freedoms * lanes);
+  origin_.assign(start_.begin(), start_.begin() + shape_.freedoms * lanes);
   for (int f = 0; f < shape_.freedoms; ++f)
     for (std::size_t i = 0; i < lanes; ++i) {
       start_[f * lanes + i] = 0.0;
@@ -34,7 +34,8 @@ TapeMotion::TapeMotion(const TapeStore& tape, Shape shape, const std::vector<dou
   outputs_.resize(t.outputs * lanes);
   verdict_.resize(lanes);
   memory_.resize(kernel_unit()->replay_size(t));
-  rows_.assign(rows * size() * lanes, std::numeric_limits<double>::quiet_NaN());
+  rows_.assign(row_count_ * size() * lanes, std::numeric_limits<double>::quiet_NaN());
+  return {};
 }
 
 double TapeMotion::state(int component, int lane, const double* y) const {

@@ -28,9 +28,10 @@ class TapeMotion : public Motion {
     double bounce;            // what v is multiplied by where a switch moves
     double reach;             // distance from the chart's origin, in x, from which on a place is a fault OUT_OF_REACH
   };
-  // `state` (x, v, w) and `parameters`, each x lanes. Throws std::invalid_argument where the tape has other numbers.
+  // `state` (x, v, w) and `parameters`, each x lanes. By `make`, which refuses a tape of other numbers.
   TapeMotion(const TapeStore& tape, Shape shape, const std::vector<double>& state, std::vector<double> parameters,
              std::vector<double> scales, long rows);
+  Refusal prepare();
 
   int lanes() const override { return shape_.lanes; }
   int freedoms() const override { return shape_.freedoms; }
@@ -55,8 +56,9 @@ class TapeMotion : public Motion {
   double state(int component, int lane, const double* y) const;
 
   const TapeStore& tape_;
-  const Shape shape_;
-  const std::vector<double> parameters_, scales_;
+  Shape shape_;
+  std::vector<double> parameters_, scales_;
+  long row_count_;
   std::vector<double> start_, origin_, scale_, now_, inputs_, outputs_, rows_;
   std::vector<long> accepted_, moved_;
   std::vector<std::uint8_t> verdict_;

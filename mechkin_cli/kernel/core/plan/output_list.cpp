@@ -3,33 +3,32 @@
 #include <cstring>
 #include <string>
 
-#include "plan/requirements.hpp"
 #include "rows/units.hpp"
 
 namespace {
 
-void check_index(int index, int least, int end, const char* what) {
-  if (index >= least && index < end) return;
-  throw std::invalid_argument("output of " + std::string(what) + " " + std::to_string(index) + ": the plan has " +
-                              std::to_string(end));
+Refusal check_index(int index, int least, int end, const char* what) {
+  REQUIRE(index >= least && index < end,
+          "output of " + std::string(what) + " " + std::to_string(index) + ": the plan has " + std::to_string(end));
+  return {};
 }
 
 }  // namespace
 
-void check_output(const Plan& p, const OutputRecord& r) {
-  require(is_output(r.type), "unknown kind of output");
-  require(r.order >= 0 && r.order <= 3, "outputs go to third order");
+Refusal check_output(const Plan& p, const OutputRecord& r) {
+  REQUIRE(is_output(r.type), "unknown kind of output");
+  REQUIRE(r.order >= 0 && r.order <= 3, "outputs go to third order");
   const bool orders = r.type == OUT_CLOSING || r.type == OUT_POINT;
-  require(orders || r.order == 0, "only closing coordinates and points have derivatives of an order");
-  require(r.type == OUT_CLOSING || r.freedom == 0, "only closing coordinates have a freedom");
-  require(all_finite(r.data.data(), 3) && all_finite(&r.factor, 1), "an output's numbers must be finite");
+  REQUIRE(orders || r.order == 0, "only closing coordinates and points have derivatives of an order");
+  REQUIRE(r.type == OUT_CLOSING || r.freedom == 0, "only closing coordinates have a freedom");
+  REQUIRE(all_finite(r.data.data(), 3) && all_finite(&r.factor, 1), "an output's numbers must be finite");
   switch (r.type) {
     case OUT_STATE: return check_index(r.index, 0, p.states, "state");
     case OUT_RATE:
     case OUT_JERK:
     case OUT_ACCELERATION: return check_index(r.index, 0, p.columns, "column");
     case OUT_CLOSING:
-      check_index(r.index, 0, p.closings, "closing joint");
+      CHECK(check_index(r.index, 0, p.closings, "closing joint"));
       return check_closing_coordinate(p, r.index, r.freedom);
     case OUT_POINT:
     case OUT_VECTOR: return check_index(r.index, -1, p.links, "link");
@@ -47,13 +46,17 @@ void check_output(const Plan& p, const OutputRecord& r) {
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
-    case OUT_ACTUATION: return require(p.actuators && r.index == 0, "an output of actuators, of which there are none");
+    case OUT_ACTUATION:
+      REQUIRE(p.actuators && r.index == 0, "an output of actuators, of which there are none");
+      return {};
     case OUT_NORMAL_LOAD:
     case OUT_FRICTION_FORCE:
     case OUT_FRICTION_MOMENT:
     case OUT_FRICTION_POWER:
     case OUT_FRICTION_STATE: return check_index(r.index, 0, p.frictions, "friction");
-    default: return require(r.index == 0, "an output of the whole mechanism has index 0");
+    default:
+      REQUIRE(r.index == 0, "an output of the whole mechanism has index 0");
+      return {};
   }
 }
 
@@ -119,25 +122,28 @@ unsigned output_demand(int type, int order) {
   }
 }
 
-void check_closing_coordinate(const Plan& p, int c, int freedom) {
+Refusal check_closing_coordinate(const Plan& p, int c, int freedom) {
   const int type = p.closing[c].type;
-  require(type != PAIR_LEG, "a leg has no coordinates");
-  if (freedom >= 0 && freedom < 6 && kernel_unit()->pair_types[type].coordinates >> freedom & 1) return;
-  throw std::invalid_argument("closing joint " + std::to_string(c) + " has no coordinate " + std::to_string(freedom));
+  REQUIRE(type != PAIR_LEG, "a leg has no coordinates");
+  REQUIRE(freedom >= 0 && freedom < 6 && kernel_unit()->pair_types[type].coordinates >> freedom & 1,
+          "closing joint " + std::to_string(c) + " has no coordinate " + std::to_string(freedom));
+  return {};
 }
 
-OutputList::OutputList(const FrozenPlan& plan, const std::vector<OutputRecord>& records)
-    : structure_(plan.structure()) {
-  output_.reserve(records.size());
+Result<OutputList> OutputList::make(const FrozenPlan& plan, const std::vector<OutputRecord>& records) {
+  OutputList list;
+  list.structure_ = plan.structure();
+  list.output_.reserve(records.size());
   for (const OutputRecord& r : records) {
-    check_output(plan.view(), r);
-    require(slots_ <= (1 << 24), "too many outputs");
-    Output o = {r.type, r.index, r.order, r.freedom, slots_, {}, r.factor};
+    CHECK(check_output(plan.view(), r));
+    REQUIRE(list.slots_ <= (1 << 24), "too many outputs");
+    Output o = {r.type, r.index, r.order, r.freedom, list.slots_, {}, r.factor};
     std::memcpy(o.data, r.data.data(), sizeof o.data);
-    output_.push_back(o);
-    slots_ += output_width(r.type);
-    demand_ |= output_demand(r.type, r.order);
+    list.output_.push_back(o);
+    list.slots_ += output_width(r.type);
+    list.demand_ |= output_demand(r.type, r.order);
   }
+  return list;
 }
 
 void OutputList::read_constants(double* out) const {

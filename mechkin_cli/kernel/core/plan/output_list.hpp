@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plan/frozen_plan.hpp"
+#include "result.hpp"
 
 // One quantity as it is asked for; `order`: which derivative (closing coordinates and points).
 struct OutputRecord {
@@ -16,8 +17,8 @@ struct OutputRecord {
 
 class OutputList {
  public:
-  // std::invalid_argument: a record that the plan cannot serve.
-  OutputList(const FrozenPlan& plan, const std::vector<OutputRecord>& records);
+  // Refuses a record that the plan cannot serve.
+  static Result<OutputList> make(const FrozenPlan& plan, const std::vector<OutputRecord>& records);
 
   OutputsView view() const { return {(int)output_.size(), slots_, output_.data()}; }
   // What a run that writes them must demand.
@@ -31,6 +32,8 @@ class OutputList {
   bool assign(const double* constants) noexcept;
 
  private:
+  OutputList() = default;
+
   std::shared_ptr<const PlanStructure> structure_;
   std::vector<Output> output_;
   int slots_ = 0;
@@ -42,7 +45,7 @@ int output_width(int type);
 unsigned output_demand(int type, int order);
 // Whether a type is one of OutputCode.
 bool is_output(int type);
-// std::invalid_argument: a record that the plan cannot serve.
-void check_output(const Plan& p, const OutputRecord& r);
-// std::invalid_argument if closing joint `c` has no coordinate that is its freedom's.
-void check_closing_coordinate(const Plan& p, int c, int freedom);
+// Refuses a record that the plan cannot serve.
+Refusal check_output(const Plan& p, const OutputRecord& r);
+// Refuses if closing joint `c` has no coordinate that is its freedom's.
+Refusal check_closing_coordinate(const Plan& p, int c, int freedom);

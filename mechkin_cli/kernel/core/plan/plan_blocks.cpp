@@ -1,6 +1,5 @@
 // The order of a plan's parts: blocks, what they place and solve for, and the finish.
 #include "plan/plan_builder.hpp"
-#include "plan/requirements.hpp"
 #include "stepping/stepper.hpp"
 #include "rows/units.hpp"
 
@@ -13,48 +12,47 @@ int equations(const ClosingJoint& j) { return kernel_unit()->pair_types[j.type].
 
 }  // namespace
 
-void PlanBuilder::place_joints(int block, const std::vector<int>& joints) {
+// Says in `placed_by` that a block, or the rest, places some tree joints.
+Refusal PlanBuilder::place_joints(int block, const std::vector<int>& joints, std::vector<int>* placed_by) const {
+  std::vector<int>& placed = *placed_by;
   for (int k : joints) {
-    check_joint(k, "places an unknown tree joint");
-    require(placed_by_[k] == NOT_PLACED, "a tree joint is placed once");
+    CHECK(check_joint(k, "places an unknown tree joint"));
+    REQUIRE(placed[k] == NOT_PLACED, "a tree joint is placed once");
     const int parent = joints_[k].parent;
-    require(parent < 0 || placed_by_[parent] != NOT_PLACED, "a tree joint is placed after its parent");
+    REQUIRE(parent < 0 || placed[parent] != NOT_PLACED, "a tree joint is placed after its parent");
     if (joints_[k].type == TREE_L) {
-      require(joints_[k].leg >= 0, "TREE_L hangs a leg");
+      REQUIRE(joints_[k].leg >= 0, "TREE_L hangs a leg");
       const int second = leg_[joints_[k].leg].second;
-      require(second < 0 || placed_by_[second] != NOT_PLACED, "a leg is placed after its ends");
+      REQUIRE(second < 0 || placed[second] != NOT_PLACED, "a leg is placed after its ends");
     }
-    placed_by_[k] = block;
+    placed[k] = block;
   }
+  return {};
 }
 
-void PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown,
+Refusal PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, const std::vector<int>& unknown,
                             int charts) {
-  open();
+  CHECK(open());
   const int index = (int)block_.size();
   const int closing_begin = block_.empty() ? 0 : block_.back().closing_end;
-  require(charts >= 0 && (charts == 0 || plan_.charts == 0), "one block has a chart");
-  require(closing_joints + charts > 0 && closing_joints >= 0 &&
+  REQUIRE(charts >= 0 && (charts == 0 || plan_.charts == 0), "one block has a chart");
+  REQUIRE(closing_joints + charts > 0 && closing_joints >= 0 &&
               closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
-  require(!rest_set_, "blocks come before the rest");
+  REQUIRE(!rest_set_, "blocks come before the rest");
   Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts};
   long rows = charts;
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     rows += equations(closing_[c]);
-  require(rows <= MOST_BLOCK_ROWS, "a block has at most 4096 equations");
-  require((long)unknown.size() <= rows, "a block needs as many equations as unknowns");
+  REQUIRE(rows <= MOST_BLOCK_ROWS, "a block has at most 4096 equations");
+  REQUIRE((long)unknown.size() <= rows, "a block needs as many equations as unknowns");
   std::vector<int> column_block = column_block_;
   for (int c : unknown) {
-    require(c >= 0 && c < plan_.columns && column_block[c] < 0, "a column must belong to one block");
+    REQUIRE(c >= 0 && c < plan_.columns && column_block[c] < 0, "a column must belong to one block");
     column_block[c] = index;
   }
-  const std::vector<int> placed_before = placed_by_;
-  try {
-    place_joints(index, joints);
-  } catch (...) {
-    placed_by_ = placed_before;
-    throw;
-  }
+  std::vector<int> placed_by = placed_by_;
+  CHECK(place_joints(index, joints, &placed_by));
+  placed_by_ = std::move(placed_by);
   int row = 0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     closing_[c].row = row;
@@ -72,54 +70,54 @@ void PlanBuilder::add_block(int closing_joints, const std::vector<int>& joints, 
   plan_.charts += charts;
   b.size = (int)unknown.size();
   block_.push_back(b);
+  return {};
 }
 
-void PlanBuilder::set_rest(const std::vector<int>& joints) {
-  open();
-  require(!rest_set_, "the rest is set once");
-  const std::vector<int> placed_before = placed_by_;
-  try {
-    place_joints(REST, joints);
-  } catch (...) {
-    placed_by_ = placed_before;
-    throw;
-  }
+Refusal PlanBuilder::set_rest(const std::vector<int>& joints) {
+  CHECK(open());
+  REQUIRE(!rest_set_, "the rest is set once");
+  std::vector<int> placed_by = placed_by_;
+  CHECK(place_joints(REST, joints, &placed_by));
+  placed_by_ = std::move(placed_by);
   rest_ = joints;
   rest_set_ = true;
+  return {};
 }
 
 // Closing joints between what is placed by then, all of them in blocks, every tree joint placed.
-void PlanBuilder::check_order() const {
-  require(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
+Refusal PlanBuilder::check_order() const {
+  REQUIRE(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
           "every closing joint must belong to a block");
   for (std::size_t k = 0; k < joints_.size(); ++k) {
-    require((joints_[k].type == TREE_L) == (joints_[k].leg >= 0), "TREE_L hangs a leg");
-    require(placed_by_[k] != NOT_PLACED, "every tree joint must be placed by a block or be of the rest");
+    REQUIRE((joints_[k].type == TREE_L) == (joints_[k].leg >= 0), "TREE_L hangs a leg");
+    REQUIRE(placed_by_[k] != NOT_PLACED, "every tree joint must be placed by a block or be of the rest");
   }
   for (int b = 0; b < (int)block_.size(); ++b) {
     const auto placed = [&](int link) { return link < 0 || (placed_by_[link] != REST && placed_by_[link] <= b); };
     for (int c = block_[b].closing_begin; c < block_[b].closing_end; ++c) {
       const ClosingJoint& j = closing_[c];
-      require(placed(j.first) && placed(j.second), "a closing joint's links must be placed by its block or before");
-      require(j.slide < 0 || placed(j.slide), "a leg's rod must be placed by its block or before");
+      REQUIRE(placed(j.first) && placed(j.second), "a closing joint's links must be placed by its block or before");
+      REQUIRE(j.slide < 0 || placed(j.slide), "a leg's rod must be placed by its block or before");
       for (int l = j.loop_begin; l < j.loop_end; ++l)
-        require(placed(loop_[l].joint), "a loop's joints must be placed by its block or before");
+        REQUIRE(placed(loop_[l].joint), "a loop's joints must be placed by its block or before");
     }
     for (int u = block_[b].column_begin; u < block_[b].column_end; ++u)
-      require(placed_by_[column_joint_[unknown_[u]]] == b, "a block's unknowns are of joints that it places");
+      REQUIRE(placed_by_[column_joint_[unknown_[u]]] == b, "a block's unknowns are of joints that it places");
   }
+  return {};
 }
 
 // At least as many actuators as freedoms that they answer for, or none.
-void PlanBuilder::check_actuators() const {
+Refusal PlanBuilder::check_actuators() const {
   int freedoms = plan_.driven;
   for (int i = 0; i < plan_.driven; ++i) {
     bool tied = false;
     for (const Tie& t : tie_) tied = tied || t.input == i;
     freedoms -= tied;
   }
-  require(actuator_.empty() || (freedoms > 0 && freedoms <= (int)actuator_.size()),
+  REQUIRE(actuator_.empty() || (freedoms > 0 && freedoms <= (int)actuator_.size()),
           "actuators must be at least as many as the freedoms that they drive");
+  return {};
 }
 
 // Drives grouped by the place of their axis; those without an axis last.
@@ -164,20 +162,20 @@ void PlanBuilder::find_turns() {
   }
 }
 
-FrozenPlan PlanBuilder::finish() {
-  open();
+Result<FrozenPlan> PlanBuilder::finish() {
+  CHECK(open());
   // a tree whose states are given whole: only its poses are asked for
   const bool posed = block_.empty() && input_column_.empty();
   for (int c = 0; c < plan_.columns; ++c) {
     bool input = false;
     for (int i : input_column_) input = input || i == c;
-    require(posed || input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
+    REQUIRE(posed || input != (column_block_[c] >= 0), "every column must be an input or an unknown, not both");
   }
-  check_order();
-  check_actuators();
+  CHECK(check_order());
+  CHECK(check_actuators());
   sort_drives();
   find_turns();
-  require(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
+  REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);
   spent_ = true;

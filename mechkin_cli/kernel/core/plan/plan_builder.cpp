@@ -1,17 +1,28 @@
 #include "plan/plan_builder.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "plan/output_list.hpp"
-#include "plan/requirements.hpp"
 #include "rows/units.hpp"
 
 namespace {
 
 const TreeType& tree_type(int code) { return kernel_unit()->tree_types[code]; }
-const PairType& pair_type(int code) { return kernel_unit()->pair_types[code]; }
 
-void check_sign(double sign) { require(sign == 1.0 || sign == -1.0, "a sign is 1 or -1"); }
+bool is_sign(double sign) { return sign == 1.0 || sign == -1.0; }
+constexpr char NO_SIGN[] = "a sign is 1 or -1";
+
+bool is_finite(double x) { return std::isfinite(x); }
+template <std::size_t N>
+bool is_finite(const std::array<double, N>& numbers) {
+  return all_finite(numbers.data(), N);
+}
+template <class... Numbers>
+Refusal check_finite(const Numbers&... numbers) {
+  REQUIRE((is_finite(numbers) && ...), "a plan's numbers must be finite");
+  return {};
+}
 
 void copy(const Triple& from, double* to) { std::memcpy(to, from.data(), sizeof from); }
 
@@ -27,9 +38,13 @@ bool along_coordinate(int type) {
 
 }  // namespace
 
+Result<PlanBuilder> PlanBuilder::make(double length, const Triple& origin, double size) {
+  CHECK(check_finite(length, size, origin));
+  REQUIRE(length > 0 && size > 0, "length unit and size must be positive");
+  return PlanBuilder(length, origin, size);
+}
+
 PlanBuilder::PlanBuilder(double length, const Triple& origin, double size) {
-  check_finite(length), check_finite(size), check_finite(origin);
-  require(length > 0 && size > 0, "length unit and size must be positive");
   plan_.length = length;
   plan_.size = size;
   copy(origin, plan_.origin);
@@ -38,7 +53,10 @@ PlanBuilder::PlanBuilder(double length, const Triple& origin, double size) {
   number(ARRAY_PLAN, in_plan(&plan_.size), 1);
 }
 
-void PlanBuilder::open() const { require(!spent_, "the plan is finished, and its builder spent"); }
+Refusal PlanBuilder::open() const {
+  REQUIRE(!spent_, "the plan is finished, and its builder spent");
+  return {};
+}
 
 // Bytes from the plan's beginning to one of its numbers.
 std::size_t PlanBuilder::in_plan(const double* number) const {
@@ -49,20 +67,22 @@ void PlanBuilder::number(int array, std::size_t offset, int count) {
   for (int i = 0; i < count; ++i) constants_.push_back({array, offset + i * sizeof(double)});
 }
 
-void PlanBuilder::check_link(int link) const {
-  require(link >= -1 && link < (int)joints_.size(), "unknown link");
+Refusal PlanBuilder::check_link(int link) const {
+  REQUIRE(link >= -1 && link < (int)joints_.size(), "unknown link");
+  return {};
 }
 
-void PlanBuilder::check_joint(int joint, const char* message) const {
-  require(joint >= 0 && joint < (int)joints_.size(), message);
+Refusal PlanBuilder::check_joint(int joint, const char* message) const {
+  REQUIRE(joint >= 0 && joint < (int)joints_.size(), message);
+  return {};
 }
 
-void PlanBuilder::add_tree_joint(int type, int parent, double pitch, const FrameData& at) {
-  open();
-  require(type >= 0 && type < TREE_CODES, "unknown displacement");
-  check_finite(pitch), check_finite(at);
+Refusal PlanBuilder::add_tree_joint(int type, int parent, double pitch, const FrameData& at) {
+  CHECK(open());
+  REQUIRE(type >= 0 && type < TREE_CODES, "unknown displacement");
+  CHECK(check_finite(pitch, at));
   const int k = (int)joints_.size();
-  require(parent >= -1 && parent < k, "a tree joint's parent must come before it");
+  REQUIRE(parent >= -1 && parent < k, "a tree joint's parent must come before it");
   const int state = plan_.states, column = plan_.columns;
   joints_.push_back({type, parent, state, column, pitch, -1, frame(at)});
   number(ARRAY_JOINT, k * sizeof(TreeJoint) + offsetof(TreeJoint, pitch), 1);
@@ -78,45 +98,53 @@ void PlanBuilder::add_tree_joint(int type, int parent, double pitch, const Frame
   plan_.columns += tree_type(type).freedoms;
   inertia_.push_back({});
   placed_by_.push_back(NOT_PLACED);
+  return {};
 }
 
-void PlanBuilder::add_closing_joint(int type, int first, int second, const FrameData& on_first,
+Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const FrameData& on_first,
                                     const FrameData& on_second, double parameter, const Loop& loop) {
-  open();
-  require(type > PAIR_LEG && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
-  check_link(first);
-  check_link(second);
-  check_finite(on_first), check_finite(on_second), check_finite(parameter);
+  CHECK(open());
+  REQUIRE(type > PAIR_LEG && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
+  CHECK(check_link(first));
+  CHECK(check_link(second));
+  CHECK(check_finite(on_first, on_second, parameter));
+  CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
   closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
+  return {};
+}
+
+Refusal PlanBuilder::check_loop(const Loop& loop) const {
+  for (const auto& [joint, sign] : loop) {
+    CHECK(check_joint(joint, "loop through an unknown joint"));
+    REQUIRE(is_sign(sign), NO_SIGN);
+  }
+  return {};
 }
 
 std::pair<int, int> PlanBuilder::add_loop(const Loop& loop) {
   const int begin = (int)loop_.size();
-  for (const auto& [joint, sign] : loop) {
-    check_joint(joint, "loop through an unknown joint");
-    check_sign(sign);
-  }
   for (const auto& [joint, sign] : loop) loop_.push_back({joint, sign});
   return {begin, (int)loop_.size()};
 }
 
-void PlanBuilder::add_leg(int body, int rod, int first, int second, const FrameData& on_first,
+Refusal PlanBuilder::add_leg(int body, int rod, int first, int second, const FrameData& on_first,
                           const FrameData& on_second, double length, const Triple& line, double slide_sign,
                           const Loop& loop) {
-  open();
-  check_joint(body, "unknown body of a leg");
-  require(joints_[body].type == TREE_L && joints_[body].leg < 0, "a leg hangs by a TREE_L of its own");
-  require(joints_[body].parent == first && second >= -1 && second < body, "a leg comes after its ends");
-  require(rod == -1 || (rod > body && rod < (int)joints_.size() && joints_[rod].type == TREE_P &&
+  CHECK(open());
+  CHECK(check_joint(body, "unknown body of a leg"));
+  REQUIRE(joints_[body].type == TREE_L && joints_[body].leg < 0, "a leg hangs by a TREE_L of its own");
+  REQUIRE(joints_[body].parent == first && second >= -1 && second < body, "a leg comes after its ends");
+  REQUIRE(rod == -1 || (rod > body && rod < (int)joints_.size() && joints_[rod].type == TREE_P &&
                         joints_[rod].parent == body), "a leg's rod slides on its body");
-  check_finite(on_first), check_finite(on_second), check_finite(length), check_finite(line);
-  require(rod == -1 || slide_sign == 1.0 || slide_sign == -1.0, "the sign of a leg's slide is 1 or -1");
-  check_finite(slide_sign);
+  CHECK(check_finite(on_first, on_second, length, line));
+  REQUIRE(rod == -1 || slide_sign == 1.0 || slide_sign == -1.0, "the sign of a leg's slide is 1 or -1");
+  CHECK(check_finite(slide_sign));
+  CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
   Leg leg = {body, rod, first, second, (int)closing_.size(), {}, {}};
   const Frame at_end = frame(on_second);
@@ -133,16 +161,17 @@ void PlanBuilder::add_leg(int body, int rod, int first, int second, const FrameD
     repeated_.push_back({end_point + i, {ARRAY_LEG, leg_at + offsetof(Leg, point) + i * sizeof(double)}});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
   number(ARRAY_LEG, leg_at + offsetof(Leg, line), 3);
+  return {};
 }
 
-int PlanBuilder::add_place(int reference, int first, int second, int point_on, const Triple& point, double sign) {
-  open();
-  require(reference >= -(int)closing_.size() && reference < (int)joints_.size(), "unknown joint reference");
-  check_link(first);
-  check_link(second);
-  check_link(point_on);
-  check_finite(point);
-  check_sign(sign);
+Result<int> PlanBuilder::add_place(int reference, int first, int second, int point_on, const Triple& point, double sign) {
+  CHECK(open());
+  REQUIRE(reference >= -(int)closing_.size() && reference < (int)joints_.size(), "unknown joint reference");
+  CHECK(check_link(first));
+  CHECK(check_link(second));
+  CHECK(check_link(point_on));
+  CHECK(check_finite(point));
+  REQUIRE(is_sign(sign), NO_SIGN);
   JointPlace place = {reference, first, second, point_on, {}, sign, 0, 0, 0, 0};
   copy(point, place.point);
   number(ARRAY_PLACE, place_.size() * sizeof(JointPlace) + offsetof(JointPlace, point), 3);
@@ -150,13 +179,13 @@ int PlanBuilder::add_place(int reference, int first, int second, int point_on, c
   return (int)place_.size() - 1;
 }
 
-int PlanBuilder::add_axis(int place, bool slide, int link, const Triple& vector, int other,
+Result<int> PlanBuilder::add_axis(int place, bool slide, int link, const Triple& vector, int other,
                           const Triple& other_vector) {
-  open();
-  require(place >= 0 && place < (int)place_.size(), "axis of an unknown joint");
-  check_link(link);
-  check_link(other);
-  check_finite(vector), check_finite(other_vector);
+  CHECK(open());
+  REQUIRE(place >= 0 && place < (int)place_.size(), "axis of an unknown joint");
+  CHECK(check_link(link));
+  CHECK(check_link(other));
+  CHECK(check_finite(vector, other_vector));
   CoordinateAxis axis = {place, slide, {link, other}, {}};
   copy(vector, axis.vector[0]);
   copy(other_vector, axis.vector[1]);
@@ -165,40 +194,42 @@ int PlanBuilder::add_axis(int place, bool slide, int link, const Triple& vector,
   return (int)axis_.size() - 1;
 }
 
-void PlanBuilder::add_free_motion(int place, bool slide, int code, int link, const Triple& vector) {
-  open();
-  require(place >= 0 && place < (int)place_.size(), "free motion of an unknown joint");
-  require(code >= 0 && code < FREE_CODES, "unknown kind of free motion");
-  check_link(link);
-  check_finite(vector);
+Refusal PlanBuilder::add_free_motion(int place, bool slide, int code, int link, const Triple& vector) {
+  CHECK(open());
+  REQUIRE(place >= 0 && place < (int)place_.size(), "free motion of an unknown joint");
+  REQUIRE(code >= 0 && code < FREE_CODES, "unknown kind of free motion");
+  CHECK(check_link(link));
+  CHECK(check_finite(vector));
   JointPlace& at = place_[place];
   const int next = (int)free_.size();
-  require(at.free_begin == at.free_end || at.free_end == next, "the free motions of a joint stand in a row");
+  REQUIRE(at.free_begin == at.free_end || at.free_end == next, "the free motions of a joint stand in a row");
   if (at.free_begin == at.free_end) at.free_begin = next;
   at.free_end = next + 1;
   FreeMotion free = {place, slide, code, link, {}};
   copy(vector, free.vector);
   number(ARRAY_FREE, next * sizeof(FreeMotion) + offsetof(FreeMotion, vector), 3);
   free_.push_back(free);
+  return {};
 }
 
-void PlanBuilder::add_input(int column, int axis, double scale) {
-  open();
-  require(column >= 0 && column < plan_.columns && column_state_[column] >= 0, "an input must be a scalar coordinate");
-  require(axis >= -1 && axis < (int)axis_.size(), "unknown axis");
-  check_finite(scale);
-  for (int c : input_column_) require(c != column, "a column is an input once");
+Refusal PlanBuilder::add_input(int column, int axis, double scale) {
+  CHECK(open());
+  REQUIRE(column >= 0 && column < plan_.columns && column_state_[column] >= 0, "an input must be a scalar coordinate");
+  REQUIRE(axis >= -1 && axis < (int)axis_.size(), "unknown axis");
+  CHECK(check_finite(scale));
+  for (int c : input_column_) REQUIRE(c != column, "a column is an input once");
   number(ARRAY_DRIVE, drive_.size() * sizeof(Drive) + offsetof(Drive, scale), 1);
   drive_.push_back({(int)input_column_.size(), axis, scale});
   input_column_.push_back(column);
+  return {};
 }
 
-void PlanBuilder::set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor) {
-  open();
-  check_joint(link, "inertia of an unknown link");
-  check_finite(mass), check_finite(centre), check_finite(tensor);
+Refusal PlanBuilder::set_inertia(int link, double mass, const Triple& centre, const std::array<double, 6>& tensor) {
+  CHECK(open());
+  CHECK(check_joint(link, "inertia of an unknown link"));
+  CHECK(check_finite(mass, centre, tensor));
   LinkInertia& m = inertia_[link];
-  require(!m.present, "a link's inertia is set once");
+  REQUIRE(!m.present, "a link's inertia is set once");
   m.present = 1;
   m.mass = mass;
   copy(centre, m.centre);
@@ -207,42 +238,44 @@ void PlanBuilder::set_inertia(int link, double mass, const Triple& centre, const
   number(ARRAY_INERTIA, at + offsetof(LinkInertia, mass), 1);
   number(ARRAY_INERTIA, at + offsetof(LinkInertia, centre), 3);
   number(ARRAY_INERTIA, at + offsetof(LinkInertia, tensor), 6);
+  return {};
 }
 
-void PlanBuilder::set_gravity(const Triple& g) {
-  open();
-  check_finite(g);
-  require(!gravity_, "gravity is set once");
+Refusal PlanBuilder::set_gravity(const Triple& g) {
+  CHECK(open());
+  CHECK(check_finite(g));
+  REQUIRE(!gravity_, "gravity is set once");
   gravity_ = true;
   copy(g, plan_.gravity);
   number(ARRAY_PLAN, in_plan(plan_.gravity), 3);
+  return {};
 }
 
-void PlanBuilder::check_load(int type, int link, int other, int freedom, bool varying) const {
-  require(type >= 0 && type <= LOAD_COORDINATE_DAMPER, "unknown kind of load");
-  require(!varying || type <= LOAD_COORDINATE, "springs and dampers vary by themselves");
+Refusal PlanBuilder::check_load(int type, int link, int other, int freedom, bool varying) const {
+  REQUIRE(type >= 0 && type <= LOAD_COORDINATE_DAMPER, "unknown kind of load");
+  REQUIRE(!varying || type <= LOAD_COORDINATE, "springs and dampers vary by themselves");
   if (!along_coordinate(type)) {
-    check_link(link);
-    check_link(other);
-    require(link >= 0 || type == LOAD_SPRING || type == LOAD_DAMPER, "a load on ground moves nothing");
-    require(freedom == 0, "only a load along a coordinate has a freedom");
-    return;
+    CHECK(check_link(link));
+    CHECK(check_link(other));
+    REQUIRE(link >= 0 || type == LOAD_SPRING || type == LOAD_DAMPER, "a load on ground moves nothing");
+    REQUIRE(freedom == 0, "only a load along a coordinate has a freedom");
+    return {};
   }
-  require(link >= 0 && link < (int)axis_.size(), "load along an unknown axis");
-  require(other >= -(int)closing_.size() && other < (int)joints_.size(), "load on an unknown joint");
+  REQUIRE(link >= 0 && link < (int)axis_.size(), "load along an unknown axis");
+  REQUIRE(other >= -(int)closing_.size() && other < (int)joints_.size(), "load on an unknown joint");
   if (other < 0) {
-    check_closing_coordinate(arrays(), -1 - other, freedom);
-    return;
+    return check_closing_coordinate(arrays(), -1 - other, freedom);
   }
   const int of = joints_[other].type;
-  require(of != TREE_S && freedom >= 0 && freedom < tree_type(of).freedoms, "load along an unknown coordinate");
+  REQUIRE(of != TREE_S && freedom >= 0 && freedom < tree_type(of).freedoms, "load along an unknown coordinate");
+  return {};
 }
 
-void PlanBuilder::add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
+Refusal PlanBuilder::add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                            const Triple& vector, bool varying) {
-  open();
-  check_load(type, link, other, freedom, varying);
-  check_finite(point), check_finite(other_point), check_finite(vector);
+  CHECK(open());
+  CHECK(check_load(type, link, other, freedom, varying));
+  CHECK(check_finite(point, other_point, vector));
   Load l = {type, link, other, freedom, {}, {}, {}, varying ? plan_.load_values : -1, -1};
   if (varying) plan_.load_values += type == LOAD_COORDINATE ? 1 : 3;
   copy(point, l.point);
@@ -253,39 +286,45 @@ void PlanBuilder::add_load(int type, int link, int other, int freedom, const Tri
   number(ARRAY_LOAD, at + offsetof(Load, point), 3);
   number(ARRAY_LOAD, at + offsetof(Load, other_point), 3);
   number(ARRAY_LOAD, at + offsetof(Load, vector), 3);
+  return {};
 }
 
-void PlanBuilder::set_driven(int inputs) {
-  open();
-  require(!driven_set_, "the driven inputs are said once");
-  require(inputs >= 0 && inputs <= (int)input_column_.size(), "more driven inputs than inputs");
+Refusal PlanBuilder::set_driven(int inputs) {
+  CHECK(open());
+  REQUIRE(!driven_set_, "the driven inputs are said once");
+  REQUIRE(inputs >= 0 && inputs <= (int)input_column_.size(), "more driven inputs than inputs");
   plan_.driven = inputs;
   driven_set_ = true;
+  return {};
 }
 
-void PlanBuilder::add_actuator(int axis, int reference, int freedom) {
-  open();
-  require(driven_set_, "actuators come after the driven inputs");
-  check_load(LOAD_COORDINATE, axis, reference, freedom, false);
+Refusal PlanBuilder::add_actuator(int axis, int reference, int freedom) {
+  CHECK(open());
+  REQUIRE(driven_set_, "actuators come after the driven inputs");
+  CHECK(check_load(LOAD_COORDINATE, axis, reference, freedom, false));
   actuator_.push_back({axis, reference, freedom});
+  return {};
 }
 
-void PlanBuilder::add_tie(int input, int leader) {
-  open();
-  require(driven_set_, "ties come after the driven inputs");
-  require(input >= 0 && input < plan_.driven && leader >= 0 && leader < plan_.driven && input != leader,
+Refusal PlanBuilder::add_tie(int input, int leader) {
+  CHECK(open());
+  REQUIRE(driven_set_, "ties come after the driven inputs");
+  REQUIRE(input >= 0 && input < plan_.driven && leader >= 0 && leader < plan_.driven && input != leader,
           "a tie joins two driven inputs");
   for (const Tie& t : tie_) {
-    require(t.leader != input && t.input != leader, "a tied input leads no other");
-    require(t.input != input || t.leader != leader, "a tie is said once");
+    REQUIRE(t.leader != input && t.input != leader, "a tied input leads no other");
+    REQUIRE(t.input != input || t.leader != leader, "a tie is said once");
   }
   tie_.push_back({input, leader});
+  return {};
 }
 
-void PlanBuilder::set_load_program(const ProgramRecord& program) {
-  open();
-  require(!program_set_, "the load program is set once");
-  program_ = ProgramStore(arrays(), program);
+Refusal PlanBuilder::set_load_program(const ProgramRecord& program) {
+  CHECK(open());
+  REQUIRE(!program_set_, "the load program is set once");
+  Result<ProgramStore> store = ProgramStore::make(arrays(), program);
+  CHECK(store.refusal());
+  program_ = std::move(*store);
   program_set_ = true;
   for (std::size_t k = 0; k < program.reads.size(); ++k) {
     const std::size_t at = k * sizeof(ReadOf<double>) + offsetof(ReadOf<double>, output);
@@ -293,17 +332,18 @@ void PlanBuilder::set_load_program(const ProgramRecord& program) {
     number(ARRAY_READ, at + offsetof(Output, factor), 1);
   }
   number(ARRAY_PROGRAM_CONSTANT, 0, (int)program.constants.size());
+  return {};
 }
 
-void PlanBuilder::add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis,
+Refusal PlanBuilder::add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis,
                                double radius, double pitch, double at_rest, double sliding, double speed) {
-  open();
-  require(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
+  CHECK(open());
+  REQUIRE(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
   const auto motion = [](int code) { return code >= -1 && code < FREE_CODES; };
-  require(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
-  check_link(link);
-  check_finite(axis), check_finite(radius), check_finite(pitch), check_finite(at_rest), check_finite(sliding), check_finite(speed);
-  for (const Friction& other : friction_) require(other.place != place, "a joint has one friction");
+  REQUIRE(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
+  CHECK(check_link(link));
+  CHECK(check_finite(axis, radius, pitch, at_rest, sliding, speed));
+  for (const Friction& other : friction_) REQUIRE(other.place != place, "a joint has one friction");
   const int contacts = (int)contact_.size();
   Friction f = {place, turns, slides, link, falls, pitch != 0.0, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
   copy(axis, f.axis);
@@ -315,14 +355,15 @@ void PlanBuilder::add_friction(int place, int turns, int slides, int link, bool 
   number(ARRAY_FRICTION, at + offsetof(Friction, at_rest), 1);
   number(ARRAY_FRICTION, at + offsetof(Friction, sliding), 1);
   number(ARRAY_FRICTION, at + offsetof(Friction, speed), 1);
+  return {};
 }
 
-void PlanBuilder::add_contact(int code, double weight, double share, double tilt, double roll,
+Refusal PlanBuilder::add_contact(int code, double weight, double share, double tilt, double roll,
                               const Triple& direction) {
-  open();
-  require(!friction_.empty(), "contact of no friction");
-  require(code >= 0 && code < CONTACT_CODES, "unknown kind of contact");
-  check_finite(weight), check_finite(share), check_finite(tilt), check_finite(roll), check_finite(direction);
+  CHECK(open());
+  REQUIRE(!friction_.empty(), "contact of no friction");
+  REQUIRE(code >= 0 && code < CONTACT_CODES, "unknown kind of contact");
+  CHECK(check_finite(weight, share, tilt, roll, direction));
   Contact c = {code, weight, share, tilt, roll, {}};
   copy(direction, c.direction);
   const std::size_t at = contact_.size() * sizeof(Contact);
@@ -330,15 +371,17 @@ void PlanBuilder::add_contact(int code, double weight, double share, double tilt
   friction_.back().contact_end = (int)contact_.size();
   number(ARRAY_CONTACT, at + offsetof(Contact, weight), 4);
   number(ARRAY_CONTACT, at + offsetof(Contact, direction), 3);
+  return {};
 }
 
-void PlanBuilder::add_size_point(int link, const Triple& point) {
-  open();
-  check_link(link);
-  check_finite(point);
+Refusal PlanBuilder::add_size_point(int link, const Triple& point) {
+  CHECK(open());
+  CHECK(check_link(link));
+  CHECK(check_finite(point));
   const int number_of_point = (int)size_point_.size();
   Output o = {OUT_POINT, link, 0, 0, 3 * number_of_point, {}, 1.0};
   copy(point, o.data);
   size_point_.push_back(o);
   number(ARRAY_SIZE_POINT, number_of_point * sizeof(Output) + offsetof(Output, data), 3);
+  return {};
 }

@@ -31,16 +31,17 @@ unsigned program_demand(const ProgramOf<double>& program);
 class ProgramStore {
  public:
   ProgramStore() = default;
-  // std::invalid_argument: a record that the plan cannot serve, or registers that are none.
-  ProgramStore(const Plan& plan, const ProgramRecord& record);
+  // Refuses a record that the plan cannot serve, and registers that are none.
+  static Result<ProgramStore> make(const Plan& plan, const ProgramRecord& record);
 
   ProgramOf<double> view() const;
   // Where the angles' whole turns are counted; for a plan whose inputs and blocks are all there.
   void find_turns(const Plan& plan);
 
  private:
-  void add_reads(const Plan& plan, const ProgramRecord& record);
-  void add_curves(const ProgramRecord& record);
+  Refusal fill(const Plan& plan, const ProgramRecord& record);
+  Refusal add_reads(const Plan& plan, const ProgramRecord& record);
+  Refusal add_curves(const ProgramRecord& record);
 
   int inputs_ = 0;
   std::vector<ReadOf<double>> read_;

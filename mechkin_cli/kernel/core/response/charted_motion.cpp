@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "plan/requirements.hpp"
 #include "rows/units.hpp"
 
 namespace {

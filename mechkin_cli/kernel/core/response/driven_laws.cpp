@@ -3,22 +3,24 @@
 #include <cmath>
 #include <utility>
 
-#include "plan/requirements.hpp"
 #include "rows/units.hpp"
 
 DrivenLaws::DrivenLaws(const TapeStore* tape, std::vector<double> edges, std::vector<double> constants,
                        std::vector<double> ways, std::vector<double> units, double time_unit, std::vector<double> held)
     : tape_(tape), edges_(std::move(edges)), constants_(std::move(constants)), ways_(std::move(ways)),
-      units_(std::move(units)), time_unit_(time_unit), held_(std::move(held)) {
-  require(tape || (units_.empty() && edges_.empty()), "laws are a tape");
-  require(time_unit > 0.0 && std::isfinite(time_unit), "the time's unit is positive");
-  if (!tape) return;
-  const Tape& t = tape->view();
+      units_(std::move(units)), time_unit_(time_unit), held_(std::move(held)) {}
+
+Refusal DrivenLaws::prepare() const {
+  REQUIRE(tape_ || (units_.empty() && edges_.empty()), "laws are a tape");
+  REQUIRE(time_unit_ > 0.0 && std::isfinite(time_unit_), "the time's unit is positive");
+  if (!tape_) return {};
+  const Tape& t = tape_->view();
   const std::size_t cells = edges_.size() + 1;
-  require(t.outputs == (int)units_.size(), "units: one for each output of the tape");
-  require(constants_.size() == cells * (t.inputs - 1), "constants: one for each further input and cell");
-  require(ways_.size() == cells * tape->switches(), "ways: one for each switch and cell");
-  for (std::size_t e = 1; e < edges_.size(); ++e) require(edges_[e] > edges_[e - 1], "edges rise");
+  REQUIRE(t.outputs == (int)units_.size(), "units: one for each output of the tape");
+  REQUIRE(constants_.size() == cells * (t.inputs - 1), "constants: one for each further input and cell");
+  REQUIRE(ways_.size() == cells * tape_->switches(), "ways: one for each switch and cell");
+  for (std::size_t e = 1; e < edges_.size(); ++e) REQUIRE(edges_[e] > edges_[e - 1], "edges rise");
+  return {};
 }
 
 DrivenLaws::Memory DrivenLaws::memory() const {

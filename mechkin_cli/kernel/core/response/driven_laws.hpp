@@ -12,10 +12,12 @@ class DrivenLaws {
  public:
   // `edges`: moments (s), rising, between cells; `constants` (cells x inputs of the tape but the first) and `ways` (cells
   // x switches of the tape); `units` (inputs): what the tape's outputs are divided by; `time_unit` (s); `held`: values of
-  // further inputs, at rest. Without a tape there are only these. Throws std::invalid_argument.
+  // further inputs, at rest. Without a tape there are only these. By `make`, which refuses what does not fit together.
   DrivenLaws(const TapeStore* tape, std::vector<double> edges, std::vector<double> constants, std::vector<double> ways,
              std::vector<double> units, double time_unit, std::vector<double> held);
   DrivenLaws(const DrivenLaws&) = delete;
+  DrivenLaws(DrivenLaws&&) = default;
+  Refusal prepare() const;
 
   const std::vector<double>& edges() const { return edges_; }
   int inputs() const { return (int)(units_.size() + held_.size()); }
@@ -30,7 +32,7 @@ class DrivenLaws {
 
  private:
   const TapeStore* tape_;
-  const std::vector<double> edges_, constants_, ways_, units_;
-  const double time_unit_;
-  const std::vector<double> held_;
+  std::vector<double> edges_, constants_, ways_, units_;
+  double time_unit_;
+  std::vector<double> held_;
 };

@@ -18,7 +18,7 @@ bool reads_time(const Plan& plan) {
 }
 
 // A pack of variants from `first` on; lanes beyond the last repeat it, into rows of their own.
-void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, std::vector<ResponseReport>* reports) {
+Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, std::vector<ResponseReport>* reports) {
   const long count = (long)task.starts.size();
   std::vector<MotionStart> starts;
   std::vector<MotionRows> rows;
@@ -39,23 +39,29 @@ void respond_pack(const ResponseTask& task, const MotionUnit& unit, long first, 
   ChartedMotion motion(unit, starts, limits, rows, task.stops, task.driven);
   std::vector<double> begin;
   for (const MotionStart& s : starts) begin.push_back(s.time);
-  const std::vector<LaneReport> found =
+  Result<std::vector<LaneReport>> reached =
       integrate(motion, settings, begin.data(), motion.start(), {task.times, moments, 0});
+  CHECK(reached.refusal());
+  const std::vector<LaneReport>& found = *reached;
   for (int l = 0; l < unit.lanes && first + l < count; ++l)
     (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.undecided_joints(l, found[l]),
                              motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l),
                              motion.branch_point_near(l), motion.is_next_to_singular(l)};
+  return {};
 }
 
 }  // namespace
 
-std::vector<ResponseReport> respond(const ResponseTask& task, int lanes, int threads) {
+Result<std::vector<ResponseReport>> respond(const ResponseTask& task, int lanes, int threads) {
   const long count = (long)task.starts.size();
   std::vector<ResponseReport> reports((std::size_t)count);
   const MotionUnit& unit = *motion_unit(lanes);
   const long packs = (count + unit.lanes - 1) / unit.lanes;
+  std::vector<Refusal> refusals((std::size_t)packs);
   over_rows(packs, 1, (int)std::min<long>(threads, packs), [&](long begin, long end, int) {
-    for (long pack = begin; pack < end; ++pack) respond_pack(task, unit, pack * unit.lanes, &reports);
+    for (long pack = begin; pack < end; ++pack)
+      refusals[(std::size_t)pack] = respond_pack(task, unit, pack * unit.lanes, &reports);
   });
+  for (const Refusal& refusal : refusals) CHECK(refusal);
   return reports;
 }

@@ -26,5 +26,5 @@ struct ResponseReport {
   bool singular;                     // steps were refused there, however short
 };
 
-// How each variant ended; they do not depend on `lanes` and `threads`.
-std::vector<ResponseReport> respond(const ResponseTask& task, int lanes, int threads);
+// How each variant ended; they do not depend on `lanes` and `threads`. Refuses what `integrate` does.
+Result<std::vector<ResponseReport>> respond(const ResponseTask& task, int lanes, int threads);

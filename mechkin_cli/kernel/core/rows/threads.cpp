@@ -6,7 +6,6 @@
 #include <exception>
 #include <list>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -22,6 +21,31 @@
 
 namespace {
 
+// What stopped some work, or null.
+#ifdef __cpp_exceptions
+using Failure = std::exception_ptr;
+template <class Work>
+Failure attempt(const Work& work) {
+  try {
+    work();
+  } catch (...) {
+    return std::current_exception();
+  }
+  return nullptr;
+}
+void pass_on(const Failure& failure) {
+  if (failure) std::rethrow_exception(failure);
+}
+#else
+using Failure = const void*;
+template <class Work>
+Failure attempt(const Work& work) {
+  work();
+  return nullptr;
+}
+void pass_on(Failure) {}
+#endif
+
 // Rows of one call; threads come and take chunks until none is left.
 struct Job {
   const std::function<void(long, long, int)>& work;
@@ -31,17 +55,16 @@ struct Job {
   std::atomic<long> next{0};  // first row that nobody has taken
   std::atomic<int> thread{0};
   std::atomic<bool> failed{false};
-  std::exception_ptr failure;  // what was thrown first; written by the thread that set `failed`
+  Failure failure = nullptr;  // the first one; written by the thread that set `failed`
 
   // Throws nothing: a pool's thread has nobody to tell, and the caller must wait for the others first.
   void take_chunks() noexcept {
     const int number = thread.fetch_add(1);
-    try {
+    const Failure stopped = attempt([&] {
       for (long begin; !failed && (begin = next.fetch_add(chunk)) < rows;)
         work(begin, begin + chunk < rows ? begin + chunk : rows, number);
-    } catch (...) {
-      if (!failed.exchange(true)) failure = std::current_exception();
-    }
+    });
+    if (stopped && !failed.exchange(true)) failure = stopped;
   }
 };
 
@@ -60,7 +83,7 @@ class Pool {
     std::unique_lock<std::mutex> lock(mutex_);
     jobs_.remove(&job);
     left_.wait(lock, [&] { return job.inside == 0; });
-    if (job.failure) std::rethrow_exception(job.failure);
+    pass_on(job.failure);
   }
 
   void stop() {
@@ -76,12 +99,10 @@ class Pool {
  private:
   void grow(int wanted) {
     SignalsBlocked blocked;
-    try {
+    // where no more are to be had, those that are there do the work
+    (void)attempt([&] {
       while ((int)threads_.size() < wanted) threads_.emplace_back([this] { serve(); });
-    } catch (const std::system_error&) {
-      // no more threads to be had: those that are there do the work
-    } catch (const std::bad_alloc&) {
-    }
+    });
   }
 
   void serve() {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "arithmetic/operations.hpp"
-#include "plan/requirements.hpp"
 #include "rows/units.hpp"
 
 namespace {
@@ -36,19 +35,22 @@ double part_of(const CoursePiece& p, double sigma) {
 Course::Course(const TapeStore& tape, std::vector<CoursePiece> pieces, std::vector<double> constants,
                std::vector<double> ways, std::vector<double> units, std::vector<double> parameter)
     : tape_(tape), pieces_(std::move(pieces)), constants_(std::move(constants)), ways_(std::move(ways)),
-      units_(std::move(units)), parameter_(std::move(parameter)), switches_(tape.switches()) {
-  const Tape& t = tape.view();
-  require(t.outputs == inputs(), "units: one for each output of the tape");
-  require(constants_.size() == pieces_.size() * (t.inputs - 1), "constants: one for each further input and piece");
-  require(ways_.size() == pieces_.size() * switches_, "ways: one for each switch and piece");
+      units_(std::move(units)), parameter_(std::move(parameter)), switches_(tape.switches()) {}
+
+Refusal Course::prepare() const {
+  const Tape& t = tape_.view();
+  REQUIRE(t.outputs == inputs(), "units: one for each output of the tape");
+  REQUIRE(constants_.size() == pieces_.size() * (t.inputs - 1), "constants: one for each further input and piece");
+  REQUIRE(ways_.size() == pieces_.size() * switches_, "ways: one for each switch and piece");
   long after = 0;
   for (const CoursePiece& p : pieces_) {
-    require(p.first >= after && p.last > p.first && p.last < rows(), "pieces: rows out of order");
-    require(std::isfinite(p.begin) && std::isfinite(p.end) && p.begin != p.end, "pieces: no stretch of the parameter");
-    require(p.scale > 0.0 && std::isfinite(p.scale), "pieces: a scale is positive");
-    require(std::fabs(p.power) >= 1.0 && std::fabs(p.power) <= 100.0, "pieces: a power is 1 to 100");
+    REQUIRE(p.first >= after && p.last > p.first && p.last < rows(), "pieces: rows out of order");
+    REQUIRE(std::isfinite(p.begin) && std::isfinite(p.end) && p.begin != p.end, "pieces: no stretch of the parameter");
+    REQUIRE(p.scale > 0.0 && std::isfinite(p.scale), "pieces: a scale is positive");
+    REQUIRE(std::fabs(p.power) >= 1.0 && std::fabs(p.power) <= 100.0, "pieces: a power is 1 to 100");
     after = p.last;
   }
+  return {};
 }
 
 double Course::sigma(long piece, double parameter) const {

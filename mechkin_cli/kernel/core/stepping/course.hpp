@@ -18,10 +18,12 @@ struct CoursePiece {
 class Course {
  public:
   // `constants` and `ways` (pieces x inputs of the tape but the first, pieces x switches); `units` (inputs): what the
-  // tape's outputs are divided by; `parameter` (rows). Throws std::invalid_argument.
+  // tape's outputs are divided by; `parameter` (rows). By `make`, which refuses what does not fit together.
   Course(const TapeStore& tape, std::vector<CoursePiece> pieces, std::vector<double> constants,
          std::vector<double> ways, std::vector<double> units, std::vector<double> parameter);
   Course(const Course&) = delete;
+  Course(Course&&) = default;
+  Refusal prepare() const;
 
   const std::vector<CoursePiece>& pieces() const { return pieces_; }
   long rows() const { return (long)parameter_.size(); }

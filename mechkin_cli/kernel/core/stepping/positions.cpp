@@ -4,34 +4,37 @@
 #include <utility>
 
 #include "plan/program_store.hpp"
-#include "plan/requirements.hpp"
+#include "rows/run.hpp"
 #include "rows/units.hpp"
 
 Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand,
                      int iterations, const StepLimits& limits, std::vector<TurningOutput> angles)
     : plan_(plan), outputs_(outputs), rows_(std::move(rows)), demand_(demand), iterations_(iterations),
-      limits_(limits), angles_(std::move(angles)) {
-  const Plan& p = plan.view();
+      limits_(limits), angles_(std::move(angles)) {}
+
+Refusal Positions::prepare() {
+  const Plan& p = plan_.view();
   turn_slots_ = ::turn_slots(p, *kernel_unit(2));
   const std::size_t n = rows_.rows, table = n * p.inputs;
-  require(n > 0, "rows: none");
-  require(rows_.rows <= MOST_ROWS, "rows: more than 100000000");
-  require(outputs.fits(plan), "outputs: of a plan with another structure");
+  const unsigned demand = demand_;
+  REQUIRE(n > 0, "rows: none");
+  REQUIRE(rows_.rows <= MOST_ROWS, "rows: more than 100000000");
+  REQUIRE(outputs_.fits(plan_), "outputs: of a plan with another structure");
   for (const auto* values : {&rows_.inputs, &rows_.rates, &rows_.accelerations, &rows_.jerks, &rows_.whole})
-    require(values->size() == table, "inputs: wrong shape");
-  require(are_whole_turns(rows_.whole.data(), rows_.whole.size()), "whole: numbers of turns");
-  require(rows_.state.size() == n * p.states, "states: wrong shape");
-  require(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
-  require(!(outputs.demand() & ~demand), "the outputs need more than is demanded");
-  require(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
-  require(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
-  require(!(demand & DEMAND_POWER), "no place for a power error");
-  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
-  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
-  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
-  require(iterations >= 0 && iterations <= 10000, "iterations: 0 to 10000");
+    REQUIRE(values->size() == table, "inputs: wrong shape");
+  REQUIRE(are_whole_turns(rows_.whole.data(), rows_.whole.size()), "whole: numbers of turns");
+  REQUIRE(rows_.state.size() == n * p.states, "states: wrong shape");
+  REQUIRE(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
+  REQUIRE(!(outputs_.demand() & ~demand), "the outputs need more than is demanded");
+  REQUIRE(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
+  REQUIRE(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  REQUIRE(!(demand & DEMAND_POWER), "no place for a power error");
+  REQUIRE(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  REQUIRE(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  REQUIRE(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  REQUIRE(iterations_ >= 0 && iterations_ <= 10000, "iterations: 0 to 10000");
   for (const TurningOutput& a : angles_)
-    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs &&
+    REQUIRE(a.slot >= 0 && a.slot < outputs_.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs &&
                 a.turn < turn_slots_,
             "angles: no slot");
   memory_.resize(kernel_unit(2)->workspace_size(p));
@@ -39,6 +42,7 @@ Positions::Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRow
   path_.resize(2 * p.inputs), path_whole_.resize(2 * p.inputs), start_.resize(p.states), turn_.resize(turn_slots_);
   guess_.resize(2 * p.states), limit_.resize(2), way_turn_.resize(2 * turn_slots_);
   rates_.resize(p.inputs), accelerations_.resize(p.inputs), jerks_.resize(p.inputs);
+  return {};
 }
 
 long Positions::nearest(const double* inputs, const double* whole) const {

@@ -25,9 +25,10 @@ struct TurningOutput {
 
 class Positions {
  public:
-  // std::invalid_argument where sizes do not fit together.
+  // By `make`, which refuses sizes that do not fit together.
   Positions(const FrozenPlan& plan, const OutputList& outputs, KnownRows rows, unsigned demand, int iterations,
             const StepLimits& limits, std::vector<TurningOutput> angles);
+  Refusal prepare();
 
   // Fills `outputs` (slots); false where the branch ends before the inputs (inputs, their whole turns, and with them), or no row
   // closes there; and the condition, where it is demanded. Rates are those of the nearest row. One call at a time.

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "rows/assembly_size.hpp"
 #include "stepping/dimension_path.hpp"
 #include "plan/program_store.hpp"
-#include "plan/requirements.hpp"
+#include "rows/run.hpp"
 #include "rows/threads.hpp"
 #include "rows/units.hpp"
 
@@ -259,45 +258,48 @@ class Worker {
 }  // namespace
 
 Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs, VariantBase base)
-    : tape_(tape), plan_(plan), outputs_(outputs), base_(std::move(base)) {
-  const Tape& t = tape.view();
-  const Plan& p = plan.view();
+    : tape_(tape), plan_(plan), outputs_(outputs), base_(std::move(base)) {}
+
+Refusal Variants::prepare() const {
+  const Tape& t = tape_.view();
+  const Plan& p = plan_.view();
   const std::size_t table = (std::size_t)p.inputs * base_.rows;
-  const std::size_t constants = plan.constants() + outputs.constants();
-  require(outputs.fits(plan), "outputs: of a plan with another structure");
-  require((int)base_.parameters.size() == t.inputs, "parameters: one for each input of the tape");
-  require((std::size_t)t.outputs == constants || (std::size_t)t.outputs == constants + 4 * table,
+  const std::size_t constants = plan_.constants() + outputs_.constants();
+  REQUIRE(outputs_.fits(plan_), "outputs: of a plan with another structure");
+  REQUIRE((int)base_.parameters.size() == t.inputs, "parameters: one for each input of the tape");
+  REQUIRE((std::size_t)t.outputs == constants || (std::size_t)t.outputs == constants + 4 * table,
           "the tape does not give the constants of plan and outputs");
-  require(base_.rows <= MOST_ROWS, "rows: more than 100000000");
-  require(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
+  REQUIRE(base_.rows <= MOST_ROWS, "rows: more than 100000000");
+  REQUIRE(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
   for (const auto* values : {&base_.inputs, &base_.full, &base_.rates, &base_.accelerations, &base_.jerks})
-    require(values->size() == table, "inputs: wrong shape");
-  require((int)base_.state.size() == p.states, "state: wrong length");
-  require(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
-  require(!(outputs.demand() & ~base_.demand), "the outputs need more than is demanded");
-  require(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
-  require(!(base_.demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
-  require(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
-  require(!(base_.demand & DEMAND_POWER), "no place for the power error");
+    REQUIRE(values->size() == table, "inputs: wrong shape");
+  REQUIRE((int)base_.state.size() == p.states, "state: wrong length");
+  REQUIRE(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
+  REQUIRE(!(outputs_.demand() & ~base_.demand), "the outputs need more than is demanded");
+  REQUIRE(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
+  REQUIRE(!(base_.demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  REQUIRE(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
+  REQUIRE(!(base_.demand & DEMAND_POWER), "no place for the power error");
   const unsigned demand = base_.demand;
-  require(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
-  require(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
-  require(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
-  require(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
+  REQUIRE(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  REQUIRE(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  REQUIRE(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  REQUIRE(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
   for (const VariantWay& w : base_.ways) {
     const std::size_t places = w.rows.size();
-    require(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
-    for (long row : w.rows) require(row < base_.rows, "ways: no such row");
-    require(!w.course || (w.course->rows() == (long)places && w.course->inputs() <= p.inputs),
+    REQUIRE(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
+    for (long row : w.rows) REQUIRE(row < base_.rows, "ways: no such row");
+    REQUIRE(!w.course || (w.course->rows() == (long)places && w.course->inputs() <= p.inputs),
             "ways: a course of other rows or inputs");
-    require((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
+    REQUIRE((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
   }
-  require(base_.whole.size() == table, "whole: wrong shape");
-  require(are_whole_turns(base_.whole.data(), table), "whole: numbers of turns");
+  REQUIRE(base_.whole.size() == table, "whole: wrong shape");
+  REQUIRE(are_whole_turns(base_.whole.data(), table), "whole: numbers of turns");
   const int turns = turn_slots(p, *kernel_unit(2));
   for (const ClosingAngle& a : base_.angles)
-    require(a.slot >= 0 && a.slot < outputs.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs && a.turn < turns,
+    REQUIRE(a.slot >= 0 && a.slot < outputs_.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs && a.turn < turns,
             "angles: unknown slot");
+  return {};
 }
 
 void Variants::run(long count, const double* parameters, const KernelUnit& unit, int threads,

@@ -73,8 +73,9 @@ struct VariantArrays {
 
 class Variants {
  public:
-  // std::invalid_argument where sizes do not fit together.
+  // By `make`, which refuses sizes that do not fit together.
   Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs, VariantBase base);
+  Refusal prepare() const;
 
   // parameters: tape inputs x count. Variants that are not complete get nan.
   void run(long count, const double* parameters, const KernelUnit& unit, int threads, const VariantArrays& out) const;

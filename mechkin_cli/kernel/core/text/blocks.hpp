@@ -2,45 +2,24 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
-#include <system_error>
-#include <thread>
 #include <vector>
+
+#include "rows/threads.hpp"
 
 constexpr std::size_t BLOCK_ROWS = 1024;
 
 inline std::size_t block_count(std::size_t rows) { return (rows + BLOCK_ROWS - 1) / BLOCK_ROWS; }
 
 // Calls work(block, first row, end row) once for every block, where each thread has its own `work = make()` with the
-// memory that it uses again for every block. What it throws first comes out here, once all threads have ended.
+// memory that it uses again for every block.
 template <class Make>
 void for_each_block(std::size_t rows, int threads, const Make& make) {
-  const std::size_t blocks = block_count(rows);
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex failing;
-  const auto run = [&] {
-    try {
-      auto work = make();
-      for (std::size_t block; (block = next++) < blocks;)
-        work(block, block * BLOCK_ROWS, std::min(rows, (block + 1) * BLOCK_ROWS));
-    } catch (...) {
-      const std::lock_guard<std::mutex> held(failing);
-      if (!failure) failure = std::current_exception();
-    }
-  };
-  std::vector<std::thread> helpers;
-  for (std::size_t i = 1; i < (std::size_t)threads && i < blocks; ++i) {
-    try {
-      helpers.emplace_back(run);
-    } catch (const std::system_error&) {
-      break;  // no thread to be had: the others do its share
-    }
-  }
-  run();
-  for (std::thread& helper : helpers) helper.join();
-  if (failure) std::rethrow_exception(failure);
+  std::vector<decltype(make())> works;
+  const int count = (int)std::clamp<std::size_t>((std::size_t)threads, 1, std::max<std::size_t>(block_count(rows), 1));
+  for (int i = 0; i < count; ++i) works.push_back(make());
+  over_rows((long)rows, (long)BLOCK_ROWS, count, [&](long begin, long end, int thread) {
+    for (std::size_t first = (std::size_t)begin; first < (std::size_t)end; first += BLOCK_ROWS)
+      works[(std::size_t)thread](first / BLOCK_ROWS, first, std::min((std::size_t)end, first + BLOCK_ROWS));
+  });
 }

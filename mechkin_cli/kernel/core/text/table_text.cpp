@@ -65,7 +65,9 @@ void write_blocks(const std::string& before, const std::string& after, std::size
   });
   std::size_t size = before.size() + after.size();
   for (const std::string& text : blocks) size += text.size();
-  char* at = put(before, room(size));
+  char* at = room(size);
+  if (!at) return;
+  at = put(before, at);
   for (std::string& text : blocks) {
     at = put(text, at);
     std::string().swap(text);
@@ -249,6 +251,7 @@ void markdown_text(const std::vector<std::string>& headers, const std::vector<Te
   for (std::size_t block = 0; block < blocks; ++block)
     starts[block + 1] += starts[block] + line * (std::min(rows, (block + 1) * BLOCK_ROWS) - block * BLOCK_ROWS);
   char* const text = room(starts[blocks]);
+  if (!text) return;
   put(top, text);
   for_each_block(rows, threads, [&] {
     return [&, scratch = Scratch(longest + 1)](std::size_t block, std::size_t first, std::size_t end) {

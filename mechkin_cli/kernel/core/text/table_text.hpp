@@ -29,7 +29,7 @@ struct TextColumn {
   NumberStyle style;
 };
 
-// Room for the text of a given size, once it is known.
+// Room for the text of a given size, once it is known; null, and no text is written, where there is none.
 using Room = std::function<char*(std::size_t)>;
 
 // A field of RFC 4180: in quotes where it holds a comma, a quote or a line break.
