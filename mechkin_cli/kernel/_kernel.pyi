@@ -487,7 +487,8 @@ class Variants:
         """How the continuation ended, size (m) and states of one variant's first assembly."""
 
 class Positions:
-    """Single positions near known rows; see core/stepping/positions.hpp. Tables are (columns, rows)."""
+    """Single positions near known rows; see core/stepping/positions.hpp. Tables are
+    (columns, rows)."""
 
     def __init__(
         self,

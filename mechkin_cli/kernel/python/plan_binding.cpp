@@ -73,18 +73,6 @@ double measured_size(const FrozenPlan& plan, const nb::kwargs& keywords) {
   return assembly_size(p, unit, inputs, guess, {tests[0], tests[1], tests[2], iterations}, memory);
 }
 
-// One workspace a thread, all of them there before the first row is begun.
-class Workspaces {
- public:
-  Workspaces(const KernelUnit& unit, const Plan& plan, int threads)
-      : size_(unit.workspace_size(plan)), memory_((std::size_t)size_ * threads) {}
-  char* of(int thread) { return memory_.data() + thread * size_; }
-
- private:
-  long size_;
-  std::vector<char> memory_;
-};
-
 void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const Plan& p = plan.view();
   Arguments given(keywords);
@@ -92,22 +80,18 @@ void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const OutputList* const outputs = read_request(given, plan, r);
   const int only = (int)given.integer("only", 0, p.blocks - 1, -1);
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
-  const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
+  const int threads = (int)given.integer("threads", 1, MOST_THREADS, 1);
   given.finish();
   if (only >= 0 && (r.demand & ~DEMAND_CONDITION || r.outputs))
     throw nb::value_error("one block alone has its closing and its condition");
   if (r.rows == 0) return;
-  check_demand(r, outputs, p);
+  value_of(check_demand(r, outputs, p));
   std::vector<unsigned char> use((std::size_t)p.blocks, BLOCK_LEFT);
   Held others = {};
   others.use = use.data();
   if (only >= 0) use[(std::size_t)only] = BLOCK_SOLVED, r.held = &others;
-  Workspaces memory(unit, p, threads);
   nb::gil_scoped_release released;
-  FloatingPointState state;
-  over_rows(r.rows, chunk_of(r.rows, threads), threads, [&](long begin, long end, int thread) {
-    unit.run_rows(p, r, begin, end, memory.of(thread));
-  });
+  run_rows(p, r, unit, threads);
 }
 
 void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
@@ -124,49 +108,18 @@ void search(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.iterations = (int)given.integer("iterations", 0, MOST_ITERATIONS, 0);
   r.accept = given.limits("tests", 1)[0];
   const KernelUnit& unit = unit_or_throw((int)given.integer("lanes", 0, 8, 0));
-  const int threads = threads_for(r.rows, given.integer("threads", 1, MOST_THREADS, 1));
+  const int threads = (int)given.integer("threads", 1, MOST_THREADS, 1);
   given.finish();
   if (r.rows == 0) return;
-  Workspaces memory(unit, p, threads);
   nb::gil_scoped_release released;
-  FloatingPointState state;
-  over_rows(r.rows, 64, threads, [&](long begin, long end, int thread) {
-    unit.search_rows(p, r, begin, end, memory.of(thread));
-  });
+  search_rows(p, r, unit, threads);
 }
 
 using OutputTuple = std::tuple<int, int, int, int, Triple, double>;
-using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
 
 OutputRecord output_record(const OutputTuple& given) {
   const auto& [type, index, freedom, order, data, factor] = given;
   return {type, index, freedom, order, data, factor};
-}
-
-// Numbers of the reads: data (3) and factor of each.
-ProgramRecord program_record(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
-                             const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
-                             const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
-                             const std::vector<int>& outputs, const std::vector<int>& kinks) {
-  if (numbers.size() != 4 * reads.size()) throw nb::value_error("four numbers a read");
-  ProgramRecord record;
-  for (std::size_t k = 0; k < reads.size(); ++k) {
-    const auto& [kind, type, index, freedom, order] = reads[k];
-    const double* const n = &numbers[4 * k];
-    record.reads.push_back({kind, {type, index, freedom, order, {n[0], n[1], n[2]}, n[3]}});
-  }
-  for (const auto& [over, low, high, knots] : curves) {
-    record.curves.push_back({over, low, high, {}});
-    for (const auto& [x, y, b, c, d] : knots) record.curves.back().knots.push_back({x, y, b, c, d});
-  }
-  record.constants = constants;
-  for (int o : operations) {
-    if (o < 0 || o > 255) throw nb::value_error("unknown operation");
-    record.operations.push_back((std::uint8_t)o);
-  }
-  for (const auto& [a, b, c] : operands) record.operands.insert(record.operands.end(), {a, b, c});
-  record.outputs.assign(outputs.begin(), outputs.end()), record.kinks.assign(kinks.begin(), kinks.end());
-  return record;
 }
 
 // name, type, parent: as PlanBuilder names them
@@ -193,15 +146,7 @@ void bind_builder(nb::module_& m) {
       .def("set_gravity", raising(&PlanBuilder::set_gravity), "g"_a)
       .def("add_load", raising(&PlanBuilder::add_load), "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
            "other_point"_a, "vector"_a, "varying"_a = false)
-      .def("set_load_program",
-           [](PlanBuilder* builder, const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
-              const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
-              const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
-              const std::vector<int>& outputs, const std::vector<int>& kinks) {
-             value_of(builder->set_load_program(
-                 program_record(reads, numbers, curves, constants, operations, operands, outputs, kinks)));
-           },
-           "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
+      .def("set_load_program", raising(&PlanBuilder::set_load_program), "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
       .def("set_driven", raising(&PlanBuilder::set_driven), "inputs"_a)
       .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)
       .def("add_tie", raising(&PlanBuilder::add_tie), "input"_a, "leader"_a)

@@ -319,9 +319,31 @@ Refusal PlanBuilder::add_tie(int input, int leader) {
   return {};
 }
 
-Refusal PlanBuilder::set_load_program(const ProgramRecord& program) {
+Refusal PlanBuilder::set_load_program(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
+                                      const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
+                                      const std::vector<int>& operations,
+                                      const std::vector<std::array<int, 3>>& operands,
+                                      const std::vector<int>& outputs, const std::vector<int>& kinks) {
   CHECK(open());
   REQUIRE(!program_set_, "the load program is set once");
+  REQUIRE(numbers.size() == 4 * reads.size(), "four numbers a read");
+  ProgramRecord program;
+  for (std::size_t k = 0; k < reads.size(); ++k) {
+    const auto& [kind, type, index, freedom, order] = reads[k];
+    const double* const n = &numbers[4 * k];
+    program.reads.push_back({kind, {type, index, freedom, order, {n[0], n[1], n[2]}, n[3]}});
+  }
+  for (const auto& [over, low, high, knots] : curves) {
+    program.curves.push_back({over, low, high, {}});
+    for (const auto& [x, y, b, c, d] : knots) program.curves.back().knots.push_back({x, y, b, c, d});
+  }
+  program.constants = constants;
+  for (int o : operations) {
+    REQUIRE(o >= 0 && o <= 255, "unknown operation");
+    program.operations.push_back((std::uint8_t)o);
+  }
+  for (const auto& [a, b, c] : operands) program.operands.insert(program.operands.end(), {a, b, c});
+  program.outputs.assign(outputs.begin(), outputs.end()), program.kinks.assign(kinks.begin(), kinks.end());
   Result<ProgramStore> store = ProgramStore::make(arrays(), program);
   CHECK(store.refusal());
   program_ = std::move(*store);

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstddef>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "plan/frozen_plan.hpp"
@@ -15,6 +17,8 @@
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
 using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
+// Register, range, and knots x, y, b, c, d.
+using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
 
 class PlanBuilder {
  public:
@@ -45,8 +49,12 @@ class PlanBuilder {
   // A varying load takes its value from the next outputs of the load program: one along a coordinate, else three.
   Refusal add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                 const Triple& vector, bool varying);
-  // The values of the loads that vary.
-  Refusal set_load_program(const ProgramRecord& program);
+  // The values of the loads that vary: kind, then type, index, freedom and order of what is read, and its data (3) and
+  // factor; curves; then the instructions, as in ProgramRecord.
+  Refusal set_load_program(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
+                           const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
+                           const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
+                           const std::vector<int>& outputs, const std::vector<int>& kinks);
   // The first `inputs` inputs are driven by motors; the others are held.
   Refusal set_driven(int inputs);
   // The next actuator: a coordinate as that of a load along it.
