@@ -8,8 +8,8 @@
 #include "arguments.hpp"
 #include "bindings.hpp"
 #include "plan/frozen_plan.hpp"
-#include "rows/threads.hpp"
 #include "proofs/tubes.hpp"
+#include "rows/threads.hpp"
 #include "rows/unit.hpp"
 #include "rows/units.hpp"
 

@@ -1,8 +1,8 @@
 // The enumerations of the plan as Python enumerations: said once, in plan.hpp, tracker.hpp and operations.hpp.
 #include <nanobind/nanobind.h>
 
-#include "bindings.hpp"
 #include "arithmetic/operations.hpp"
+#include "bindings.hpp"
 #include "plan/plan.hpp"
 #include "stepping/tracker.hpp"
 

@@ -8,12 +8,12 @@
 
 #include "arguments.hpp"
 #include "bindings.hpp"
-#include "proofs/enclosing_unit.hpp"
 #include "plan/frozen_plan.hpp"
 #include "plan/output_list.hpp"
 #include "plan/program_store.hpp"
-#include "stepping/stepper.hpp"
+#include "proofs/enclosing_unit.hpp"
 #include "rows/units.hpp"
+#include "stepping/stepper.hpp"
 
 namespace nb = nanobind;
 

@@ -8,9 +8,9 @@
 #include <tuple>
 
 #include "bindings.hpp"
+#include "integrator/tape_motion.hpp"
 #include "new_array.hpp"
 #include "refusals.hpp"
-#include "integrator/tape_motion.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

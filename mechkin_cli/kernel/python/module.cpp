@@ -5,8 +5,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "bindings.hpp"
 #include "arithmetic/operations.hpp"
+#include "bindings.hpp"
 #include "rows/units.hpp"
 
 namespace nb = nanobind;

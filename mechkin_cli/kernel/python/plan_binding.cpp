@@ -12,16 +12,16 @@
 #include <cmath>
 
 #include "arguments.hpp"
-#include "rows/assembly_size.hpp"
 #include "bindings.hpp"
 #include "plan/output_list.hpp"
 #include "plan/plan_builder.hpp"
 #include "precise_binding.hpp"
 #include "refusals.hpp"
-#include "run_request.hpp"
-#include "stepping/stepper.hpp"
+#include "rows/assembly_size.hpp"
 #include "rows/threads.hpp"
 #include "rows/units.hpp"
+#include "run_request.hpp"
+#include "stepping/stepper.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

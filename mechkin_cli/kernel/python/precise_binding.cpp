@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "refusals.hpp"
-#include "run_request.hpp"
 #include "rows/units.hpp"
+#include "run_request.hpp"
 
 namespace nb = nanobind;
 

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "bindings.hpp"
-#include "plan/frozen_plan.hpp"
 #include "new_array.hpp"
+#include "plan/frozen_plan.hpp"
 #include "refusals.hpp"
 #include "response/response.hpp"
 #include "rows/units.hpp"

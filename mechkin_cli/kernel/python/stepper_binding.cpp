@@ -17,11 +17,11 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "stepping/dimension_path.hpp"
 #include "plan/frozen_plan.hpp"
 #include "plan/same_layout.hpp"
-#include "stepping/tracker.hpp"
 #include "rows/units.hpp"
+#include "stepping/dimension_path.hpp"
+#include "stepping/tracker.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

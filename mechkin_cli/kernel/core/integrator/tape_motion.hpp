@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "integrator/integrator.hpp"
-#include "tape/tape_store.hpp"
 #include "rows/units.hpp"
+#include "tape/tape_store.hpp"
 
 struct TapeEvent {
   int lane, which;

@@ -1,7 +1,7 @@
 // The order of a plan's parts: blocks, what they place and solve for, and the finish.
 #include "plan/plan_builder.hpp"
-#include "stepping/stepper.hpp"
 #include "rows/units.hpp"
+#include "stepping/stepper.hpp"
 
 namespace {
 

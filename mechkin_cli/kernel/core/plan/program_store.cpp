@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstring>
 
+#include "rows/units.hpp"
 #include "stepping/stepper.hpp"
 #include "tape/tape.hpp"
-#include "rows/units.hpp"
 
 namespace {
 

@@ -8,13 +8,13 @@
 
 #include <vector>
 
-#include "rows/aligned.hpp"
+#include "integrator/integrator.hpp"
 #include "response/charted_friction.hpp"
 #include "response/crossing_curve.hpp"
 #include "response/driven_laws.hpp"
-#include "integrator/integrator.hpp"
 #include "response/motion_unit.hpp"
 #include "response/slip_trial.hpp"
+#include "rows/aligned.hpp"
 #include "stepping/stepper.hpp"
 
 // Where a lane begins.

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "proofs/enclosing_unit.hpp"
-#include "rows/double_double_unit.hpp"
 #include "response/motion_unit.hpp"
+#include "rows/double_double_unit.hpp"
 #include "rows/unit.hpp"
 
 // The widest unit that the processor and the operating system support; `lanes` 2, 4 or 8 asks for that

@@ -6,12 +6,12 @@
 #include <memory>
 #include <utility>
 
-#include "rows/assembly_size.hpp"
-#include "stepping/dimension_path.hpp"
 #include "plan/program_store.hpp"
+#include "rows/assembly_size.hpp"
 #include "rows/run.hpp"
 #include "rows/threads.hpp"
 #include "rows/units.hpp"
+#include "stepping/dimension_path.hpp"
 
 namespace {
 
