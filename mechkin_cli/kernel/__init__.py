@@ -1,7 +1,7 @@
 """The compiled core, and how to speak to it.
 
-`_kernel` is built from `src/`; `functions` are its elementary functions, `batch` runs a plan over
-many rows.
+`_kernel` is built from `core/`, which knows no Python, and its skin `python/`; `functions` are
+its elementary functions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The compiled core; see src/module.cpp. Batched arrays are (columns, rows), C-contiguous
+"""The compiled core; see python/module.cpp. Batched arrays are (columns, rows), C-contiguous
 float64; in double-double (columns, 2, rows), high and low."""
 
 from collections.abc import Callable, Sequence
@@ -449,7 +449,7 @@ class VariantEnd(IntEnum):
     INCOMPLETE = 3
 
 class Variants:
-    """Many variants of one plan; see src/variants.hpp. Tables are (inputs, rows)."""
+    """Many variants of one plan; see core/stepping/variants.hpp. Tables are (inputs, rows)."""
 
     def __init__(
         self,
@@ -487,7 +487,8 @@ class Variants:
         """How the continuation ended, size (m) and states of one variant's first assembly."""
 
 class Positions:
-    """Single positions near known rows; see src/positions.hpp. Tables are (columns, rows)."""
+    """Single positions near known rows; see core/stepping/positions.hpp. Tables are
+    (columns, rows)."""
 
     def __init__(
         self,
@@ -513,7 +514,7 @@ class Positions:
         branch does not lead there."""
 
 class StepLimits:
-    """What a step along a path may do; see StepLimits in src/stepper.hpp.
+    """What a step along a path may do; see StepLimits in core/stepping/stepper.hpp.
 
     ValueError for a cosine beyond 1, another number below 0 or nan, more than a million steps.
     """
@@ -578,7 +579,7 @@ class Node:
     def turn(self) -> Floats: ...
 
 class Stepper:
-    """One step along a path: predict, close, judge; see src/stepper.hpp."""
+    """One step along a path: predict, close, judge; see core/stepping/stepper.hpp."""
 
     @staticmethod
     def straight(
@@ -735,7 +736,7 @@ def prove_boxes(
 ) -> None:
     """Whether there is exactly one position in a box about each of some states (states, places),
     whose inputs are `off` (inputs, places) at most; `follows` (equations,) says which hold where
-    the others do; see src/certify/proving_unit.hpp."""
+    the others do; see core/proofs/proving_unit.hpp."""
 
 def prove_tubes(
     plan: Plan,
@@ -755,4 +756,4 @@ def prove_tubes(
     width: Floats,
 ) -> tuple[int, int]:
     """Joins boxes by tubes along a way: how many there are, and how many were tried; see
-    src/certify/tubes.hpp."""
+    core/proofs/tubes.hpp."""

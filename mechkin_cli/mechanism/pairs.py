@@ -2,7 +2,7 @@
 
 Its closing equations, with their derivatives, the wrenches they transmit and the side condition
 that tells an assembly from a false root of them, are composed in the kernel's entry of the letter
-`closing` (kernel/src/pairs.hpp).
+`closing` (kernel/core/joints/pairs.hpp).
 """
 
 from __future__ import annotations
@@ -268,7 +268,7 @@ CLOSING_CONDITIONS = {
     "W": (_POINT, _ORIENTATION),
 }
 """By the letter of a closing pair the elementary conditions of its equations, in their order
-(kernel/src/pairs.hpp), where nothing but a joint's frames stands in them."""
+(kernel/core/joints/pairs.hpp), where nothing but a joint's frames stands in them."""
 
 
 _ALONG = {"x": _X1, "y": _Y1, "z": _Z1}

@@ -2,8 +2,8 @@
 
 An expression is evaluated once on numbers that write down what is computed with them, so that the
 program's operations are those of `Expression.evaluate` in their order, and its bits are the same
-(`kernel/src/quantity_program.hpp`). The values of loads that vary are such a program of the plan;
-others serve numbers that are asked for while a motion is integrated.
+(`kernel/core/forces/quantity_program.hpp`). The values of loads that vary are such a program of the
+plan; others serve numbers that are asked for while a motion is integrated.
 """
 
 from __future__ import annotations

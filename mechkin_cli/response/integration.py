@@ -1,5 +1,5 @@
 """A session of what moves freely: its plan has a chart in place of the free inputs, and the
-kernel integrates its motion (kernel/src/charted_motion.hpp).
+kernel integrates its motion (kernel/core/response/charted_motion.hpp).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Following a branch along the rows of a sweep: guesses for every row, where it ended.
 
-The kernel does the work in one call (kernel/src/polyline.cpp), linear in the rows.
+The kernel does the work in one call (kernel/core/stepping/polyline.cpp), linear in the rows.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ def find_runaway(layout: Layout, state: Floats) -> Runaway | None:
 # bounds, or no clear reason.
 #
 # Dead centres and branch points are located while the branch is followed, by arclength
-# (kernel/src/passage.cpp); never as minima of a determinant.
+# (kernel/core/stepping/passage.cpp); never as minima of a determinant.
 
 
 class BranchFold(NamedTuple):

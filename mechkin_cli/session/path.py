@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 Piece = tuple[int, int, float, float, float, float]
-"""First and last place, parameters there, scale and power (kernel/src/course.hpp)."""
+"""First and last place, parameters there, scale and power (kernel/core/stepping/course.hpp)."""
 
 LENGTH_SAMPLES = 33
 """Places from which the length of a cell's way is read: a scale only."""

@@ -3,8 +3,8 @@ subgroup (docs/numerics.md, Proofs).
 
 In an assembly of the drawing the frames A and B of the closing joint coincide, and elsewhere B is
 moved against A by a displacement D of the subgroup, whatever the coordinates are. So of the joint's
-elementary conditions (kernel/src/pairs.hpp), with d = B.o - A.o, n the normal of a plane loop and O
-the centre of a spherical one,
+elementary conditions (kernel/core/joints/pairs.hpp), with d = B.o - A.o, n the normal of a plane
+loop and O the centre of a spherical one,
 
 - directions: none turns in a translational loop, and n in none of a plane loop; where D turns about
   n, one equation that is the sine of its angle, times what is not zero, leaves no angle but zero

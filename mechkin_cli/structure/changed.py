@@ -1,6 +1,6 @@
 """The solver graph of a free motion: what were its inputs is solved for, too.
 
-A chart's equations (kernel/src/chart.hpp) take the place of the inputs, and all loops are one
+A chart's equations (kernel/core/rows/chart.hpp) take the place of the inputs, and all loops are one
 block: which of them hang on which coordinate changes along a motion, and no coordinate is to have
 a dead centre.
 """

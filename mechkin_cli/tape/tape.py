@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# The operations of a tape, by the numbers that stand in it (`kernel/src/tape.hpp`).
+# The operations of a tape, by the numbers that stand in it (`kernel/core/tape/tape.hpp`).
 
 
 class Operation(IntEnum):

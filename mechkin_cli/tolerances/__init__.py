@@ -5,7 +5,7 @@ a name stands once. Lengths are scaled by the mechanism's size (diagonal of the 
 points at the first row) before they meet a limit, so the numbers are pure or radians.
 
 The kernel is given its limits from here. What it keeps itself belongs to one algorithm each and
-stands beside it with its reason (`kernel/src/`):
+stands beside it with its reason (`kernel/core/`):
 
 * `condition.hpp`: the condition up to which the estimate stands, 1e6, and how far its factors may
   be off, 5e-4; beyond, the condition is computed to rounding;

@@ -2,7 +2,7 @@
 
 Constants of plan and outputs, and the inputs where they depend on a parameter, are replayed; graph,
 structure and length unit stay the base's. A variant starts from the base's first assembly, along
-the straight line in the parameters (kernel/src/variants.hpp).
+the straight line in the parameters (kernel/core/stepping/variants.hpp).
 """
 
 from __future__ import annotations

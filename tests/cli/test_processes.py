@@ -118,7 +118,7 @@ def test_letters_that_a_terminal_lacks_are_no_error(tmp_path: Path) -> None:
 
 def test_a_missing_core_is_one_sentence_with_the_cure(tmp_path: Path) -> None:
     source = Path(mechkin_cli.__file__).parent
-    leave_out = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__", "src")
+    leave_out = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__", "src", "core", "python")
     shutil.copytree(source, tmp_path / "source/mechkin_cli", ignore=leave_out)
     found = run("analyze", RCSR, cwd=tmp_path, PYTHONPATH=str(tmp_path / "source"))
     assert (found.returncode, found.stdout) == (70, "")
@@ -130,7 +130,7 @@ def test_a_missing_core_is_one_sentence_with_the_cure(tmp_path: Path) -> None:
 @pytest.mark.parametrize("command", [("--help",), ("schema",)])
 def test_what_needs_no_core_runs_without_it(tmp_path: Path, command: tuple[str, ...]) -> None:
     source = Path(mechkin_cli.__file__).parent
-    leave_out = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__", "src")
+    leave_out = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__", "src", "core", "python")
     shutil.copytree(source, tmp_path / "source/mechkin_cli", ignore=leave_out)
     found = run(*command, cwd=tmp_path, PYTHONPATH=str(tmp_path / "source"))
     assert (found.returncode, found.stderr) == (0, "")

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-SOURCES = Path(__file__).parents[2] / "mechkin_cli" / "kernel" / "src"
+SOURCES = Path(__file__).parents[2] / "mechkin_cli" / "kernel" / "core"
 FLAGS = ["-std=c++17", "-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fPIC"]
 FLAGS += ["-fvisibility=hidden", "-Wno-psabi"]
 

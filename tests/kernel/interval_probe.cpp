@@ -1,5 +1,5 @@
 // The arithmetic and functions of intervals over arrays, behind one plain C function for the tests.
-#include "elementary.hpp"
+#include "arithmetic/elementary.hpp"
 
 namespace {
 

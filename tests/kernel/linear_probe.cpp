@@ -1,6 +1,6 @@
 // The kernel's linear algebra for one pack, behind plain C functions for the tests.
-#include "condition_estimate.hpp"
-#include "factors.hpp"
+#include "rows/condition_estimate.hpp"
+#include "rows/factors.hpp"
 
 namespace {
 

@@ -55,7 +55,7 @@ TEXTBOOK = """\
 PAGE = "| `Rg` | s, theta | pin of the second link in a `slot` of the first; `axis` of the pin |\n"
 
 ADDITIONS = {
-    "mechkin_cli/kernel/src/pairs.hpp": (
+    "mechkin_cli/kernel/core/joints/pairs.hpp": (
         ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
         ("WeldInPlane>;", "PinInTrack, "),
     ),

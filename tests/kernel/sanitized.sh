@@ -20,7 +20,7 @@ mkdir -p "$folder/package"
 rm -rf "$folder/package/mechkin_cli"
 cp -r "$here/mechkin_cli" "$folder/package/"
 rm -f "$folder"/package/mechkin_cli/kernel/_kernel*.so
-cp "$folder"/build/_kernel*.so "$folder/package/mechkin_cli/kernel/"
+cp "$folder"/build/python/_kernel*.so "$folder/package/mechkin_cli/kernel/"
 
 # an editable installation would come before the copy
 cat > "$folder/package/sitecustomize.py" <<END

@@ -27,7 +27,7 @@ from kernel.test_power_balance import MECHANISM as LOADED
 
 ROOT = Path(__file__).parents[2]
 KEPT = ("mechkin_cli", "schemas", "tests", "docs", "README.md", "LICENSE", "pyproject.toml")
-SOURCE = "mechkin_cli/kernel/src/wrenches.hpp"
+SOURCE = "mechkin_cli/kernel/core/forces/wrenches.hpp"
 WEIGHT = "const Wrench weight = force_at(centre, Pack(m.mass) * g);"
 FAULT = WEIGHT.replace("Pack(m.mass)", "Pack(0.5) * Pack(m.mass)")
 NEAR = 1e-13

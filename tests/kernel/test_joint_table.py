@@ -167,7 +167,8 @@ SPELLED = {
 
 def test_conditions_are_those_of_the_kernel_in_their_order() -> None:
     """What `solver.redundancy` knows of an equation is said of the right one."""
-    text = (Path(__file__).parents[2] / "mechkin_cli/kernel/src/pairs.hpp").read_text("utf-8")
+    source = Path(__file__).parents[2] / "mechkin_cli/kernel/core/joints/pairs.hpp"
+    text = source.read_text("utf-8")
     kernel = {}
     for conditions, letter in PAIR.findall(text):
         names = re.findall(r"\w+(?:<\w+>)?", conditions)

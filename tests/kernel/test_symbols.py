@@ -42,7 +42,7 @@ PLAIN = ["-O3", "-c", "-fno-exceptions", "-fno-rtti"]
 OF_DOUBLES = [f"{kind}_{name}" for kind in ("unit", "motion") for name in UNITS]
 OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
 OF_INTERVALS = [f"enclosing_{name}" for name in DOUBLE_DOUBLE]
-FOLDERS = {"unit": "", "motion": "", "double_double": "", "enclosing": "certify"}
+FOLDERS = {"unit": "rows", "motion": "response", "double_double": "rows", "enclosing": "proofs"}
 NAMES = {"unit": "UNIT", "motion": "MOTION", "double_double": "UNIT", "enclosing": "ENCLOSING"}
 
 
@@ -130,7 +130,7 @@ def test_the_built_module_fuses_nothing_else() -> None:
 
 def test_the_build_compiles_the_same_units() -> None:
     """The flags above are those of CMakeLists.txt."""
-    build = (SOURCES.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+    build = (SOURCES / "CMakeLists.txt").read_text(encoding="utf-8")
     assert "-ffp-contract=off" in build
     units = re.findall(r"^ *mechkin_unit\((\w+) (\d)([^)]*)\)", build, re.MULTILINE)
     assert {name: (int(lanes), flags.split()) for name, lanes, flags in units} == UNITS

@@ -1,5 +1,5 @@
 // The arithmetic and functions of Taylor models, behind one plain C function for the tests.
-#include "elementary.hpp"
+#include "arithmetic/elementary.hpp"
 
 extern "C" __attribute__((visibility("default"))) int parts() { return PARTS; }
 

@@ -1,0 +1,288 @@
+#include "arithmetic/dense.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <type_traits>
+
+namespace {
+
+// Calls f with a size known to the compiler up to 6, else with 0.
+template <class F>
+void with_size(int n, F&& f) {
+  switch (n) {
+    case 1: return f(std::integral_constant<int, 1>());
+    case 2: return f(std::integral_constant<int, 2>());
+    case 3: return f(std::integral_constant<int, 3>());
+    case 4: return f(std::integral_constant<int, 4>());
+    case 5: return f(std::integral_constant<int, 5>());
+    case 6: return f(std::integral_constant<int, 6>());
+    default: return f(std::integral_constant<int, 0>());
+  }
+}
+
+// LeastSquares::solve for all columns of x at once, N x N or, with 0, of any size; the first rows are the solution.
+template <int N>
+void solve_columns(const Matrix& matrix, const Entries& pivots, const Entries& betas, Matrix* solution) {
+  const int m = N ? N : matrix.rows, n = N ? N : matrix.columns, columns = N ? N : solution->columns;
+  const double *const a = matrix.a.begin(), *const pivot = pivots.begin(), *const beta = betas.begin();
+  double* const x = solution->a.begin();
+  Entries sums(N ? 0 : columns);
+  double sized[N ? N : 1];
+  double* const sum = N ? sized : sums.begin();
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < columns; ++j) sum[j] = 0.0;
+    for (int i = k; i < m; ++i)
+      for (int j = 0; j < columns; ++j) sum[j] += a[i * n + k] * x[i * columns + j];
+    for (int j = 0; j < columns; ++j) sum[j] *= beta[k];
+    for (int i = k; i < m; ++i)
+      for (int j = 0; j < columns; ++j) x[i * columns + j] -= sum[j] * a[i * n + k];
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int i = k + 1; i < n; ++i)
+      for (int j = 0; j < columns; ++j) x[k * columns + j] -= a[k * n + i] * x[i * columns + j];
+    for (int j = 0; j < columns; ++j) x[k * columns + j] /= pivot[k];
+  }
+}
+
+// The factors of LeastSquares, likewise.
+template <int N>
+void reflect(Matrix* matrix, Entries* pivots, Entries* betas) {
+  const int m = N ? N : matrix->rows, n = N ? N : matrix->columns;
+  double *const a = matrix->a.begin(), *const pivot = pivots->begin(), *const beta = betas->begin();
+  for (int k = 0; k < n; ++k) {
+    double square = 0.0;
+    for (int i = k; i < m; ++i) square += a[i * n + k] * a[i * n + k];
+    const double first = a[k * n + k], length = std::copysign(std::sqrt(square), first);
+    pivot[k] = -length;
+    a[k * n + k] = first + length;
+    const double v2 = 2.0 * (square + std::fabs(first * length));
+    beta[k] = v2 > 0.0 ? 2.0 / v2 : 0.0;
+    for (int j = k + 1; j < n; ++j) {
+      double s = 0.0;
+      for (int i = k; i < m; ++i) s += a[i * n + k] * a[i * n + j];
+      s *= beta[k];
+      for (int i = k; i < m; ++i) a[i * n + j] -= s * a[i * n + k];
+    }
+  }
+}
+
+// Sum of the squares of R^-1, column by column.
+template <int N>
+double inverse_square(const Matrix& matrix, const Entries& pivots) {
+  const int n = N ? N : matrix.columns;
+  const double *const a = matrix.a.begin(), *const pivot = pivots.begin();
+  Entries entries(N ? 0 : n);
+  double sized[N ? N : 1];
+  double* const x = N ? sized : entries.begin();
+  double square = 0.0;
+  for (int c = 0; c < n; ++c) {
+    for (int k = 0; k < c; ++k) x[k] = 0.0;
+    x[c] = 1.0;
+    for (int k = c; k >= 0; --k) {
+      for (int j = k + 1; j <= c; ++j) x[k] -= a[k * n + j] * x[j];
+      x[k] /= pivot[k];
+      square += x[k] * x[k];
+    }
+  }
+  return square;
+}
+
+template <int N>
+void square_into(const Matrix& e, Matrix* product) {
+  const int n = N ? N : e.rows;
+  const double* const a = e.a.begin();
+  double* const out = product->a.begin();
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) out[i * n + j] += a[i * n + k] * a[k * n + j];
+}
+
+}  // namespace
+
+LeastSquares::LeastSquares(Matrix matrix) : a_(std::move(matrix)), pivot_(a_.columns), beta_(a_.columns) {
+  with_size(a_.rows == a_.columns ? a_.columns : 0,
+            [this](auto size) { reflect<size()>(&a_, &pivot_, &beta_); });
+}
+
+std::vector<double> LeastSquares::solve(std::vector<double> b) const {
+  const int m = a_.rows, n = a_.columns;
+  for (int k = 0; k < n; ++k) {
+    double s = 0.0;
+    for (int i = k; i < m; ++i) s += a_(i, k) * b[i];
+    s *= beta_[k];
+    for (int i = k; i < m; ++i) b[i] -= s * a_(i, k);
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) b[k] -= a_(k, j) * b[j];
+    b[k] /= pivot_[k];
+  }
+  b.resize(n);
+  return b;
+}
+
+Matrix LeastSquares::solve(const Matrix& b) const {
+  const int n = a_.columns;
+  Matrix x = b;
+  if (a_.rows == n && b.columns == n) {
+    with_size(n, [&](auto size) { solve_columns<size()>(a_, pivot_, beta_, &x); });
+    return x;
+  }
+  solve_columns<0>(a_, pivot_, beta_, &x);
+  Matrix solution(n, b.columns);
+  std::copy(x.a.begin(), x.a.begin() + solution.a.size(), solution.a.begin());
+  return solution;
+}
+
+double LeastSquares::least_pivot() const {
+  double least = pivot_.size() == 0 ? 1.0 : std::fabs(pivot_[0]);
+  for (double p : pivot_) least = std::fmin(least, std::fabs(p));
+  return least;
+}
+
+double LeastSquares::least_singular_bound() const {
+  const int n = a_.columns;
+  double square = 0.0;
+  with_size(n, [&](auto size) { square = inverse_square<size()>(a_, pivot_); });
+  return square > 0.0 ? 1.0 / std::sqrt(square) : n ? 0.0 : HUGE_VAL;
+}
+
+namespace {
+
+double norm(const Matrix& e) {
+  double square = 0.0;
+  for (double x : e.a) square += x * x;
+  return std::sqrt(square);
+}
+
+Matrix squared(const Matrix& e) {
+  Matrix product(e.rows, e.rows);
+  with_size(e.rows, [&](auto size) { square_into<size()>(e, &product); });
+  return product;
+}
+
+// Calls use(bound) with one bound after the other until it says that this is enough. The powers are kept near 1: bounds
+// as 2^-k of the logarithm would need one, roots do not.
+template <class Use>
+void spectral_bounds(Matrix e, Use&& use) {
+  double scale = 1.0;  // of the power so far: |E^(2^k)|^(1/2^k) = scale |power|^(1/2^k)
+  for (int k = 0;; ++k) {
+    const double size = norm(e);
+    if (!(size < HUGE_VAL)) return;
+    double root = size;
+    for (int i = 0; i < k; ++i) root = std::sqrt(root);
+    if (use(scale * root) || k == 5 || size == 0.0) return;
+    for (double& x : e.a) x /= size;
+    scale *= root;
+    e = squared(e);
+  }
+}
+
+}  // namespace
+
+bool spectral_radius_within(Matrix e, double limit) {
+  bool within = false;
+  spectral_bounds(std::move(e), [&](double bound) { return within = bound <= limit; });
+  return within;
+}
+
+double spectral_radius_bound(Matrix e) {
+  double least = HUGE_VAL;
+  spectral_bounds(std::move(e), [&](double bound) {
+    const bool enough = bound > 0.9 * least;
+    least = std::fmin(least, bound);
+    return enough;
+  });
+  return least;
+}
+
+Singular singular_vectors(Matrix a) {
+  const int m = a.rows, n = a.columns;
+  Matrix v(n, n);
+  for (int i = 0; i < n; ++i) v(i, i) = 1.0;
+  const auto product = [&](int p, int q) {
+    double s = 0.0;
+    for (int i = 0; i < m; ++i) s += a(i, p) * a(i, q);
+    return s;
+  };
+  const auto rotate = [](Matrix& x, int p, int q, double c, double s) {
+    for (int i = 0; i < x.rows; ++i) {
+      const double one = x(i, p), other = x(i, q);
+      x(i, p) = c * one - s * other, x(i, q) = s * one + c * other;
+    }
+  };
+  bool again = true;
+  // convergence takes some six to ten sweeps
+  for (int sweep = 0; again && sweep < 30; ++sweep) {
+    again = false;
+    for (int p = 0; p < n; ++p)
+      for (int q = p + 1; q < n; ++q) {
+        const double gamma = product(p, q), one = product(p, p), other = product(q, q);
+        // orthogonal to ten roundings
+        if (!(std::fabs(gamma) > 1e-15 * std::sqrt(one * other)) || !(std::fabs(gamma) > 1e-300)) continue;
+        again = true;
+        const double zeta = (other - one) / (2.0 * gamma);
+        const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::sqrt(1.0 + zeta * zeta));
+        const double c = 1.0 / std::sqrt(1.0 + t * t);
+        rotate(a, p, q, c, c * t), rotate(v, p, q, c, c * t);
+      }
+  }
+  std::vector<double> size(n);
+  for (int j = 0; j < n; ++j) size[j] = std::sqrt(product(j, j));
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return size[i] > size[j]; });
+  Singular found = {std::vector<double>(n), Matrix(n, n)};
+  for (int j = 0; j < n; ++j) {
+    found.value[j] = size[order[j]];
+    for (int i = 0; i < n; ++i) found.v(i, j) = v(i, order[j]);
+  }
+  return found;
+}
+
+Matrix with_row(const Matrix& a, const std::vector<double>& row) {
+  Matrix b(a.rows + 1, a.columns);
+  std::copy(a.a.begin(), a.a.end(), b.a.begin());
+  std::copy(row.begin(), row.end(), b.a.begin() + a.a.size());
+  return b;
+}
+
+Matrix with_column(const Matrix& a, const std::vector<double>& column, double factor) {
+  Matrix b(a.rows, a.columns + 1);
+  for (int i = 0; i < a.rows; ++i) {
+    for (int j = 0; j < a.columns; ++j) b(i, j) = a(i, j);
+    b(i, a.columns) = column[i] * factor;
+  }
+  return b;
+}
+
+Matrix transposed(const Matrix& a) {
+  Matrix t(a.columns, a.rows);
+  for (int i = 0; i < a.rows; ++i)
+    for (int j = 0; j < a.columns; ++j) t(j, i) = a(i, j);
+  return t;
+}
+
+void subtract_identity(Matrix* a) {
+  for (int i = 0; i < a->rows; ++i) (*a)(i, i) -= 1.0;
+}
+
+double determinant(Matrix a) {
+  const int n = a.rows;
+  double product = 1.0;
+  for (int k = 0; k < n; ++k) {
+    int best = k;
+    for (int i = k + 1; i < n; ++i)
+      if (std::fabs(a(i, k)) > std::fabs(a(best, k))) best = i;
+    if (best != k) {
+      for (int j = 0; j < n; ++j) std::swap(a(k, j), a(best, j));
+      product = -product;
+    }
+    product *= a(k, k);
+    for (int i = k + 1; i < n; ++i) {
+      const double f = a(i, k) / a(k, k);
+      for (int j = k; j < n; ++j) a(i, j) -= f * a(k, j);
+    }
+  }
+  return product;
+}

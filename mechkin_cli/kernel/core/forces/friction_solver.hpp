@@ -1,0 +1,293 @@
+// The loads of joints that rub, from each other (docs/friction.md).
+//
+// A friction force is its coefficient times a normal load, a normal load a sum of magnitudes of what the contacts carry,
+// and that is linear in the friction forces:
+//
+//     z_k = mu_k N_k(z),    N_k(z) = sum over contacts of weight |base + sum_j gain_j z_j|
+//
+// Solved by semismooth Newton. With L_kj = mu_k sum weight |gain_j| the right-hand side is a contraction where the
+// spectral radius of L is below 1, in the maximum norm weighted by w = (I - L)^-1 1: there is one solution. In that norm the
+// residual falls along Newton's step, which is halved where it does not fall enough; z := mu N(z) leads on wherever that
+// does not. w > 0 with L w < w proves that radius (Collatz 1942), and is there whenever it is below 1 (Berman and
+// Plemmons, Nonnegative Matrices, 1979, chapter 6).
+#pragma once
+
+#include "rows/position.hpp"
+
+namespace {
+
+// By how much L w must be below w: far above the rounding of a few dozen sums, far below what tells friction that jams.
+constexpr double CONTRACTION_MARGIN = 1e-12;
+// Residuals, in parts of the largest friction force: a few roundings of the sums; where Newton gets no further; accepted.
+constexpr double FRICTION_TIGHT = PARTS == 1 ? 4e-15 : 2e-30, FRICTION_STALLED = PARTS == 1 ? 1e-12 : 1e-27,
+                 FRICTION_ACCEPT = PARTS == 1 ? 1e-10 : 1e-25;
+constexpr int FRICTION_ITERATIONS = 60;
+// Softness of magnitudes in parts of the loads at which they hardly bend, and steps, two for each halving, to their rounding.
+constexpr double FRICTION_SOFTEST = 16.0;
+constexpr int FRICTION_LEVELS = 112;
+// Part of Newton's step below which z := mu N(z) is taken instead: at kinks of the magnitudes steps of an eighth help.
+constexpr double FRICTION_SHORTEST = 1.0 / 1024.0;
+
+MECHKIN_INLINE Pack magnitude(const Vec3& a) { return sqrt(dot(a, a)); }
+MECHKIN_INLINE Pack sum_of_components(const Vec3& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+// At least |a|, at most 1.16 times as much: it is linear wherever one component is the largest, and not below |a| on the
+// edges of that region, (1, 0, 0), (1, 1, 0) and (1, 1, 1).
+MECHKIN_INLINE Pack above_magnitude(const Vec3& a) {
+  constexpr double ROOT_LESS_ONE = 0.4142135623730951;
+  return Pack(ROOT_LESS_ONE) * sum_of_components(a) +
+         Pack(1.0 - ROOT_LESS_ONE) * max(abs(a.x), max(abs(a.y), abs(a.z)));
+}
+
+// The Lipschitz matrix L of the friction forces into r.bound, `size` being at least the length of a vector.
+template <class Size>
+MECHKIN_INLINE void bound_friction(const Plan& p, const Rubbing& r, Size&& size) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j) {
+      Pack sum = 0.0;
+      for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+        sum += Pack(p.contact[c].weight) * size(r.gain[c * n + j]);
+      r.bound[k * n + j] = r.coefficient[k] * sum;
+    }
+}
+
+// Friction k where L w < w.
+MECHKIN_INLINE Mask contracts(const Rubbing& r, int n, int k, const Pack* weight) {
+  Pack sum = 0.0;
+  for (int j = 0; j < n; ++j) sum += r.bound[k * n + j] * weight[j];
+  return sum <= Pack(1.0 - CONTRACTION_MARGIN) * weight[k];
+}
+
+MECHKIN_INLINE Mask doubtful(const Rubbing& r, int k) { return r.state[k] == Pack((double)FRICTION_NOT_UNIQUE); }
+
+// w = (I - L)^-1 1 into r.step, L from r.bound.
+inline void weigh(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) {
+    r.step[k] = 1.0;
+    for (int j = 0; j < n; ++j) r.matrix[k * n + j] = Pack(k == j ? 1.0 : 0.0) - r.bound[k * n + j];
+  }
+  const Factors f = {r.matrix, r.swap, n};
+  factor(f);
+  solve(f, r.step);
+}
+// Whether these weights, of which only good ones are positive numbers, prove friction k.
+MECHKIN_INLINE Mask weights_prove(const Rubbing& r, int n, int k) {
+  const Mask finite = (r.step[k] > Pack(0.0)) & (r.step[k] < Pack(__builtin_inf()));
+  return finite & contracts(r, n, k, r.step);
+}
+
+// As prove_unique, for lanes that are not `proven` yet; the matrix L is in r.bound.
+inline void prove_thoroughly(const Plan& p, const Rubbing& r, Mask proven) {
+  const int n = p.frictions;
+  weigh(p, r);
+  Mask all_good = all_lanes(true);
+  for (int k = 0; k < n; ++k) {
+    const Mask good = proven | weights_prove(r, n, k);
+    r.state[k] = select(good, r.state[k], Pack((double)FRICTION_NOT_UNIQUE));
+    all_good = all_good & good;
+  }
+  for (int round = 0; round < n && !all(all_good); ++round)
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j) {
+        const Mask follows = doubtful(r, j) & ~(r.bound[k * n + j] == Pack(0.0));
+        r.state[k] = select(follows, Pack((double)FRICTION_NOT_UNIQUE), r.state[k]);
+      }
+  for (int k = 0; k < n; ++k) {
+    r.coefficient[k] = select(doubtful(r, k), Pack(0.0), r.coefficient[k]);
+    r.weight[k] = select(proven, r.weight[k], select(doubtful(r, k), Pack(1.0), r.step[k]));
+  }
+}
+
+// The weights w of the norm in which friction contracts; those that no proof holds for, and all that depend on them, are
+// marked in r.state and have no friction.
+inline void prove_unique(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) r.weight[k] = 1.0;
+  // by a bound without roots first, which mostly does
+  bound_friction(p, r, [](Vec3 a) { return above_magnitude(a); });
+  Mask plainly = all_lanes(true), weighed = all_lanes(true);
+  for (int k = 0; k < n; ++k) plainly = plainly & contracts(r, n, k, r.weight);
+  if (all(plainly)) return;
+  weigh(p, r);
+  for (int k = 0; k < n; ++k) weighed = weighed & weights_prove(r, n, k);
+  for (int k = 0; k < n; ++k) r.weight[k] = select(weighed & ~plainly, r.step[k], r.weight[k]);
+  const Mask proven = plainly | weighed;
+  if (all(proven)) return;
+  bound_friction(p, r, [](Vec3 a) { return magnitude(a); });
+  prove_thoroughly(p, r, proven);
+}
+
+// What a contact carries with the friction forces in r.force. One along a direction has a single component.
+MECHKIN_INLINE Vec3 contact_load(const Plan& p, const Rubbing& r, int c) {
+  const int n = p.frictions;
+  const Vec3* const gain = r.gain + c * n;
+  Vec3 load = r.base[c];
+  if (p.contact[c].code == CONTACT_ALONG)
+    for (int j = 0; j < n; ++j) load.x += r.force[j] * gain[j].x;
+  else
+    for (int j = 0; j < n; ++j) load += r.force[j] * gain[j];
+  return load;
+}
+
+// Normal loads of the friction forces in r.force, with the contacts' loads and their magnitudes, and mu N - z into r.right.
+inline void load_contacts(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) {
+    Pack normal = 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+      const Vec3 load = contact_load(p, r, c);
+      r.load[c] = load;
+      r.size[c] = sqrt(dot(load, load) + r.softness * r.softness);
+      normal += Pack(p.contact[c].weight) * r.size[c];
+    }
+    r.normal[k] = normal;
+    r.right[k] = r.coefficient[k] * normal - r.force[k];
+  }
+}
+
+// Newton's matrix I - mu dN/dz there.
+inline void differentiate_loads(const Plan& p, const Rubbing& r) {
+  const int n = p.frictions;
+  for (int k = 0; k < n; ++k) {
+    Pack* const row = r.matrix + k * n;
+    for (int j = 0; j < n; ++j) row[j] = k == j ? 1.0 : 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c) {
+      const Mask none = r.size[c] == Pack(0.0);
+      const Vec3 along = select(none, Pack(0.0), Pack(1.0) / select(none, Pack(1.0), r.size[c])) * r.load[c];
+      const Pack share = r.coefficient[k] * Pack(p.contact[c].weight);
+      const Vec3* const gain = r.gain + c * n;
+      if (p.contact[c].code == CONTACT_ALONG)
+        for (int j = 0; j < n; ++j) row[j] -= share * (along.x * gain[j].x);
+      else
+        for (int j = 0; j < n; ++j) row[j] -= share * dot(along, gain[j]);
+    }
+  }
+}
+
+// r.right := r.matrix^-1 r.right. Where friction contracts the matrix is diagonally dominant, columns in parts of w, and
+// needs no exchange of rows (Varga, On recurring theorems on diagonal dominance, 1976).
+inline void eliminate(const Rubbing& r, int n) {
+  for (int k = 0; k < n; ++k) {
+    const Pack inverse = Pack(1.0) / r.matrix[k * n + k];
+    r.matrix[k * n + k] = inverse;
+    for (int i = k + 1; i < n; ++i) {
+      const Pack l = r.matrix[i * n + k] * inverse;
+      for (int j = k + 1; j < n; ++j) r.matrix[i * n + j] -= l * r.matrix[k * n + j];
+      r.right[i] -= l * r.right[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; --k) {
+    for (int j = k + 1; j < n; ++j) r.right[k] -= r.matrix[k * n + j] * r.right[j];
+    r.right[k] *= r.matrix[k * n + k];
+  }
+}
+
+// What is left of the equations, and the largest friction force, in the norm in which friction contracts.
+struct LeftOver {
+  Pack left, scale;
+};
+inline LeftOver left_over(const Plan& p, const Rubbing& r) {
+  LeftOver found = {Pack(0.0), Pack(0.0)};
+  for (int k = 0; k < p.frictions; ++k) {
+    const Pack per = Pack(1.0) / r.weight[k], part = abs(r.right[k]) * per;
+    found.left = select(part <= found.left, found.left, part);  // a NaN wins
+    found.scale = max(max(abs(r.force[k]), r.coefficient[k] * r.normal[k]) * per, found.scale);
+  }
+  return found;
+}
+
+// Newton's method from r.force on for lanes that are not `done`; loads and residuals of all are those of r.force after it.
+inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
+  const int n = p.frictions;
+  // each lane tries a length of Newton's step from `origin`; that of zero stands for z := mu N(z)
+  Mask moved = all_lanes(false);
+  Pack before = __builtin_inf(), length = 0.0;
+  const Pack infinite = __builtin_inf();
+  for (int iteration = 0; iteration < FRICTION_ITERATIONS; ++iteration) {
+    load_contacts(p, r);
+    const LeftOver now = left_over(p, r);
+    const Mask back = ~done & (length > Pack(0.0)) & ~(now.left <= (Pack(1.0) - Pack(0.1) * length) * before);
+    done = done | (~back & (now.left <= Pack(FRICTION_TIGHT) * now.scale));
+    done = done | (back & (before <= Pack(FRICTION_STALLED) * now.scale));
+    done = done | ~(now.left < infinite);  // nothing to hope for
+    moved = back;
+    const Mask shorter = back & (length > Pack(FRICTION_SHORTEST)) & ~done;
+    const Mask plain = back & ~shorter;
+    length = select(shorter, Pack(0.5) * length, Pack(1.0));
+    if (any(back)) {
+      for (int k = 0; k < n; ++k) {
+        r.force[k] = select(shorter, r.origin[k] + length * r.newton[k], r.force[k]);
+        r.force[k] = select(plain, r.step[k], r.force[k]);
+      }
+      length = select(plain, Pack(0.0), length);
+    }
+    if (all(done)) break;
+    const Mask go = ~back & ~done;
+    before = select(go, now.left, before);
+    if (!any(go)) continue;
+    for (int k = 0; k < n; ++k) {
+      r.origin[k] = select(go, r.force[k], r.origin[k]);
+      r.step[k] = select(go, r.force[k] + r.right[k], r.step[k]);
+    }
+    differentiate_loads(p, r);
+    eliminate(r, n);
+    for (int k = 0; k < n; ++k) {
+      r.newton[k] = select(go, r.right[k], r.newton[k]);
+      r.force[k] = select(go, r.force[k] + r.right[k], r.force[k]);
+    }
+  }
+  // where the forces were moved after their loads had been found, or were not found in time
+  if (any(moved) | !all(done)) load_contacts(p, r);
+}
+
+// A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the
+// same Lipschitz matrix; their solution is followed while the softness falls from far above the loads to their rounding.
+inline void start_softly(const Plan& p, Rubbing& r, Mask done) {
+  const int n = p.frictions;
+  Pack size = 0.0;
+  for (int c = 0; c < p.contacts; ++c) size = max(size, sum_of_components(r.base[c]));
+  for (int k = 0; k < n; ++k) {
+    r.origin[k] = r.force[k];
+    r.force[k] = select(done, r.force[k], Pack(0.0));
+  }
+  r.softness = Pack(FRICTION_SOFTEST) * size;
+  for (int level = 0; level < FRICTION_LEVELS; ++level) {
+    load_contacts(p, r);
+    differentiate_loads(p, r);
+    eliminate(r, n);
+    for (int k = 0; k < n; ++k) r.force[k] += r.right[k];
+    if (level & 1) r.softness *= Pack(0.5);
+  }
+  r.softness = 0.0;
+  for (int k = 0; k < n; ++k) r.force[k] = select(done, r.origin[k], r.force[k]);
+}
+
+// Friction forces into r.force, normal loads into r.normal, FrictionState into r.state where there is no answer, from
+// coefficients, base and gain; r.state is FRICTION_DECIDED.
+inline void solve_friction(const Plan& p, Rubbing& r) {
+  const int n = p.frictions;
+  prove_unique(p, r);
+  // by the reactions without friction
+  for (int k = 0; k < n; ++k) {
+    Pack normal = 0.0;
+    for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+      normal += Pack(p.contact[c].weight) * magnitude(r.base[c]);
+    r.force[k] = r.coefficient[k] * normal;
+  }
+  r.softness = 0.0;
+  iterate_friction(p, r, all_lanes(false));
+  LeftOver last = left_over(p, r);
+  Mask solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
+  if (all(solved)) return;
+  start_softly(p, r, solved);
+  iterate_friction(p, r, solved);
+  last = left_over(p, r);
+  solved = last.left <= Pack(FRICTION_ACCEPT) * last.scale;
+  for (int k = 0; k < n; ++k) {
+    const Mask open = ~solved & (r.state[k] == Pack((double)FRICTION_DECIDED));
+    r.state[k] = select(open, Pack((double)FRICTION_NOT_SOLVED), r.state[k]);
+  }
+}
+
+}  // namespace

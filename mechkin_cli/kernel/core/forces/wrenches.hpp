@@ -1,0 +1,268 @@
+// Wrenches on the links: of inertia, of loads, of what joints transmit, at the states and rates as they are.
+#pragma once
+
+#include "arithmetic/lost_direction.hpp"
+#include "rows/moving.hpp"
+
+namespace {
+
+// Forces on links as they are met: on the link's balance and, where they come from outside, on the sum that tells the
+// shaking wrench.
+struct Balance {
+  const Plan& p;
+  Workspace& w;
+  Wrench inertia, outside;
+  bool moving;
+  Pack level;  // of the joints' wrenches, where it is wanted
+
+  MECHKIN_INLINE void apply(int link, const Wrench& load) {
+    if (link < 0) return;
+    w.carried[link] -= load;
+  }
+  MECHKIN_INLINE void apply_outside(int link, const Wrench& load) {
+    apply(link, load);
+    if (link >= 0) outside += load;
+  }
+};
+
+// Wrench that accelerates a link whose mass centre is at `centre`: about the kernel's origin, gravity not included.
+inline Wrench inertia_wrench(const LinkInertia& m, const Pose& pose, const Vec3& centre, const Motion& motion) {
+  const Vec3 force = Pack(m.mass) * motion.point_acceleration(centre);
+  const Vec3 omega = pose.components(motion.velocity.angular);
+  const Vec3 alpha = pose.components(motion.acceleration.angular);
+  const auto* t = m.tensor;
+  const auto tensor = [&](const Vec3& a) -> Vec3 {
+    return {Pack(t[0]) * a.x + Pack(t[3]) * a.y + Pack(t[4]) * a.z,
+            Pack(t[3]) * a.x + Pack(t[1]) * a.y + Pack(t[5]) * a.z,
+            Pack(t[4]) * a.x + Pack(t[5]) * a.y + Pack(t[2]) * a.z};
+  };
+  const Vec3 couple = tensor(alpha) + cross(omega, tensor(omega));
+  Wrench r = force_at(centre, force);
+  r.moment += couple.x * pose.X + couple.y * pose.Y + couple.z * pose.Z;
+  return r;
+}
+
+inline void apply_inertia(Balance& balance, bool accelerating) {
+  const Plan& p = balance.p;
+  Workspace& w = balance.w;
+  const Vec3 g = constant(p.gravity);
+  Wrench inertia = balance.inertia, outside = balance.outside;
+  for (int k = 0; k < p.links; ++k) {
+    Wrench carried = zero_wrench();
+    const LinkInertia& m = p.inertia[k];
+    if (m.present) {
+      const Vec3 centre = w.pose[k].point(m.centre);
+      const Wrench weight = force_at(centre, Pack(m.mass) * g);
+      carried -= weight, outside += weight;
+      if (accelerating) {
+        const Wrench needed = inertia_wrench(m, w.pose[k], centre, w.motion[k]);
+        carried += needed, inertia += needed;
+      }
+    }
+    w.carried[k] = carried;
+  }
+  balance.inertia = inertia, balance.outside = outside;
+}
+
+// The wrench `value` along a coordinate, on the joint's second link.
+inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack value) {
+  const CoordinateAxis& c = p.axis[axis];
+  const Vec3 direction = carried_vector(w, c.link[0], c.vector[0]) + carried_vector(w, c.link[1], c.vector[1]);
+  if (!c.slide) return {value * direction, zero3()};
+  const JointPlace& j = p.place[c.place];
+  return force_at(carried_point(w, j.point_on, j.point), value * direction);
+}
+
+// A coordinate of a closing joint and its derivatives, those from `from` to `order`.
+inline void closing_coordinate(const Plan& p, const Workspace& w, int c, int freedom, int from, int order, Pack* out) {
+  const ClosingJoint& j = p.closing[c];
+  const auto motion_at = [&](int link) -> LinkMotion { return {w.motion[link], w.link_jerk[link]}; };
+  const PairMotion motion = {motion_at(j.first), motion_at(j.second), from, order};
+  with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.coordinate(closure_with(p, w, c, entry.axes_of(freedom)), motion, freedom, out);
+  });
+}
+
+// Value and rate of the coordinate along an axis, a freedom of the joint that `reference` tells as JointPlace does.
+inline void joint_coordinate(const Plan& p, const Workspace& w, int axis, int reference, int freedom, bool moving,
+                             Pack* value, Pack* rate) {
+  *rate = 0.0;
+  if (reference < 0) {
+    Pack k[4];
+    closing_coordinate(p, w, -1 - reference, freedom, 0, moving ? 1 : 0, k);
+    *value = k[0];
+    if (moving) *rate = k[1];
+    return;
+  }
+  const TreeJoint& j = p.joints[reference];
+  const Pack scale = j.type == TREE_H && p.axis[axis].slide ? Pack(j.pitch) : Pack(1.0);
+  *value = scale * w.q[j.state + freedom];
+  if (moving) *rate = scale * w.rate[j.column + freedom];
+}
+
+// Of the coordinate that a spring or damper works on.
+inline void joint_coordinate(const Plan& p, const Workspace& w, const Load& l, bool moving, Pack* value, Pack* rate) {
+  joint_coordinate(p, w, l.link, l.other, l.freedom, moving, value, rate);
+}
+
+inline void apply_along_coordinate(Balance& balance, int axis, Pack value) {
+  const Plan& p = balance.p;
+  const JointPlace& j = p.place[p.axis[axis].place];
+  const Wrench load = along_coordinate(p, balance.w, axis, value);
+  balance.apply(j.second, load);
+  balance.apply(j.first, Pack(-1.0) * load);
+}
+
+// Tension of a spring or damper between two points acts on both along their line.
+inline void apply_between_points(Balance& balance, const Load& l) {
+  const Workspace& w = balance.w;
+  const Vec3 p = carried_point(w, l.link, l.point), q = carried_point(w, l.other, l.other_point), d = q - p;
+  const Pack length = sqrt(dot(d, d));
+  const Vec3 along = inverse_or_zero(length) * d;
+  Pack tension;
+  if (l.type == LOAD_SPRING) {
+    tension = Pack(l.vector[0]) * (length - Pack(l.vector[1])) + Pack(l.vector[2]);
+  } else {
+    if (!balance.moving) return;
+    const Vec3 rate = motion_of(w, l.other).velocity.at(q) - motion_of(w, l.link).velocity.at(p);
+    tension = Pack(l.vector[0]) * dot(along, rate);
+  }
+  const Vec3 pull = known_tension(length, tension) * along;
+  balance.apply(l.link, force_at(p, pull));
+  balance.apply(l.other, Pack(-1.0) * force_at(p, pull));
+}
+
+MECHKIN_INLINE Vec3 load_vector(const Workspace& w, const Load& l) {
+  if (l.varying < 0) return constant(l.vector);
+  return {w.load[l.varying], w.load[l.varying + 1], w.load[l.varying + 2]};
+}
+
+// `row_value` gives angles with their whole turns.
+template <class RowValue>
+inline void apply_load(Balance& balance, const Load& l, const RowValue& row_value) {
+  const Plan& p = balance.p;
+  const Workspace& w = balance.w;
+  Pack value, rate;
+  switch (l.type) {
+    case LOAD_FORCE_GROUND:
+    case LOAD_FORCE_LINK: {
+      const Pose& pose = w.pose[l.link];
+      const Vec3 given = load_vector(w, l);
+      const Vec3 force = l.type == LOAD_FORCE_LINK ? pose.vector(given) : given;
+      return balance.apply_outside(l.link, force_at(pose.point(l.point), force));
+    }
+    case LOAD_TORQUE_GROUND: return balance.apply_outside(l.link, {load_vector(w, l), zero3()});
+    case LOAD_TORQUE_LINK:
+      return balance.apply_outside(l.link, {w.pose[l.link].vector(load_vector(w, l)), zero3()});
+    case LOAD_COORDINATE:
+      return apply_along_coordinate(balance, l.link, l.varying < 0 ? Pack(l.vector[0]) : w.load[l.varying]);
+    case LOAD_SPRING:
+    case LOAD_DAMPER: return apply_between_points(balance, l);
+    case LOAD_COORDINATE_SPRING:
+      joint_coordinate(p, w, l, balance.moving, &value, &rate);
+      value = row_value.turned(l.turn, l.other < 0, value);
+      return apply_along_coordinate(balance, l.link,
+                                    -(Pack(l.vector[0]) * (value - Pack(l.vector[1])) + Pack(l.vector[2])));
+    case LOAD_COORDINATE_DAMPER:
+      if (!balance.moving) return;
+      joint_coordinate(p, w, l, true, &value, &rate);
+      return apply_along_coordinate(balance, l.link, -(Pack(l.vector[0]) * rate));
+  }
+}
+
+// What a leg needs as a whole comes from its ends: across its line from the balance of moments about them, along its
+// line all from the start, but for the tension that the closing equation's multiplier adds to both. A moment about the
+// line is no end's to give: it is what would hold the leg from spinning.
+inline void hang_on_ends(const Plan& p, Workspace& w, int body) {
+  const TreeJoint& j = p.joints[body];
+  const Leg& leg = p.leg[j.leg];
+  const Wrench needed = w.carried[body];
+  const Vec3 A = w.pose[body].o, B = carried_point(w, leg.second, leg.point), d = B - A;
+  const Pack square = dot(d, d);
+  const Vec3 moment = needed.moment - cross(A, needed.force);
+  const Vec3 across = (Pack(1.0) / square) * cross(moment, d);
+  w.across[j.leg] = across;
+  w.holding[j.leg] = dot(moment, d) / sqrt(square);
+  const Wrench at_start = force_at(A, needed.force - across), at_end = force_at(B, across);
+  w.carried[body] = at_start;
+  if (leg.rod >= 0) w.carried[leg.rod] -= at_end;
+  if (leg.first >= 0) w.carried[leg.first] += at_start;
+  if (leg.second >= 0) w.carried[leg.second] += at_end;
+}
+
+// The tension into the wrenches of the leg's two spheres; the rod has it from the loop.
+inline void stretch_legs(const Plan& p, Workspace& w) {
+  for (int l = 0; l < p.legs; ++l) {
+    const Leg& leg = p.leg[l];
+    w.carried[leg.body] += w.reaction[leg.closing];
+    w.reaction[leg.closing] -= force_at(carried_point(w, leg.second, leg.point), w.across[l]);
+  }
+}
+
+// What each link needs of its joints (w.carried), summed over what the tree hangs on it.
+inline void sum_over_tree(const Plan& p, Workspace& w) {
+  for (int k = p.links - 1; k >= 0; --k)
+    if (p.joints[k].type == TREE_L)
+      hang_on_ends(p, w, k);
+    else if (p.joints[k].parent >= 0)
+      w.carried[p.joints[k].parent] += w.carried[k];
+}
+
+// The generalised efforts that the closing wrenches of a block balance, one for each of its unknowns.
+inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* effort) {
+  const Block& b = p.block[index];
+  for (int u = 0; u < b.size; ++u) {
+    const int column = p.unknown[b.column_begin + u];
+    effort[u] = power(w.screw[column], w.carried[p.column_joint[column]]);
+  }
+}
+
+// The wrenches of a block's closing joints from the multipliers of its equations, and into the sums.
+inline void take_closing_wrenches(const Plan& p, Workspace& w, int index, const Pack* multiplier) {
+  const Block& b = p.block[index];
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      w.reaction[c] = entry.wrench(w.closure[c], multiplier + j.row);
+    });
+    for (int l = j.loop_begin; l < j.loop_end; ++l)
+      w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * w.reaction[c];
+  }
+}
+
+// Efforts of the inputs, once the tree's joints carry what they transmit.
+inline void input_efforts(const Plan& p, Workspace& w) {
+  for (int i = 0; i < p.inputs; ++i) {
+    const int column = p.input_column[i];
+    w.effort[i] = power(w.screw[column], w.carried[p.column_joint[column]]);
+  }
+}
+
+// Constraint wrench that a joint's first link exerts on the second, without drives and joint loads.
+inline Wrench joint_wrench(const Plan& p, const Workspace& w, const JointPlace& j) {
+  Wrench r = Pack(j.sign) * (j.reference < 0 ? w.reaction[-1 - j.reference] : w.carried[j.reference]);
+  for (int d = j.drive_begin; d < j.drive_end; ++d) {
+    const Drive& drive = p.drive[d];
+    r -= along_coordinate(p, w, drive.axis, Pack(drive.scale) * w.effort[drive.input]);
+  }
+  return r;
+}
+
+// What a force, or a moment about its point, of a joint keeps where it leaves motions free: what is zero by the kind of
+// joint is zero, and no rounding. Of two directions the second is taken square to the first.
+inline Vec3 without_free(const Plan& p, const Workspace& w, const JointPlace& j, bool slide, Vec3 a) {
+  Vec3 before = zero3();
+  for (int f = j.free_begin; f < j.free_end; ++f) {
+    const FreeMotion& free = p.free[f];
+    if ((free.slide != 0) != slide) continue;
+    if (free.code == FREE_ALL) return zero3();
+    Vec3 u = carried_vector(w, free.link, free.vector);
+    if (free.code == FREE_SQUARE) return dot(u, a) * u;
+    u = u - dot(before, u) * before;
+    a = a - (dot(u, a) * inverse_or_zero(dot(u, u))) * u;
+    before = u;
+  }
+  return a;
+}
+
+}  // namespace

@@ -1,0 +1,113 @@
+// Kinks that bend nothing: where what is taken the magnitude of, or compared, is rounding alone, as is a rate that the
+// loops forbid, both sides of the kink give the same motion. A step goes through such a kink as if it were not there.
+#include <algorithm>
+#include <cmath>
+
+#include "integrator/march.hpp"
+
+namespace {
+
+// What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
+constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
+constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
+
+}  // namespace
+
+// Whether a lane moves by less than what is told of its rates.
+bool March::rests(int lane, const double* y) const {
+  const int n = states_.freedoms;
+  return states_.speed_in(y, lane) <= scale_[(std::size_t)n * states_.lanes + lane] && !states_.motion.is_driven();
+}
+
+// Whether two slopes at y differ by no more than makes no difference to a step; `scale_` is that of the place. Powers of what
+// rests are rounding.
+bool March::bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const {
+  const int n = states_.freedoms, lanes = states_.lanes;
+  const double most = std::max(NOTHING, ROUNDINGS / states_.settings.tolerance);
+  const int works = rests(lane, y) ? states_.motion.works() : 0;
+  for (int c = n; c < states_.size; ++c) {
+    if (c >= 2 * n && c < 2 * n + works) continue;
+    const std::size_t k = (std::size_t)c * lanes + lane;
+    // a difference that is lost in the rates' rounding may be as large
+    const double jump = step * (std::fabs(a[k] - b[k]) + ROUNDING * std::fabs(a[k]));
+    if (jump > 0.0 && !(jump <= most * scale_[k])) return false;
+  }
+  return true;
+}
+
+// The rates at a place on the other side of a kink, and of the kinks around it that turn with it there, in `other_slope_`;
+// `values` are those there on this side. Lanes with a fault leave `told`.
+void March::turn_with_outer(int which, const double* time, const double* place, const double* values, const Flags& mask,
+                            Flags* told) {
+  const int lanes = states_.lanes, switches = (int)states_.kinds.size();
+  const std::vector<std::int8_t> kept = states_.side;
+  const auto turn = [&](int s, int i) {
+    std::int8_t& side = states_.side[(std::size_t)s * lanes + i];
+    side = (std::int8_t)-side;
+  };
+  Flags open = mask;
+  for (int i = 0; i < lanes; ++i)
+    if (open[i]) turn(which, i);
+  for (int k = 0; k <= switches && any(open); ++k) {
+    Flags asked = open;
+    states_.evaluate(time, place, false, &asked, other_slope_.data(), values_.data());
+    for (int i = 0; i < lanes; ++i) {
+      if (!open[i]) continue;
+      (*told)[i] = asked[i];
+      open[i] = 0;
+      for (int s = which + 1; s < switches && !open[i]; ++s) {
+        const std::size_t at = (std::size_t)s * lanes + i;
+        if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
+        open[i] = states_.side[at] * values_[at] < 0.0;
+        if (open[i]) turn(s, i);
+      }
+    }
+  }
+  states_.side = kept;
+}
+
+// Whether the other side of a kink makes no difference to the step that was tried, where `slope` is known at a place of it
+// and the switches' values are `values`: as far from zero as that there, elsewhere as far as the stages tell. Asks all lanes
+// in the mask, which keeps those where it makes none. `scale_` is the step's.
+void March::compare_sides(int which, const double* time, const double* place, const double* slope, const double* values,
+                          Flags* mask) {
+  const int lanes = states_.lanes;
+  const double* const value = values + (std::size_t)which * lanes;
+  Flags told(lanes, 0);
+  turn_with_outer(which, time, place, values, *mask, &told);
+  for (int i = 0; i < lanes; ++i) {
+    if (!(*mask)[i]) continue;
+    const double at_end = -states_.side[(std::size_t)which * lanes + i] * states_.switch_end[(std::size_t)which * lanes + i];
+    const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
+    const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
+    (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
+    states_.fault[i] = 0;
+  }
+}
+
+// Finds the kinks that lanes pass within the step, or may pass, without its making a difference: their rates at its end are
+// compared with those of the other side. A kink that is let alone and makes a difference shortens the step.
+void March::mute(Flags* mask) {
+  const int lanes = states_.lanes;
+  std::fill(muted_.begin(), muted_.end(), 0);
+  states_.error_scales(states_.y.data(), states_.y_end.data(), scale_.data());
+  for (int s = 0; s < (int)states_.kinds.size(); ++s) {
+    if (!states_.kinds[s].may_be_nothing()) continue;
+    const std::size_t at = (std::size_t)s * lanes;
+    Flags asked(lanes, 0);
+    for (int i = 0; i < lanes; ++i)
+      asked[i] = (*mask)[i] && control_[i].landing != s && (is_crossed_by(i, s) || least_inside(i, s, false) < 0.0);
+    if (!any(asked)) continue;
+    Flags same = asked;
+    compare_sides(s, states_.until.data(), states_.y_end.data(), states_.slope_end.data(), states_.switch_end.data(),
+                  &same);
+    for (int i = 0; i < lanes; ++i) {
+      if (!asked[i]) continue;
+      muted_[at + i] = same[i] || (control_[i].let_alone[s] && states_.settings.fixed_step > 0.0);
+      if (muted_[at + i] || !control_[i].let_alone[s]) continue;
+      (*mask)[i] = 0;
+      refuse(i, 0.5 * states_.step[i]);
+      if (!control_[i].running) finish(i, LaneEnd::HELD, s);
+    }
+  }
+}

@@ -1,0 +1,27 @@
+// What a motion keeps of the joints that rub: how each slips, lane by lane.
+#pragma once
+
+#include <vector>
+
+#include "rows/aligned.hpp"
+#include "response/sign_vectors.hpp"
+
+// A stage's slips, as StageFound has them.
+struct SlipStage {
+  Packed rate, second, force, row, limit, loose, state, answer, level, told;
+};
+
+struct SlipMemory {
+  int columns = 0;
+  std::vector<int> first;            // frictions + 1: of their columns
+  Packed sense, quiet, aim;          // as StageGiven has them
+  std::vector<signed char> pushed;   // frictions x lanes: the sign of a force that was last more than friction holds
+  std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
+  std::vector<double> started;       // frictions x lanes: s: when a slip of one direction was let go, NaN once it goes
+  std::vector<double> fastest;       // lanes: the largest rate of a chart so far
+  std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go
+  std::vector<unsigned char> measured;  // lanes: joints have carried a load by which forces are measured
+  std::vector<unsigned char> rests;  // lanes: what sticks leaves nothing to move
+  std::vector<unsigned char> blocked;  // lanes: at rest friction has no answer, or several
+  std::vector<std::vector<int>> doubtful;  // lanes: whose friction was met last without an answer
+};

@@ -1,0 +1,205 @@
+// How joints go on where a slip has come to its zero, or friction holds no longer (docs/friction.md, Motions).
+#include <algorithm>
+#include <cmath>
+
+#include "response/charted_motion.hpp"
+
+namespace {
+
+// Slips, in parts of what the fastest motion so far would give, up to which a joint is at rest beside one that is.
+constexpr double AT_REST = 1e-9;
+// Forces of what sticks, in parts of what it can hold and of the largest wrench, that are rounding; accelerations, in parts
+// of those by the largest wrench, likewise.
+constexpr double JUST_HELD = 1e-9, NO_FORCE = 1e-12;
+
+}  // namespace
+
+Signs ChartedMotion::senses(int lane) const {
+  Signs all;
+  for (int k = 0; k < plan_.frictions; ++k) all.push_back((signed char)slips_.sense[(std::size_t)k * lanes_ + lane]);
+  return all;
+}
+
+void ChartedMotion::take_senses(int lane, const Signs& senses) {
+  for (int k = 0; k < plan_.frictions; ++k) sense(lane, k) = senses[k];
+}
+
+// The derivative of a slip along its sense; of what sticks its size.
+double ChartedMotion::along_sense(const Stage& found, int lane, int k) const {
+  const double sense = slips_.sense[(std::size_t)k * lanes_ + lane];
+  const int begin = slips_.first[k], end = slips_.first[k + 1];
+  if (sense == 0.0) return slip_size(found.slip.second, lane, k);
+  if (end - begin == 1) return sense * at(found.slip.second, begin, lane);
+  double sum = 0.0;
+  for (int c = begin; c < end; ++c) sum += at(slips_.aim, c, lane) * at(found.slip.second, c, lane);
+  return sum;
+}
+
+// What joints would do with some senses; `open` start from rest.
+SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v) {
+  SlipTrial t;
+  t.way = t.sense = way;
+  take_senses(lane, way);
+  std::vector<int> starting;
+  for (int k : open)
+    if (slip_columns(k) > 1 && way[k] != 0) starting.push_back(k), t.sense[k] = 1;
+  stand_still();
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[(long)i * lanes_ + lane] = v[i];
+  const bool aimed = aim(lane, starting, way, place_.data(), rate_.data(), &trial_);
+  t.decided = aimed && !(trial_.flags[lane] & STAGE_FRICTION);
+  if (aimed && !t.decided) tell_undecided(trial_, lane);
+  const double level = at(trial_.slip.level, 0, lane);
+  for (int k = 0; k < plan_.frictions; ++k) {
+    const double force = slip_size(trial_.slip.force, lane, k), limit = at(trial_.slip.limit, k, lane);
+    t.second.push_back(along_sense(trial_, lane, k));
+    t.rounding.push_back(NO_FORCE * level * at(trial_.slip.answer, k, lane));
+    t.loose.push_back(at(trial_.slip.loose, k, lane) != 0.0);
+    t.holds.push_back(force <= (1.0 + JUST_HELD) * limit + NO_FORCE * level);
+  }
+  for (int i = 0; i < plan_.charts; ++i) t.motion.push_back(at(trial_.chart_second, i, lane));
+  return t;
+}
+
+// How far what a way sets going would go along it; negative where it would not. `decided` turns false where friction has no
+// answer.
+double ChartedMotion::margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided) {
+  const Signs before = senses(lane);
+  take_senses(lane, way);
+  std::vector<int> starting;
+  for (int k = 0; k < plan_.frictions; ++k) {
+    if (way[k] == before[k]) continue;
+    quiet(lane, k) = 1.0;
+    if (slip_columns(k) > 1) starting.push_back(k);
+  }
+  *decided = aim(lane, starting, way, place, rate, &trial_) && !(trial_.flags[lane] & STAGE_FRICTION) && *decided;
+  double least = __builtin_inf();
+  for (int k = 0; k < plan_.frictions; ++k)
+    if (way[k] != before[k]) quiet(lane, k) = 0.0, least = std::min(least, along_sense(trial_, lane, k));
+  take_senses(lane, before);
+  return least;
+}
+
+// The joints that are at rest where one is.
+std::vector<int> ChartedMotion::resting(int lane, int event) {
+  std::vector<int> joints;
+  for (int k = 0; k < plan_.frictions; ++k) {
+    if (!rubs(lane, k)) continue;
+    const double none = AT_REST * slips_.fastest[lane] * lever(trial_, lane, k);
+    if (sense(lane, k) == 0.0 || k == event || slip_size(trial_.slip.rate, lane, k) <= none) joints.push_back(k);
+  }
+  return joints;
+}
+
+// Sets going what does not hold, with the coefficients of rest, then what that of sliding lets go; `open` keeps what sticks.
+// False where there is no answer, or several.
+bool ChartedMotion::set_going(int lane, int forced, std::vector<int>* open, const std::vector<double>& v) {
+  while (!open->empty()) {
+    for (int k : *open) quiet(lane, k) = 1.0;
+    std::vector<SlipTrial> trials;
+    for (const Signs& way : ways_of(lane, *open, forced)) trials.push_back(trial(lane, way, *open, v));
+    const int found = trial_that_holds(trials, *open, forced);
+    for (int k : *open) quiet(lane, k) = 0.0;
+    if (trials.empty()) slips_.doubtful[lane] = *open;
+    if (found < 0) return false;
+    const SlipTrial again = trial(lane, trials[found].way, *open, v);
+    std::vector<int> kept;
+    bool falls = false;
+    for (int k : *open) {
+      const Friction& f = starts_[lane].plan->friction[k];
+      if (again.sense[k] == 0) kept.push_back(k);
+      else falls = falls || (!f.falls && f.at_rest != f.sliding);
+    }
+    *open = kept;
+    forced = -1;
+    if (!falls) break;
+  }
+  return true;
+}
+
+// The way out of a rest that holds first.
+bool ChartedMotion::go_first_way(int lane, std::vector<int>* open, const std::vector<double>& v) {
+  stand_still();
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[(long)i * lanes_ + lane] = v[i];
+  const std::vector<Signs> ways = slips_.ways[lane];
+  double most = -__builtin_inf();
+  Signs best;
+  bool decided = true;
+  for (const Signs& way : ways) {
+    const double far = margin(lane, way, place_.data(), rate_.data(), &decided);
+    if (far > most) most = far, best = way;
+  }
+  if (best.empty() || !decided) return false;
+  trial(lane, best, *open, v);
+  std::vector<int> kept;
+  for (int k : *open)
+    if (best[k] == 0) kept.push_back(k);
+  *open = kept;
+  return true;
+}
+
+// Ways out of a rest whose forces are not unique.
+void ChartedMotion::list_ways(int lane, const std::vector<double>& v) {
+  slips_.ways[lane].clear();
+  evaluate_here(lane, v, &trial_);
+  std::vector<int> loose;
+  for (int k = 0; k < plan_.frictions; ++k)
+    if (sense(lane, k) == 0.0 && at(trial_.slip.loose, k, lane) != 0.0) loose.push_back(k);
+  if (loose.empty()) return;
+  const Signs now = senses(lane);
+  for (const Signs& way : ways_of(lane, loose, -1))
+    if (way != now) slips_.ways[lane].push_back(way);
+}
+
+bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
+  const int n = plan_.frictions;
+  evaluate_here(lane, *v, &trial_);
+  const bool breaks = event >= 0 && event < n && sense(lane, event) == 0.0;
+  std::vector<int> open = resting(lane, event);
+  if (open.empty()) return true;
+  // where nothing pushes yet, it goes as it was pushed beyond
+  double push = breaks ? at(trial_.slip.force, slips_.first[event], lane) : 0.0;
+  if (breaks && !(std::fabs(push) > NO_FORCE * at(trial_.slip.level, 0, lane)))
+    push = slips_.pushed[(std::size_t)event * lanes_ + lane];
+  hold_rates(&trial_, lane, open, v->data());
+  for (int k : open) {
+    sense(lane, k) = 0.0;
+    slips_.armed[(std::size_t)k * lanes_ + lane] = 0;
+    slips_.started[(std::size_t)k * lanes_ + lane] = NAN;
+  }
+  if (breaks) slips_.started[(std::size_t)event * lanes_ + lane] = origin_time_[lane];
+  if (breaks) sense(lane, event) = slip_columns(event) > 1 || push > 0.0 ? 1.0 : -1.0;
+  evaluate_here(lane, *v, &trial_);
+  if (event == n && !go_first_way(lane, &open, *v)) return false;
+  return set_going(lane, breaks ? event : -1, &open, *v);
+}
+
+// Where a lane stands, `event` being the joint whose slip has ended or that friction holds no longer, as many as there are
+// frictions for those that rest together, or -1: what sticks, what slips, and the rates v with it.
+void ChartedMotion::settle(int lane, int event, std::vector<double>* v) {
+  slips_.rests[lane] = 0;
+  slips_.blocked[lane] = !settled(lane, event, v);
+  if (slips_.blocked[lane]) return;
+  list_ways(lane, *v);
+  const std::vector<int> joints = sticking(lane);
+  if (joints.empty()) return;
+  slips_.rests[lane] = hold_rates(&trial_, lane, joints, v->data()) == plan_.charts;
+  evaluate_here(lane, *v, &trial_);
+}
+
+// The rates and accelerations at a chart's origin become those of what goes on from there.
+void ChartedMotion::move(int lane, int which, double, double* y) {
+  std::vector<double> v;
+  for (int i = 0; i < plan_.charts; ++i) v.push_back(y[(long)(plan_.charts + i) * lanes_ + lane]);
+  settle(lane, which - plan_.law.kinks - edges(), &v);
+  for (int i = 0; i < plan_.charts; ++i) y[(long)(plan_.charts + i) * lanes_ + lane] = v[i];
+  evaluate_here(lane, v, &trial_);
+  for (int c = 0; c < plan_.columns; ++c) {
+    const long e = (long)c * lanes_ + lane;
+    origin_first_[e] = end_.first[e] = trial_.first[e];
+    origin_second_[e] = end_.second[e] = trial_.second[e];
+  }
+  for (int k = 0; k < plan_.frictions * TOLD_NUMBERS; ++k) {
+    const std::size_t e = (std::size_t)k * lanes_ + lane;
+    end_.slip.told[e] = trial_.slip.told[e];
+  }
+}

@@ -1,0 +1,138 @@
+// Twists of the links and their derivatives from the rates of the tree's columns, and what the loops' closing equations
+// want of them (docs/numerics.md, Rates).
+#pragma once
+
+#include "rows/placing.hpp"
+
+namespace {
+
+// Of a link, or of ground (-1).
+MECHKIN_INLINE const Motion& motion_of(const Workspace& w, int link) { return w.motion[link]; }
+
+inline void move_leg(const Plan& p, Workspace& w, int k, bool second) {
+  const Leg& leg = p.leg[p.joints[k].leg];
+  const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
+  w.motion[k] = leg_motion(A, B, motion_of(w, p.joints[k].parent), motion_of(w, leg.second), second);
+}
+// Sum of the screws of tree joint k, each times its entry of `rate`.
+MECHKIN_INLINE Twist joint_twist(const Plan& p, const Workspace& w, int k, const Pack* rate) {
+  const TreeJoint& j = p.joints[k];
+  Twist sum = zero_twist();
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    for (int i = 0; i < entry.freedoms; ++i) sum += rate[j.column + i] * w.screw[j.column + i];
+  });
+  return sum;
+}
+
+// Twist of the link of tree joint k from its parent's: V = V_p + S q'.
+inline void move_link(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  if (j.type == TREE_L) return move_leg(p, w, k, false);
+  w.motion[k].velocity = motion_of(w, j.parent).velocity + joint_twist(p, w, k, w.rate);
+}
+// Its spatial acceleration, where the twists are known: V' = V_p' + S q'' + [V_p, S q']. With `again` only q'' and V_p' are
+// others than they were.
+inline void accelerate_link(const Plan& p, Workspace& w, int k, bool again) {
+  const TreeJoint& j = p.joints[k];
+  if (j.type == TREE_L) return move_leg(p, w, k, true);
+  const Motion& parent = motion_of(w, j.parent);
+  if (!again) w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
+  w.motion[k].acceleration = parent.acceleration + joint_twist(p, w, k, w.acceleration) + w.convective[k];
+}
+inline void move_block(const Plan& p, Workspace& w, const Block& b) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) move_link(p, w, p.order[o]);
+}
+inline void accelerate_block(const Plan& p, Workspace& w, const Block& b, bool again) {
+  for (int o = b.joint_begin; o < b.joint_end; ++o) accelerate_link(p, w, p.order[o], again);
+}
+// Links beyond all blocks.
+inline void move_rest(const Plan& p, Workspace& w) {
+  for (int k = 0; k < p.rest_count; ++k) move_link(p, w, p.rest[k]);
+}
+inline void accelerate_rest(const Plan& p, Workspace& w) {
+  for (int k = 0; k < p.rest_count; ++k) accelerate_link(p, w, p.rest[k], false);
+}
+
+// Right-hand side -J q' over the loop's columns that are already known.
+inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* right) {
+  const Block& b = p.block[index];
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const Closure& k = w.closure[c];
+    Twist a = zero_twist();
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const TreeJoint& t = p.joints[p.loop[l].joint];
+      const Pack sign = p.loop[l].sign;
+      with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
+        for (int i = 0; i < entry.freedoms; ++i)
+          if (unknown_index(p, index, t.column + i) < 0)
+            a += (sign * w.rate[t.column + i]) * w.screw[t.column + i];
+      });
+    }
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.column(k, a, r);
+      for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
+    });
+  }
+  for (int i = 0; i < b.charts; ++i) right[b.rows - b.charts + i] = w.place_rate[i];
+}
+
+// Second derivatives of a block's closing equations, negative, into w.right: as the links move.
+inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const Motion &first = motion_of(w, j.first), &other = motion_of(w, j.second);
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.second(w.closure[c], first, other, r);
+      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
+    });
+    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
+  }
+  if (b.charts) chart_second(p, b, w.chart(), w.q, w.rate, w.right + b.rows - b.charts);
+}
+
+// A link's motion with its jerk.
+MECHKIN_INLINE MotionToJerk motion_to_jerk(const Workspace& w, int link) {
+  return {w.motion[link], w.link_jerk[link]};
+}
+
+// V'' = V_p'' + S q''' + 2 [V_p, S q''] + [V_p', S q'] + [V_p, [V_p, S q']], since S' = [V_p, S].
+inline void jerk_link(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  const MotionToJerk parent = motion_to_jerk(w, j.parent);
+  if (j.type == TREE_L) {
+    const Leg& leg = p.leg[j.leg];
+    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
+    w.link_jerk[k] = leg_jerk(A, B, w.motion[k], parent, motion_to_jerk(w, leg.second));
+    return;
+  }
+  Twist first = zero_twist(), second = zero_twist(), third = zero_twist();
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    for (int i = 0; i < entry.freedoms; ++i) {
+      const Twist s = w.screw[j.column + i];
+      first += w.rate[j.column + i] * s;
+      second += w.acceleration[j.column + i] * s;
+      third += w.jerk[j.column + i] * s;
+    }
+  });
+  w.link_jerk[k] = parent.jerk + third + Pack(2.0) * bracket(parent.velocity, second) +
+                   bracket(parent.acceleration, first) + bracket(parent.velocity, bracket(parent.velocity, first));
+}
+
+// Third derivatives of a block's closing equations, negative, into w.right: as the links move.
+inline void third_of_equations(const Plan& p, Workspace& w, const Block& b) {
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const MotionToJerk first = motion_to_jerk(w, j.first), other = motion_to_jerk(w, j.second);
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      Pack r[MAX_CLOSING_ROWS];
+      entry.third(w.closure[c], first, other, r);
+      for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
+    });
+    if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.jerk[p.joints[j.slide].column];
+  }
+}
+
+}  // namespace

@@ -1,0 +1,43 @@
+// The one entry that each compiled unit of the kernel exports.
+#pragma once
+
+#include "plan/plan.hpp"
+#include "tape/tape.hpp"
+
+// The constants of a tree displacement and of a pair, read off their entries.
+struct TreeType {
+  int freedoms, states;
+  int slides;  // bit f: freedom f is a length
+};
+struct PairType {
+  const char* letter;
+  int equations, lengths;  // how many close it, and how many of them, the first ones, are lengths
+  int coordinates, turns;  // bit f: freedom f is a coordinate; is one and an angle
+};
+
+struct KernelUnit {
+  int lanes;
+  const TreeType* tree_types;  // TREE_CODES
+  const PairType* pair_types;
+  int pair_codes;
+  long (*workspace_size)(const Plan&);
+  // One row after another, of plans of one structure: `prepare` lays the workspace out once for all calls of `run_row`.
+  void (*prepare)(const Plan&, char* workspace);
+  void (*run_row)(const Plan&, const Request&, char* workspace);
+  // Rows [begin, end) alone; what a row gets does not depend on the cut.
+  void (*run_rows)(const Plan&, const Request&, long begin, long end, char* workspace);
+  void (*search_rows)(const Plan&, const SearchRequest&, long begin, long end, char* workspace);
+  void (*elementwise)(int operation, const double* x, const double* y, double* out, long n);
+  long (*replay_size)(const Tape&);
+  void (*replay)(const Tape&, const TapeRequest&, char* workspace);
+  // Of one set of inputs, with first and second derivatives by the first of them (tape_jets.hpp): of the narrowest unit,
+  // null in the others.
+  long (*jets_size)(const Tape&);
+  void (*replay_jets)(const Tape&, const double* given, const double* way, double* out, char* workspace);
+};
+
+extern "C" {
+const KernelUnit* mechkin_unit_sse2();
+const KernelUnit* mechkin_unit_avx2();
+const KernelUnit* mechkin_unit_avx512();
+}

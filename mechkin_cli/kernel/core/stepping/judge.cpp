@@ -1,0 +1,120 @@
+// Whether two nodes of a path lie on one branch.
+//
+// A branch is lost where a block's Jacobian passes a singular one unseen. Both ends of a step and its middle are
+// looked at: where the spectral radius of J_a^+ J_b - I is below 1, no matrix of the straight segment from J_a to J_b
+// is singular. The radius changes neither with units, nor with the order or merging of blocks; a sign of a determinant
+// comes back where two factors change together. What is shown is a segment of matrices, not the true path
+// (docs/numerics.md).
+#include <cmath>
+
+#include "stepping/stepper.hpp"
+
+namespace {
+
+// Least singular value of a block below which it makes those that hang on it wrong by more than their own rounding.
+constexpr double NARROW = 1e-3;
+
+}  // namespace
+
+bool is_regular_segment(const Factored& a, const Matrix& middle, const Factored& b, double limit, double* danger,
+                        double* least) {
+  const LeastSquares &from = a.squares, &to = b.squares;
+  *least = std::fmin(*least, to.least_singular_bound());
+  const auto difference = [](const LeastSquares& at, const Matrix& other) {
+    Matrix e = at.solve(other);
+    subtract_identity(&e);
+    return e;
+  };
+  *danger = spectral_radius_bound(difference(to, a.matrix));
+  if (!(*danger <= limit) && !spectral_radius_within(difference(to, a.matrix), limit) &&
+      !spectral_radius_within(difference(from, b.matrix), limit))
+    return false;
+  return spectral_radius_within(difference(from, middle), limit) &&
+         spectral_radius_within(difference(to, middle), limit);
+}
+
+Matrix Stepper::block_matrix(const std::vector<double>& jacobian, int block) const {
+  long at = 0;
+  for (int b = 0; b < block; ++b) at += plan_.block[b].rows * plan_.block[b].size;
+  Matrix matrix(plan_.block[block].rows, plan_.block[block].size);
+  for (std::size_t e = 0; e < matrix.a.size(); ++e) matrix.a[e] = jacobian[at + e];
+  return matrix;
+}
+
+void Stepper::middle(const Node& a, const Node& b, std::vector<double>* state) const {
+  const double h = b.place - a.place;
+  state->resize(plan_.states);
+  for (int s = 0; s < plan_.states; ++s)
+    (*state)[s] = 0.5 * (a.state[s] + b.state[s]) + 5.0 / 32.0 * h * (a.state_first[s] - b.state_first[s]) +
+                  h * h / 64.0 * (a.state_second[s] + b.state_second[s]);
+  normalise_quaternions(state->data(), 1);
+}
+
+const std::vector<Factored>& Stepper::factors(const Node& node) const {
+  for (int k = (int)node.factored.size(); k < plan_.blocks; ++k)
+    node.factored.emplace_back(block_matrix(node.jacobian, k));
+  return node.factored;
+}
+
+bool Stepper::same_side(const Node& a, Node* b) {
+  const double h = b->place - a.place, half = a.sigma + 0.5 * (b->sigma - a.sigma);
+  middle(a, *b, &guess_);
+  const Plan& plan = path_.plan(half);
+  path_.at(half, &point_);
+  half_way_.resize(entries_);
+  double residual = 0.0, correction = 0.0;
+  unsigned char flags = 0;
+  Request r = {};
+  r.rows = 1, r.inputs = point_.inputs.data(), r.guess = guess_.data();
+  r.residual = &residual, r.correction = &correction, r.flags = &flags;
+  r.jacobian = half_way_.data(), r.demand = DEMAND_JACOBIAN;
+  unit_.run_row(plan, r, memory_.data());
+  const std::vector<Factored>&from = factors(a), &to = factors(*b);
+  bool same = true;
+  b->least = HUGE_VAL;
+  for (int k = 0; k < plan_.blocks; ++k) {
+    double danger = 0.0;
+    same = is_regular_segment(from[k], block_matrix(half_way_, k), to[k], limits_.radius, &danger,
+                              &b->singular[k]) && same;
+    b->danger[k] = danger / std::fabs(h), b->least = std::fmin(b->least, b->singular[k]);
+  }
+  return same;
+}
+
+bool Stepper::turned_too_far(const Node& a, const Node& b) const {
+  const double cosine = tangent_product(a, b) / std::sqrt(tangent_product(a, a) * tangent_product(b, b));
+  return !(cosine >= limits_.turn_cosine);
+}
+
+// Prediction of a from b: a place on another branch does not look back at where it was predicted from.
+bool Stepper::looks_back(const Node& a, const Node& b, double tolerance) {
+  predict(b, a.place - b.place, &back_);
+  for (int s = 0; s < plan_.states; ++s)
+    if (!(std::fabs(back_[s] - a.state[s]) <= tolerance)) return false;
+  return true;
+}
+
+// Whether rounding leaves a node on its branch: pivots of a triangle may hide that it is singular, and the unknowns of a
+// block are as wrong as those that it hangs on make them.
+bool Stepper::is_told(const Node& node) {
+  const double square = limits_.pivot * limits_.pivot;
+  for (double s : node.singular)
+    if (!(s >= limits_.pivot)) return false;
+  if (node.least * node.least * node.least >= square) return true;
+  if (upstream_.empty()) upstream_ = upstream_blocks(plan_, unit_);
+  for (int k = 0; k < plan_.blocks; ++k) {
+    double product = node.singular[k] * node.singular[k];
+    for (int other = 0; other < plan_.blocks; ++other)
+      if (upstream_[k * plan_.blocks + other] && node.singular[other] < NARROW) product *= node.singular[other];
+    if (!(product >= square)) return false;
+  }
+  return true;
+}
+
+bool Stepper::judge(const Node& a, Node* b) {
+  const double length = std::fabs(b->place - a.place) * std::sqrt(tangent_product(a, a));
+  if (!(b->correction <= limits_.jump * length)) return false;
+  for (double p : b->pivot)
+    if (!(p >= limits_.pivot)) return false;
+  return !turned_too_far(a, *b) && looks_back(a, *b, limits_.jump * length) && same_side(a, b) && is_told(*b);
+}

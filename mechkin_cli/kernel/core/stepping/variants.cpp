@@ -1,0 +1,318 @@
+#include "stepping/variants.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "plan/program_store.hpp"
+#include "rows/assembly_size.hpp"
+#include "rows/run.hpp"
+#include "rows/threads.hpp"
+#include "rows/units.hpp"
+#include "stepping/dimension_path.hpp"
+
+namespace {
+
+constexpr long VARIANTS_AT_A_TIME = 16;
+
+// What one thread works with; allocated once a call.
+class Worker {
+ public:
+  Worker(const Tape& tape, const FrozenPlan& plan, const OutputList& outputs, const VariantBase& base,
+         const KernelUnit& wide)
+      : tape_(tape), base_(base), wide_(wide), narrow_(*kernel_unit(2)), plan_(plan), outputs_(outputs),
+        constants_((long)plan.constants()), moving_(constants_ + (long)outputs.constants()),
+        moves_(tape.outputs > moving_),
+        path_(tape, wide, base.parameters.data(), &plan_, moves_ ? nullptr : first_inputs(), moving_ + base.start_row,
+              base.rows),
+        memory_(std::max(wide.workspace_size(plan.view()), narrow_.workspace_size(plan.view()))),
+        replay_memory_(wide.replay_size(tape)), size_memory_(plan.view(), narrow_), guess_(plan.view().states * base.rows), way_(guess_.size()),
+        limit_(base.rows), way_limit_(base.rows), correction_(base.rows), side_(plan.view().blocks * base.rows),
+        flags_(base.rows), section_(base.rows, 0), way_inputs_(plan.view().inputs * base.rows) {
+    turn_slots_ = turn_slots(plan.view(), narrow_);
+    turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
+    way_whole_.resize(way_inputs_.size()), nothing_.resize(way_inputs_.size());
+  }
+
+  // Variants [begin, end) of `count`.
+  void run(long begin, long end, long count, const double* parameters, const VariantArrays& out) {
+    const int given = tape_.inputs;
+    const long number = end - begin;
+    parameters_.resize(number * given), by_tape_.resize(number * given);
+    for (long v = 0; v < number; ++v)
+      for (int k = 0; k < given; ++k)
+        by_tape_[k * number + v] = parameters_[v * given + k] = parameters[k * count + begin + v];
+    replayed_.resize(number * tape_.outputs), verdict_.resize(number);
+    wide_.replay(tape_, {number, by_tape_.data(), replayed_.data(), verdict_.data()}, replay_memory_.data());
+    for (long v = 0; v < number; ++v) {
+      const VariantEnd ended = verdict_[v] == TAPE_OTHER_WAY
+                                   ? VariantEnd::other_way
+                                   : one(&parameters_[v * given], &replayed_[v * tape_.outputs], begin + v, out);
+      out.end[begin + v] = (int)ended;
+      if (ended != VariantEnd::complete) clear(begin + v, out);
+    }
+  }
+
+  VariantStart start(const double* parameters) {
+    VariantStart found = {VariantEnd::other_way, 0.0, {}};
+    replayed_.resize(tape_.outputs), verdict_.resize(1);
+    wide_.replay(tape_, {1, parameters, replayed_.data(), verdict_.data()}, replay_memory_.data());
+    if (verdict_[0] == TAPE_OTHER_WAY) return found;
+    found.end = assemble(parameters, replayed_.data()) ? VariantEnd::complete : VariantEnd::lost;
+    found.size = plan_.view().size, found.state = state_;
+    return found;
+  }
+
+ private:
+  const double* first_inputs() {
+    for (int i = 0; i < plan_.view().inputs; ++i) start_inputs_.push_back(base_.inputs[i * base_.rows + base_.start_row]);
+    return start_inputs_.data();
+  }
+
+  // Nothing of what a variant left behind that did not end well.
+  void clear(long number, const VariantArrays& out) const {
+    const long rows = base_.rows, cells = rows * outputs_.view().slots;
+    const double nothing = __builtin_nan("");
+    std::fill_n(out.outputs + number * cells, cells, nothing);
+    std::fill_n(out.residual + number * rows, rows, nothing);
+    std::fill_n(out.condition + number * rows, rows, nothing);
+  }
+
+  VariantEnd one(const double* parameters, const double* replayed, long number, const VariantArrays& out) {
+    if (!assemble(parameters, replayed)) return VariantEnd::lost;
+    if (!outputs_.assign(replayed + constants_)) return VariantEnd::other_way;
+    const long rows = base_.rows, table = (long)plan_.view().inputs * rows;
+    const double* const moved = replayed + moving_;
+    const double* const inputs = moves_ ? moved : base_.inputs.data();
+    const double* const whole = moves_ ? nothing_.data() : base_.whole.data();
+    if (moves_ && turns(inputs)) return VariantEnd::incomplete;
+    if (!follow_all(inputs, whole)) return VariantEnd::incomplete;
+    count_from_first();
+    Request r = {};
+    r.rows = rows;
+    r.inputs = inputs;
+    r.rates = moves_ ? moved + table : base_.rates.data();
+    r.accelerations = moves_ ? moved + 2 * table : base_.accelerations.data();
+    r.jerks = moves_ ? moved + 3 * table : base_.jerks.data();
+    r.guess = guess_.data();
+    r.turned = turn_.data(), r.whole = whole;
+    r.full = moves_ ? moved : base_.full.data();
+    r.time = base_.time.empty() ? nullptr : base_.time.data();
+    r.wanted = outputs_.view();
+    r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
+    r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
+    r.correction = correction_.data(), r.side = side_.data(), r.flags = flags_.data();
+    r.demand = base_.demand;
+    r.iterations = base_.iterations;
+    r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
+    std::fill(side_.begin(), side_.end(), 1.0);
+    wide_.run_rows(plan_.view(), r, 0, rows, memory_.data());
+    for (long row = 0; row < rows; ++row)
+      if (flags_[row] || !(correction_[row] <= limit_[row])) return VariantEnd::incomplete;
+    // sides change where a branch point is passed
+    for (int b = 0; b < plan_.view().blocks; ++b)
+      for (long row = 1; row < rows; ++row)
+        if (section_[row] == section_[row - 1] && side_[b * rows + row] != side_[b * rows + row - 1])
+          return VariantEnd::incomplete;
+    add_turns(r.outputs, whole);
+    if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
+    return VariantEnd::complete;
+  }
+
+  // The plan with the variant's constants and size, and its first assembly in `state_`.
+  bool assemble(const double* parameters, const double* replayed) {
+    if (std::memcmp(parameters, base_.parameters.data(), sizeof(double) * tape_.inputs) == 0) {
+      state_ = base_.state;
+      return plan_.assign(replayed) && plan_.assign_size(base_.size);
+    }
+    const double d = base_.continuation.plan_step;
+    path_.aim(parameters, {0.0, d, 2.0 * d, 1.0, 1.0 - d, 1.0 - 2.0 * d});
+    Stepper stepper(path_, narrow_, base_.continuation);
+    Node node;
+    if (!follow_to_target(stepper, base_.state.data(), &node)) return false;
+    state_ = node.state;
+    if (!plan_.assign(replayed)) return false;
+    const StepLimits& l = base_.following;
+    const NewtonLimits limits = {l.tight, l.coarse, l.accept, base_.iterations};
+    return plan_.assign_size(assembly_size(plan_.view(), narrow_, node.inputs.data(), state_.data(), limits, size_memory_));
+  }
+
+  // Guesses of all rows, both ways from the start's.
+  bool follow_all(const double* inputs, const double* whole) {
+    const long rows = base_.rows, start = base_.start_row;
+    if (start && !follow_way(inputs, whole, start, -1, start + 1)) return false;
+    return follow_way(inputs, whole, start, 1, rows - start);
+  }
+
+  bool follow_way(const double* inputs, const double* whole, long first, long direction, long count) {
+    for (const VariantWay& way : base_.ways)
+      if (way.step == direction) return follow_course(way);
+    const Plan& p = plan_.view();
+    const long rows = base_.rows;
+    for (int i = 0; i < p.inputs; ++i)
+      for (long k = 0; k < count; ++k) {
+        way_inputs_[i * count + k] = inputs[i * rows + first + direction * k];
+        way_whole_[i * count + k] = whole[i * rows + first + direction * k];
+      }
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way_inputs_.data(), way_whole_.data(), state_.data(), {}, false, base_.following, guesses);
+    if (found.end != TrackEnd::finished) return false;
+    const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
+      for (long c = 0; c < columns; ++c)
+        for (long k = 0; k < count; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
+    };
+    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
+    for (long k = 0; k < count; ++k) section_[first + direction * k] = direction * sections_before(found, k);
+    put(way_turn_, turn_slots_, &turn_);
+    return true;
+  }
+
+  // Branch points that a way passed before a row of it.
+  static long sections_before(const Followed& found, long row) {
+    return std::count_if(found.crossed_before.begin(), found.crossed_before.end(),
+                         [&](long behind) { return behind <= row; });
+  }
+
+  bool follow_course(const VariantWay& way) {
+    const Plan& p = plan_.view();
+    const long rows = base_.rows, count = (long)way.rows.size();
+    way_.resize(p.states * count), way_limit_.resize(count), way_turn_.resize(turn_slots_ * count);
+    const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
+    const Followed found = follow_rows(p, narrow_, way.values.data(), nullptr, state_.data(), {}, false,
+                                       base_.following, guesses, way.course.get());
+    if (found.end != TrackEnd::finished) return false;
+    const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
+      for (long c = 0; c < columns; ++c)
+        for (long k = 0; k < count; ++k)
+          if (way.rows[k] >= 0) (*to)[c * rows + way.rows[k]] = from[c * count + k];
+    };
+    put(way_, p.states, &guess_), put(way_limit_, 1, &limit_), put(way_turn_, turn_slots_, &turn_);
+    for (long k = 0; k < count; ++k)
+      if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections_before(found, k);
+    return true;
+  }
+
+  // Whether an input that moves with the parameters turns farther than half a turn: its whole turns are taken off in the
+  // file's unit, where it is built anew.
+  bool turns(const double* inputs) const {
+    const Plan& p = plan_.view();
+    for (int i = 0; i < p.inputs; ++i) {
+      const int type = p.joints[p.column_joint[p.input_column[i]]].type;
+      if (type != TREE_R && type != TREE_C) continue;
+      for (long r = 0; r < base_.rows; ++r)
+        if (std::fabs(inputs[i * base_.rows + r]) > 0.5 * FULL_TURN) return true;
+    }
+    return false;
+  }
+
+  // Turns count from the first row, whose angles lie in (-pi, pi].
+  void count_from_first() {
+    const long rows = base_.rows;
+    for (const TreeTurn& t : tree_turns(plan_.view(), narrow_)) {
+      double* const turn = &turn_[t.slot * rows];
+      const double first = turn[0] - (guess_[t.state * rows] <= base_.half_turn_side - 0.5 * FULL_TURN ? 1.0 : 0.0);
+      for (long r = 0; r < rows; ++r) turn[r] -= first;
+    }
+    for (const ClosingTurn& t : closing_turns(plan_.view(), narrow_)) {
+      if (t.freedom < 0) continue;
+      double* const turn = &turn_[t.slot * rows];
+      const double first = std::ceil((turn[0] - 0.5 * FULL_TURN - base_.half_turn_side) / FULL_TURN);
+      for (long r = 0; r < rows; ++r) turn[r] -= first * FULL_TURN;
+    }
+  }
+
+  // Angles with their whole turns.
+  void add_turns(double* outputs, const double* whole) const {
+    const long rows = base_.rows;
+    for (const ClosingAngle& a : base_.angles) {
+      double* const value = outputs + a.slot * rows;
+      const double* const known = a.turn >= 0 ? &turn_[a.turn * rows] : whole + (-2 - a.turn) * rows;
+      for (long r = 0; r < rows; ++r)
+        value[r] = a.closing ? value[r] - std::rint((value[r] - known[r]) / FULL_TURN) * FULL_TURN
+                             : value[r] + known[r] * FULL_TURN;
+    }
+  }
+
+  const Tape& tape_;
+  const VariantBase& base_;
+  const KernelUnit &wide_, &narrow_;
+  FrozenPlan plan_;
+  OutputList outputs_;
+  std::vector<double> start_inputs_;
+  const long constants_, moving_;
+  const bool moves_;
+  DimensionPath path_;
+  std::vector<char> memory_, replay_memory_;
+  SizeMemory size_memory_;
+  std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_;
+  std::vector<unsigned char> flags_;
+  std::vector<long> section_;  // of each row: branch points passed before it
+  std::vector<double> way_inputs_, way_whole_, nothing_, turn_, way_turn_, state_;
+  std::vector<double> parameters_, by_tape_, replayed_;
+  std::vector<std::uint8_t> verdict_;
+  long turn_slots_ = 0;
+};
+
+}  // namespace
+
+Variants::Variants(const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs, VariantBase base)
+    : tape_(tape), plan_(plan), outputs_(outputs), base_(std::move(base)) {}
+
+Refusal Variants::prepare() const {
+  const Tape& t = tape_.view();
+  const Plan& p = plan_.view();
+  const std::size_t table = (std::size_t)p.inputs * base_.rows;
+  const std::size_t constants = plan_.constants() + outputs_.constants();
+  REQUIRE(outputs_.fits(plan_), "outputs: of a plan with another structure");
+  REQUIRE((int)base_.parameters.size() == t.inputs, "parameters: one for each input of the tape");
+  REQUIRE((std::size_t)t.outputs == constants || (std::size_t)t.outputs == constants + 4 * table,
+          "the tape does not give the constants of plan and outputs");
+  REQUIRE(base_.rows <= MOST_ROWS, "rows: more than 100000000");
+  REQUIRE(base_.rows > 0 && base_.start_row >= 0 && base_.start_row < base_.rows, "rows: none, or no start among them");
+  for (const auto* values : {&base_.inputs, &base_.full, &base_.rates, &base_.accelerations, &base_.jerks})
+    REQUIRE(values->size() == table, "inputs: wrong shape");
+  REQUIRE((int)base_.state.size() == p.states, "state: wrong length");
+  REQUIRE(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
+  REQUIRE(!(outputs_.demand() & ~base_.demand), "the outputs need more than is demanded");
+  REQUIRE(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
+  REQUIRE(!(base_.demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  REQUIRE(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
+  REQUIRE(!(base_.demand & DEMAND_POWER), "no place for the power error");
+  const unsigned demand = base_.demand;
+  REQUIRE(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
+  REQUIRE(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");
+  REQUIRE(!(demand & DEMAND_JERK) || demand & DEMAND_ACCELERATION, "jerks need accelerations");
+  REQUIRE(base_.iterations >= 0 && base_.iterations <= 10000, "iterations: 0 to 10000");
+  for (const VariantWay& w : base_.ways) {
+    const std::size_t places = w.rows.size();
+    REQUIRE(places > 0 && w.values.size() == p.inputs * places, "ways: wrong shape");
+    for (long row : w.rows) REQUIRE(row < base_.rows, "ways: no such row");
+    REQUIRE(!w.course || (w.course->rows() == (long)places && w.course->inputs() <= p.inputs),
+            "ways: a course of other rows or inputs");
+    REQUIRE((std::size_t)t.outputs == constants, "ways: of inputs that do not move with the parameters");
+  }
+  REQUIRE(base_.whole.size() == table, "whole: wrong shape");
+  REQUIRE(are_whole_turns(base_.whole.data(), table), "whole: numbers of turns");
+  const int turns = turn_slots(p, *kernel_unit(2));
+  for (const ClosingAngle& a : base_.angles)
+    REQUIRE(a.slot >= 0 && a.slot < outputs_.view().slots && a.turn != -1 && a.turn >= -1 - p.inputs && a.turn < turns,
+            "angles: unknown slot");
+  return {};
+}
+
+void Variants::run(long count, const double* parameters, const KernelUnit& unit, int threads,
+                   const VariantArrays& out) const {
+  const long chunks = (count + VARIANTS_AT_A_TIME - 1) / VARIANTS_AT_A_TIME;
+  std::vector<std::unique_ptr<Worker>> workers;
+  for (long k = 0; k < std::clamp<long>(threads, 1, std::max(chunks, 1L)); ++k)
+    workers.push_back(std::make_unique<Worker>(tape_.view(), plan_, outputs_, base_, unit));
+  over_rows(count, VARIANTS_AT_A_TIME, threads, [&](long begin, long end, int thread) {
+    workers[thread]->run(begin, end, count, parameters, out);
+  });
+}
+
+VariantStart Variants::start(const double* parameters) const {
+  return Worker(tape_.view(), plan_, outputs_, base_, *kernel_unit(2)).start(parameters);
+}

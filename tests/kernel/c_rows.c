@@ -1,0 +1,110 @@
+/* Runs rows by the interface in C: c_rows PLAN GIVEN FOUND.
+ *
+ * GIVEN: int64 rows, demand, iterations, threads, with parameters or not, which given arrays there are (bits, in the order
+ * of mechkin_rows) and which found ones are asked for (likewise, after those that always are); then doubles: tight, coarse,
+ * accept, size, the parameters, the given arrays. FOUND: the constants, then the found arrays in their order. */
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mechkin.h"
+
+static void stop(const char* what, const char* why) {
+  fprintf(stderr, "%s: %s\n", what, why);
+  exit(1);
+}
+
+static void check(const char* what, mechkin_status status, const mechkin_message* message) {
+  if (status == MECHKIN_OTHER_WAY) exit(2);
+  if (status != MECHKIN_OK) stop(what, message->text);
+}
+
+static void* allocate(size_t size) {
+  void* memory = malloc(size ? size : 1);
+  if (!memory) stop("memory", "none");
+  return memory;
+}
+
+static double* numbers(FILE* file, size_t count) {
+  double* read = allocate(count * sizeof *read);
+  if (fread(read, sizeof *read, count, file) != count) stop("given", "too short");
+  return read;
+}
+
+static char* whole_text(const char* name, size_t* length) {
+  FILE* file = fopen(name, "rb");
+  char* text;
+  if (!file) stop(name, "not there");
+  fseek(file, 0, SEEK_END);
+  *length = (size_t)ftell(file);
+  rewind(file);
+  text = allocate(*length);
+  if (fread(text, 1, *length, file) != *length) stop(name, "too short");
+  fclose(file);
+  return text;
+}
+
+int main(int count, char** names) {
+  enum { ROWS, DEMAND, ITERATIONS, THREADS, VARIED, GIVEN, FOUND, HEAD };
+  int64_t head[HEAD];
+  mechkin_message message;
+  mechkin_plan* plan;
+  mechkin_sizes sizes;
+  mechkin_rows rows;
+  size_t length, k;
+  char* text;
+  double* tests;
+  FILE *given, *found;
+  if (count != 4) stop(names[0], "PLAN GIVEN FOUND");
+  text = whole_text(names[1], &length);
+  check("plan", mechkin_plan_create(text, length, &plan, &message), &message);
+  free(text);
+  sizes = mechkin_plan_sizes(plan);
+
+  given = fopen(names[2], "rb");
+  if (!given || fread(head, sizeof *head, HEAD, given) != HEAD) stop(names[2], "no head");
+  memset(&rows, 0, sizeof rows);
+  rows.rows = (size_t)head[ROWS], rows.demand = (unsigned)head[DEMAND];
+  rows.iterations = (int)head[ITERATIONS], rows.threads = (int)head[THREADS];
+  tests = numbers(given, 4);
+  rows.tight = tests[0], rows.coarse = tests[1], rows.accept = tests[2];
+  if (head[VARIED]) {
+    double* parameters = numbers(given, sizes.parameters);
+    check("parameters", mechkin_plan_set_parameters(plan, parameters, NULL, &message), &message);
+    free(parameters);
+  }
+  check("size", mechkin_plan_set_size(plan, tests[3], &message), &message);
+  {
+    const double** arrays[] = {&rows.inputs, &rows.guess,  &rows.rates, &rows.accelerations, &rows.jerks,
+                               &rows.ties,   &rows.turned, &rows.whole, &rows.full,          &rows.time};
+    const size_t columns[] = {sizes.inputs, sizes.states, sizes.inputs, sizes.inputs, sizes.inputs,
+                              sizes.ties,   sizes.turns,  sizes.inputs, sizes.inputs, 1};
+    for (k = 0; k < sizeof columns / sizeof *columns; ++k)
+      if (head[GIVEN] >> k & 1) *arrays[k] = numbers(given, columns[k] * rows.rows);
+  }
+  {
+    double** arrays[] = {&rows.states, &rows.residual, &rows.correction, &rows.values,      &rows.first,
+                         &rows.second, &rows.side,     &rows.condition,  &rows.power_error, &rows.loads};
+    const size_t columns[] = {sizes.states,  1,            1, sizes.values, sizes.columns,
+                              sizes.columns, sizes.blocks, 1, 1,            sizes.loads};
+    const size_t always = 3, arrays_count = sizeof columns / sizeof *columns;
+    double* constants = allocate(sizes.constants * sizeof *constants);
+    for (k = 0; k < arrays_count; ++k)
+      if (k < always || head[FOUND] >> (k - always) & 1)
+        *arrays[k] = allocate(columns[k] * rows.rows * sizeof(double));
+    rows.flags = allocate(rows.rows);
+    check("run", mechkin_run(plan, &rows, &message), &message);
+
+    found = fopen(names[3], "wb");
+    if (!found) stop(names[3], "cannot be written");
+    mechkin_plan_constants(plan, constants);
+    fwrite(constants, sizeof *constants, sizes.constants, found);
+    for (k = 0; k < arrays_count; ++k)
+      if (*arrays[k]) fwrite(*arrays[k], sizeof(double), columns[k] * rows.rows, found);
+    fwrite(rows.flags, 1, rows.rows, found);
+    if (fclose(found)) stop(names[3], "cannot be written");
+  }
+  mechkin_plan_free(plan);
+  return 0;
+}
