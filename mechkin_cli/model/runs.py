@@ -13,7 +13,7 @@ from mechkin_cli.arguments import a_text, a_whole_number, texts
 from mechkin_cli.building import used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
 from mechkin_cli.kernel.functions import check_threads, check_width
-from mechkin_cli.mechanism import find_legs, response_problem
+from mechkin_cli.mechanism import response_problem
 from mechkin_cli.memo import remembered
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.plan import needs_all_links
@@ -201,7 +201,7 @@ def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
         UsageError: one of some quantities is such, and something would spin.
     """
     problem = session.problem
-    if not names or not (find_legs(problem.mechanism) or problem.held):
+    if not names or not problem.has_idle:
         return
     for diagnostic in _causes_of_spin(session):
         known = problem.quantities()

@@ -223,7 +223,7 @@ class OutputPlan:
             joint_name, _, coordinate = wanted.coordinate.rpartition(".")
             return self._effort(joint_name, coordinate)
         if kind == "holding_moment":
-            number = layout.leg_number[owner]
+            number = layout.hung_number[owner]
             return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
         if kind == "reaction_level":
             return self._output(OutputCode.REACTION_LEVEL, 0, length)

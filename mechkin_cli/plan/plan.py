@@ -18,8 +18,6 @@ from mechkin_cli.mechanism import (
     Spring,
     Varying,
     cross,
-    frame_on,
-    norm,
     scale,
     turned_tensor,
     varying,
@@ -33,6 +31,7 @@ from mechkin_cli.plan.records import (
     Driven,
     FreeDirections,
     Friction,
+    HungLinks,
     Inertia,
     Input,
     JointAxis,
@@ -40,7 +39,6 @@ from mechkin_cli.plan.records import (
     PlanBlock,
     PlanContact,
     PlanGravity,
-    PlanLeg,
     PlanRecord,
     PlanTie,
     Program,
@@ -223,36 +221,33 @@ def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | PlanLeg:
-    joint, leg = closing.joint, closing.leg
+def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
+    constraint = closing.constraint
     loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
-    if leg is None:
-        first, second = layout.link_number[joint.first], layout.link_number[joint.second]
-        frames = layout.frame_on(first, joint.on_first), layout.frame_on(second, joint.on_second)
-        return ClosingJoint(joint.type.code, first, second, *frames, joint.parameter, loop)
-    first, second = layout.link_number[leg.first], layout.link_number[leg.second]
-    ends = frame_on(leg.start, leg.first), frame_on(leg.end, leg.second)
-    return PlanLeg(
-        layout.link_number[leg.body],
-        layout.link_number[leg.rod] if leg.rod else -1,
+    first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
+    one, other = constraint.frames
+    frames = layout.frame_on(first, one), layout.frame_on(second, other)
+    hung = constraint.hung
+    if hung is None or constraint.length is None:
+        return ClosingJoint(constraint.code, first, second, *frames, constraint.parameter, loop)
+    return HungLinks(
+        layout.link_number[hung.body],
+        layout.link_number[hung.rod] if hung.rod else -1,
         first,
         second,
-        layout.frame_on(first, ends[0]),
-        layout.frame_on(second, ends[1]),
-        norm(leg.span) / layout.length,
-        leg.line,
-        leg.slide_sign,
+        *frames,
+        constraint.length / layout.length,
+        hung.line,
+        hung.slide_sign,
         loop,
     )
 
 
 def _places(layout: Layout) -> Iterator[JointPlace]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
-    # a leg pushes the link at its end, whether that is the sphere's first or second
+    # the multipliers push the second link, whether that is the joint's second or first
     backward |= {
-        c.joint.name
-        for c in layout.graph.closings
-        if c.leg is not None and c.leg.second == c.joint.first
+        c.joint.name for c in layout.graph.closings if c.constraint.second == c.joint.first
     }
     for name, joint in layout.mechanism.joints.items():
         yield JointPlace(

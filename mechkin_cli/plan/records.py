@@ -58,8 +58,9 @@ class ClosingJoint(NamedTuple):
     loop: Loop
 
 
-class PlanLeg(NamedTuple):
-    """A leg between two points: `line` in its body, its length at zero slide."""
+class HungLinks(NamedTuple):
+    """A distance between two points and the links that hang between them: `line` in the body,
+    `length` at zero slide."""
 
     body: int
     rod: int
@@ -255,7 +256,7 @@ PlanRecord = (
     Units
     | TreeJoint
     | ClosingJoint
-    | PlanLeg
+    | HungLinks
     | JointPlace
     | JointAxis
     | FreeDirections
@@ -278,7 +279,7 @@ PlanRecord = (
 _VERBS: dict[type, str] = {
     TreeJoint: "add_tree_joint",
     ClosingJoint: "add_closing_joint",
-    PlanLeg: "add_leg",
+    HungLinks: "add_leg",
     JointPlace: "add_place",
     JointAxis: "add_axis",
     FreeDirections: "add_free_motion",
@@ -302,7 +303,7 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Units: ("length", "origin", "size"),
     TreeJoint: ("pitch", "at"),
     ClosingJoint: ("on_first", "on_second", "parameter"),
-    PlanLeg: ("on_first", "on_second", "length", "line"),
+    HungLinks: ("on_first", "on_second", "length", "line"),
     JointPlace: ("point",),
     JointAxis: ("vector", "other_vector"),
     FreeDirections: ("vector",),

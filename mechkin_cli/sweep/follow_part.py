@@ -89,12 +89,12 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
 
 
 def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
-    """The block in which the leg of each hung body is closed."""
+    """The block whose closings place each link that hangs between two points."""
     return {
-        leg.body: b
+        link: b
         for b, block in enumerate(graph.blocks)
         for c in block.closings
-        if (leg := graph.closings[c].leg) is not None
+        for link in graph.closings[c].constraint.links
     }
 
 
@@ -116,8 +116,8 @@ def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) 
     gone_links: set[str] = set()
     hangs, gone_blocks = _hanging_blocks(graph), set(left_out)
     for k, edge in enumerate(graph.edges):
-        leg_gone = edge.hung and hangs[edge.child] in gone_blocks
-        if k in unknown or leg_gone or edge.parent in gone_links:
+        unhung = edge.hung and hangs[edge.child] in gone_blocks
+        if k in unknown or unhung or edge.parent in gone_links:
             gone_links.add(edge.child)
             gone_joints.add(edge.joint.name)
     return Mechanism(
