@@ -166,12 +166,10 @@ class BenchScene:
         """One call of the kernel that closes some rows of the sweep from guesses (states, rows) and
         computes a level, or some quantities, and what is demanded beside them."""
         wanted = self.wanted(self.names(level))
-        session, inputs = self.session.packed(packing), self.session.inputs
+        session = self.session.packed(packing)
         demand = demand_of(self.problem.mechanism, wanted) | more
-        moments = self.problem.motion.time
-        time = None if moments is None else moments.values
         states = self.result.row_states
-        rows = inputs.at(states.states, states.turns, time, session.tie_rates).at(at)
+        rows = session.row_inputs(states.states, states.turns).at(at)
         readout = session.readout(wanted)
         ask = Ask(demand, readout, iterations=iterations, tests=tests)
 

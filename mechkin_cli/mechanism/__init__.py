@@ -12,6 +12,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.constraint import (
         Constraint as Constraint,
+        InputConstraint as InputConstraint,
         PairConstraint as PairConstraint,
         Spin as Spin,
     )
@@ -172,7 +173,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": ["Constraint", "PairConstraint", "Spin"],
+        "constraint": ["Constraint", "InputConstraint", "PairConstraint", "Spin"],
         "curve": ["Curve", "Joining", "LoadLaw", "joined_curve"],
         "derived": [
             "COEFFICIENT_KINDS",

@@ -440,3 +440,18 @@ def find_constraints(
     """What holds the links of a mechanism together and is no single joint."""
     size = largest(0.0, *(norm(joint.on_first.o) for joint in joints))
     return tuple(_distances(links, joints_at, size))
+
+
+# Inputs of one motor: `drive: tie`.
+
+
+class InputConstraint(NamedTuple):
+    """A tie: the motor of input `leader`, which follows none, moves `input`, too (both by number).
+
+    Its equation is between inputs, which are given row by row, so that it closes nothing and only
+    its Jacobian is needed: the rate of the input by the leader. Its multiplier is the effort at the
+    input, which the leader's motor carries at that rate.
+    """
+
+    input: int
+    leader: int

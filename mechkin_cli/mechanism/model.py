@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from mechkin_cli.diagnostics import SHORT_LIST
-from mechkin_cli.mechanism.constraint import Constraint, Spin, find_constraints
+from mechkin_cli.mechanism.constraint import Constraint, InputConstraint, Spin, find_constraints
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # Where the efforts act that keep up the motion of the inputs: at these, or at actuators.
 #
 # The motion is prescribed at the inputs. Without actuators each input has a drive of its own,
-# unless a tie moves it: then the motor of the input that it follows carries what the tie transmits.
+# unless a constraint moves it: then the motor of its leader carries what the constraint transmits.
 # Actuators do the virtual work of the inputs' generalised efforts: J^T t = Q, where J are the rates
 # of the actuators' coordinates by those of the inputs (docs/numerics.md, Actuators).
 
@@ -34,12 +34,12 @@ Coordinate = tuple[str, str]
 
 
 class Drives(NamedTuple):
-    """The inputs, the actuators (none: the inputs' own drives), and ties (input, leader) by number
-    of the inputs; a leader is tied to nothing, an input may be tied to several."""
+    """The inputs, the actuators (none: the inputs' own drives), and the constraints between inputs;
+    a leader has none, an input may have several."""
 
     inputs: tuple[Coordinate, ...]
     actuators: tuple[Coordinate, ...] = ()
-    ties: tuple[tuple[int, int], ...] = ()
+    constraints: tuple[InputConstraint, ...] = ()
 
     @property
     def acting(self) -> tuple[Coordinate, ...]:
@@ -49,12 +49,12 @@ class Drives(NamedTuple):
     @property
     def freedoms(self) -> int:
         """How many inputs move on their own."""
-        return len(self.inputs) - len({tied for tied, _ in self.ties})
+        return len(self.inputs) - len({c.input for c in self.constraints})
 
     @property
     def are_plain(self) -> bool:
         """Whether each input has a drive of its own."""
-        return not self.actuators and not self.ties
+        return not self.actuators and not self.constraints
 
 
 def without_effort(

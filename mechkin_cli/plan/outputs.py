@@ -262,7 +262,7 @@ class OutputPlan:
         }[kind]
 
     def _motor(self, joint: str, coordinate: str) -> int:
-        """The effort where it acts: at an input with what its ties transmit, or at an actuator."""
+        """The effort where it acts: at an input with what it carries of others, or at actuators."""
         drives = self.layout.drives
         if drives is None or not drives.actuators:
             code = OutputCode.EFFORT if drives is None else OutputCode.MOTOR

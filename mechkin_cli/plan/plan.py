@@ -40,10 +40,10 @@ from mechkin_cli.plan.records import (
     PlanContact,
     PlanGravity,
     PlanRecord,
-    PlanTie,
     Program,
     Rest,
     SizePoint,
+    Transmission,
     TreeJoint,
     Units,
     hand_over,
@@ -366,7 +366,7 @@ def _load_program(layout: Layout) -> list[Program]:
     return load_program(layout)
 
 
-def _drives(layout: Layout) -> Iterator[Driven | Actuator | PlanTie]:
+def _drives(layout: Layout) -> Iterator[Driven | Actuator | Transmission]:
     drives = layout.drives
     if drives is None:
         return
@@ -374,7 +374,7 @@ def _drives(layout: Layout) -> Iterator[Driven | Actuator | PlanTie]:
     for joint, coordinate in drives.actuators:
         axis, reference, freedom, _ = load_coordinate(layout, joint, coordinate)
         yield Actuator(axis, reference, freedom)
-    yield from (PlanTie(*pair) for pair in drives.ties)
+    yield from (Transmission(*constraint) for constraint in drives.constraints)
 
 
 def _size_points(layout: Layout) -> Iterator[SizePoint]:

@@ -199,7 +199,7 @@ class Actuator(NamedTuple):
     freedom: int
 
 
-class PlanTie(NamedTuple):
+class Transmission(NamedTuple):
     """An input that is moved by the motor of another, its leader."""
 
     input: int
@@ -269,7 +269,7 @@ PlanRecord = (
     | Program
     | Driven
     | Actuator
-    | PlanTie
+    | Transmission
     | Friction
     | PlanContact
     | SizePoint
@@ -292,7 +292,7 @@ _VERBS: dict[type, str] = {
     Program: "set_load_program",
     Driven: "set_driven",
     Actuator: "add_actuator",
-    PlanTie: "add_tie",
+    Transmission: "add_tie",
     Friction: "add_friction",
     PlanContact: "add_contact",
     SizePoint: "add_size_point",

@@ -32,6 +32,11 @@ if TYPE_CHECKING:
         follow as follow,
         step_limits as step_limits,
     )
+    from mechkin_cli.session.input_path import (
+        InputPath as InputPath,
+        followers_of as followers_of,
+        input_path as input_path,
+    )
     from mechkin_cli.session.inputs import (
         ORIENTATION as ORIENTATION,
         KernelInputs as KernelInputs,
@@ -70,11 +75,6 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.session.shifted import ShiftingPrecise as ShiftingPrecise
     from mechkin_cli.session.structure import Coordinate as Coordinate, Structure as Structure
-    from mechkin_cli.session.ties import (
-        InputTie as InputTie,
-        followers_of as followers_of,
-        input_tie as input_tie,
-    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -94,6 +94,7 @@ __getattr__, __dir__ = lazy_names(
             "follow",
             "step_limits",
         ],
+        "input_path": ["InputPath", "followers_of", "input_path"],
         "inputs": [
             "KernelInputs",
             "ORIENTATION",
@@ -127,6 +128,5 @@ __getattr__, __dir__ = lazy_names(
         "session": ["Continued", "ContinuedFrom", "Packing", "Session"],
         "shifted": ["ShiftingPrecise"],
         "structure": ["Coordinate", "Structure"],
-        "ties": ["InputTie", "followers_of", "input_tie"],
     },
 )

@@ -371,9 +371,9 @@ class Between(NamedTuple):
     @classmethod
     def of(cls, result: Result) -> Between | None:
         """None where the motion is not known there: without time, and where several inputs move by
-        one motor, whose ties are those of the rows."""
+        one motor, whose rates by it are those of the rows."""
         motion = result.problem.motion
-        if motion.time is None or motion.course is None or motion.tied:
+        if motion.time is None or motion.course is None or motion.constraints:
             return None
         return cls(result, np.unique(motion.course.at[motion.course.rows < 0]))
 
