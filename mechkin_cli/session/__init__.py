@@ -22,6 +22,11 @@ if TYPE_CHECKING:
         precise_inputs as precise_inputs,
     )
     from mechkin_cli.session.exchanged import Exchanged as Exchanged, exchange as exchange
+    from mechkin_cli.session.followers import (
+        InputPath as InputPath,
+        followers_of as followers_of,
+        input_path as input_path,
+    )
     from mechkin_cli.session.following import (
         BranchFold as BranchFold,
         BranchPoint as BranchPoint,
@@ -31,11 +36,6 @@ if TYPE_CHECKING:
         Runaway as Runaway,
         follow as follow,
         step_limits as step_limits,
-    )
-    from mechkin_cli.session.input_path import (
-        InputPath as InputPath,
-        followers_of as followers_of,
-        input_path as input_path,
     )
     from mechkin_cli.session.inputs import (
         ORIENTATION as ORIENTATION,
@@ -84,6 +84,7 @@ __getattr__, __dir__ = lazy_names(
         "cells": ["Formula", "cells_of"],
         "double_double": ["Precise", "PreciseInputs", "precise_inputs"],
         "exchanged": ["Exchanged", "exchange"],
+        "followers": ["InputPath", "followers_of", "input_path"],
         "following": [
             "BranchFold",
             "BranchPoint",
@@ -94,7 +95,6 @@ __getattr__, __dir__ = lazy_names(
             "follow",
             "step_limits",
         ],
-        "input_path": ["InputPath", "followers_of", "input_path"],
         "inputs": [
             "KernelInputs",
             "ORIENTATION",
