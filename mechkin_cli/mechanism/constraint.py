@@ -71,7 +71,8 @@ class HungLinks(NamedTuple):
 
 @dataclass(frozen=True)
 class Constraint:
-    """Equations between two links, under the name of a joint whose wrench their multipliers are.
+    """Equations between two links; their multipliers are the wrench of `joint`, whose name they
+    have.
 
     What follows are the answers of a kind that has none of its own.
     """
@@ -88,7 +89,18 @@ class Constraint:
     @property
     def joints(self) -> tuple[str, ...]:
         """The joints that it stands for, in order."""
-        return (self.joint.name,)
+        return (self.name,)
+
+    @property
+    def placed(self) -> tuple[str, ...]:
+        """The links that stand where its equations say, those that they are written in and its
+        own."""
+        return self.joint.first, self.joint.second
+
+    @property
+    def is_reversed(self) -> bool:
+        """Whether its multipliers push the joint's first link, not its second."""
+        return False
 
     @property
     def equations(self) -> int:
@@ -96,9 +108,14 @@ class Constraint:
         return 1
 
     @property
+    def space(self) -> int:
+        """Freedoms of a free body where it works: six, or three in a plane."""
+        return self.joint.type.space
+
+    @property
     def freedoms(self) -> int:
         """Freedoms that it leaves between its links, its own included."""
-        return self.joint.type.space - self.equations + len(self.slides)
+        return self.space - self.equations + len(self.slides)
 
     @property
     def has_coordinates(self) -> bool:
@@ -168,9 +185,14 @@ class Constraint:
         return None
 
     @property
+    def kind(self) -> str:
+        """The letter of its kind."""
+        return self.joint.letter
+
+    @property
     def label(self) -> str:
         """How it is called where loops are closed."""
-        return f"{self.joint.name} ({self.joint.letter})"
+        return f"{self.name} ({self.kind})"
 
     @property
     def words(self) -> str:
@@ -236,7 +258,12 @@ class DistanceConstraint(Constraint):
     @property
     def joints(self) -> tuple[str, ...]:
         """Both spheres, and the slide between them."""
-        return (self.start.name, *(slide.name for slide in self.slides), self.joint.name)
+        return (self.start.name, *(slide.name for slide in self.slides), self.name)
+
+    @property
+    def is_reversed(self) -> bool:
+        """Where the sphere's first link is the one that the leg ends at."""
+        return self.second == self.joint.first
 
     @property
     def frames(self) -> tuple[Frame, Frame]:

@@ -126,7 +126,7 @@ class Layout:
         """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
         joint."""
         tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
-        return tree | {c.joint.name: -1 - k for k, c in enumerate(self.graph.closings)}
+        return tree | {c.name: -1 - k for k, c in enumerate(self.graph.closings)}
 
     @cached_property
     def hung_number(self) -> dict[str, int]:

@@ -11,8 +11,8 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     ZERO,
     Attached,
+    Constraint,
     Damper,
-    Joint,
     JointLoad,
     LinkLoad,
     Spring,
@@ -246,9 +246,7 @@ def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
 def _places(layout: Layout) -> Iterator[JointPlace]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
     # the multipliers push the second link, whether that is the joint's second or first
-    backward |= {
-        c.joint.name for c in layout.graph.closings if c.constraint.second == c.joint.first
-    }
+    backward |= {c.name for c in layout.graph.closings if c.constraint.is_reversed}
     for name, joint in layout.mechanism.joints.items():
         yield JointPlace(
             layout.joint_reference[name],
@@ -297,8 +295,8 @@ def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached)
 def _blocks(layout: Layout) -> Iterator[PlanBlock | Rest]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
-        joints = [layout.graph.closings[c].joint for c in block.closings]
-        needed = _new_on_ways(layout, joints, placed)
+        constraints = [layout.graph.closings[c].constraint for c in block.closings]
+        needed = _new_on_ways(layout, constraints, placed)
         if block.charts:
             needed |= _new_carrying(layout, block.unknowns, placed | needed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
@@ -307,13 +305,13 @@ def _blocks(layout: Layout) -> Iterator[PlanBlock | Rest]:
     yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
 
 
-def _new_on_ways(layout: Layout, joints: Iterable[Joint], placed: set[int]) -> set[int]:
-    """Kernel joints on the ways from ground to both links of some joints that are not placed yet.
+def _new_on_ways(layout: Layout, constraints: Iterable[Constraint], placed: set[int]) -> set[int]:
+    """Kernel joints on the ways from ground to what some constraints place that are not placed yet.
 
     What carries a placed one is placed too.
     """
     found: set[int] = set()
-    for link in (link for joint in joints for link in (joint.first, joint.second)):
+    for link in (link for constraint in constraints for link in constraint.placed):
         k = layout.link_number[link]
         while k >= 0 and k not in placed and k not in found:
             found.add(k)

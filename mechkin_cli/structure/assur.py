@@ -256,7 +256,7 @@ class _System:
                 not c.has_coordinates,
                 c.freedoms,
                 c.driven,
-                c.joint.letter,
+                c.constraint.kind,
                 row.equations,
                 len(row.nodes),
             )

@@ -122,7 +122,7 @@ def lay_blocks(
         equations = sum(closing.equations for closing in some)
         if not unknowns:
             loops = [
-                [closing.joint.name, *(edges[k].joint.name for k, _ in closing.loop)]
+                [closing.name, *(edges[k].joint.name for k, _ in closing.loop)]
                 for closing in some
                 if closing.constraint.has_coordinates
             ]

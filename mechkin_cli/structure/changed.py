@@ -99,7 +99,7 @@ def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:
     edges = tuple(edge._replace(joint=renewed(edge.joint)) for edge in graph.edges)
     closings = tuple(
         closing._replace(
-            constraint=others.get(closing.joint.name) or PairConstraint.of(renewed(closing.joint))
+            constraint=others.get(closing.name) or PairConstraint.of(renewed(closing.joint))
         )
         for closing in graph.closings
     )

@@ -61,6 +61,11 @@ class CutJoint(NamedTuple):
     loop: tuple[tuple[int, int], ...]
 
     @property
+    def name(self) -> str:
+        """The constraint's name."""
+        return self.constraint.name
+
+    @property
     def joint(self) -> Joint:
         """The joint whose name it has."""
         return self.constraint.joint
@@ -192,5 +197,5 @@ def undriven(
 def structure_of(graph: SolverGraph) -> object:
     """What two graphs of the same structure have in common."""
     edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
-    closings = tuple((closing.joint.name, closing.loop) for closing in graph.closings)
+    closings = tuple((closing.name, closing.loop) for closing in graph.closings)
     return edges, closings, graph.blocks, graph.inputs

@@ -182,7 +182,7 @@ class Connection(NamedTuple):
     @property
     def space(self) -> int:
         """Freedoms of a free body where it works: six, or three in a plane."""
-        return self.joint.type.space
+        return self.constraint.space
 
     @property
     def has_screws(self) -> bool:

@@ -75,14 +75,14 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
         joints = {
             graph.edges[k].joint.name for c in block.closings for k, _ in graph.closings[c].loop
         }
-        joints |= {graph.closings[c].joint.name for c in block.closings}
+        joints |= {graph.closings[c].name for c in block.closings}
         if joints & set(problem.follow or ()):
             needed.add(b)
     front = list(needed)
     for b in front:
         for c in graph.blocks[b].closings:
-            joint = graph.closings[c].joint
-            more = (blocks_of(joint.first) | blocks_of(joint.second)) - needed
+            placed = graph.closings[c].constraint.placed
+            more = {b for link in placed for b in blocks_of(link)} - needed
             needed |= more
             front += more
     return needed
@@ -112,7 +112,7 @@ def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
 def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) -> Mechanism:
     """The mechanism without some blocks' closing joints and what their unknowns carry."""
     unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
-    gone_joints = {graph.closings[c].joint.name for b in left_out for c in graph.blocks[b].closings}
+    gone_joints = {graph.closings[c].name for b in left_out for c in graph.blocks[b].closings}
     gone_links: set[str] = set()
     hangs, gone_blocks = _hanging_blocks(graph), set(left_out)
     for k, edge in enumerate(graph.edges):
@@ -137,7 +137,7 @@ def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
         for c in graph.blocks[b].closings:
             closing = graph.closings[c]
             loop = [graph.edges[k].joint.name for k, _ in closing.loop]
-            names.append(", ".join(sorted({*loop, closing.joint.name})))
+            names.append(", ".join(sorted({*loop, closing.name})))
     loops = "the loop" if len(names) == 1 else "the loops"
     left = "is left out" if len(names) == 1 else "are left out"
     return Diagnostic(

@@ -117,7 +117,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
     joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
-    joints = sorted(filter(is_written, {*joints, *(c.joint.name for c in graph.closings)}))
+    joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
     unique = _unique_loads(result, asked)
