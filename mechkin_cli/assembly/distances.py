@@ -69,10 +69,10 @@ def in_order(distances: list[float], home: list[float]) -> list[int]:
     """Numbers of assemblies, the nearest first; among those as near but for rounding, the nearest
     to the drawing."""
     least = min(distances, default=0.0)
-    tied = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
-    rest = [i for i in range(len(distances)) if i not in tied]
+    equal = [i for i, d in enumerate(distances) if d <= least + tolerances.SAME_MODE]
+    rest = [i for i in range(len(distances)) if i not in equal]
     rest.sort(key=lambda i: distances[i])
-    return [*sorted(tied, key=lambda i: home[i]), *rest]
+    return [*sorted(equal, key=lambda i: home[i]), *rest]
 
 
 def is_unclear(best: float, second: float) -> bool:

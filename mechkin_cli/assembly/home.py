@@ -133,7 +133,7 @@ def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> Na
 def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
     """The name of each assembly, by its number, in the order of the names.
 
-    Assemblies that no coordinate tells apart, as of a body on legs, follow their joint points
+    Assemblies that no coordinate tells apart, as of a platform on rods, follow their joint points
     (points, 3, assemblies).
     """
     order = sorted(

@@ -125,7 +125,7 @@ def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
 
 def _unique(session: Session, state: Floats, condition: float) -> float:
     """Distance from an assembly (states,) within which there is no other; 0 where none is known."""
-    if any(closing.leg is not None for closing in session.graph.closings):
+    if not all(closing.constraint.has_coordinates for closing in session.graph.closings):
         return 0.0
     least = inf
     for block in session.graph.blocks:
@@ -221,7 +221,7 @@ def _failed_loop(session: Session, found: Assemblies) -> str:
     names: dict[str, None] = {}
     closings = graph.blocks[found.failed].closings
     for closing in (graph.closings[c] for c in closings):
-        joints = (closing.joint.name,) if closing.leg is None else closing.leg.joints
+        joints = closing.constraint.joints
         ways = {sign: [e for e, s in closing.loop if e >= 0 and s == sign] for sign in (1, -1)}
         # outward to the closing joint's first link, and back
         there, back = ([graph.edges[e].joint.name for e in sorted(ways[s])] for s in (-1, 1))

@@ -201,8 +201,9 @@ def dense_system(
     mechanism, motion = result.problem.mechanism, row_motion(result, row)
     pairs = [pair_terms(joint, motion, along) for joint in mechanism.joints.values()]
     drives = mechanism.drives
-    # a motor that carries what a tie transmits gives another effort than acts at its own coordinate
-    word = "drive" if drives is not None and drives.ties else "effort"
+    # a motor that carries what another input needs gives another effort than acts at its own
+    # coordinate
+    word = "drive" if drives is not None and drives.constraints else "effort"
     inputs = [effort(mechanism.joints[j], c, motion, word) for j, c in result.problem.acting]
     terms = [*(unknown for pair in pairs for unknown in pair.unknowns), *inputs]
     unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))

@@ -24,7 +24,7 @@ from mechkin_cli.derived import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import atan2, cos, sin
 from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, LoadWork
-from mechkin_cli.session import input_tie
+from mechkin_cli.session import input_path
 from mechkin_cli.sweep import stands_elsewhere
 from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, Words, column_of
 from mechkin_cli.tolerances import REACTION_ROUNDING
@@ -55,9 +55,9 @@ def rates_along(result: Result, cycle: Cycle) -> KernelInputs:
         # equal steps of time and of the input: it turns at one rate
         rates = session.inputs.rates / session.inputs.rates[cycle.number]
         return along._replace(rates=rates)
-    tie = input_tie(session, cycle.number)
-    if tie is not None:
-        rates = tie.derivatives(session.inputs.values[cycle.number])[1]
+    path = input_path(session, cycle.number)
+    if path is not None:
+        rates = path.derivatives(session.inputs.values[cycle.number])[1]
         rates[cycle.number] = 1.0
         along = along._replace(rates=np.ascontiguousarray(rates))
     return along

@@ -3,7 +3,7 @@
 The tree and the closing joints are those of the solver graph, so that every solver is given the
 smallest systems that mechkin has found; formulas are its own. SI, ground axes of the drawing.
 A body is placed by D = D_parent B E(q) A with constant frames B and A and an elementary
-displacement E; a closing joint is a common point, a distance of two points (a leg), or two frames
+displacement E; a closing joint is a common point, a distance of two points (rods), or two frames
 that its own chain of displacements brings together.
 """
 
@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from mechkin_cli.mechanism import Frame, frame_on, norm
+from mechkin_cli.mechanism import Frame
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Joint, Part
@@ -86,7 +86,7 @@ class TreeCoordinate(NamedTuple):
 
 @dataclass(frozen=True)
 class BodyTree:
-    """Bodies in placing order (None where a leg hangs), closings, coordinates.
+    """Bodies in placing order (None where one hangs), closings, coordinates.
 
     `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states` says for
     each coordinate where it stands in the kernel's states, a ball's first one with its quaternion;
@@ -181,15 +181,15 @@ class _Builder:
         return TreeDisplacement(part.letter, part.before, part.after, joint.pitch, first)
 
     def _closing(self, closing: CutJoint) -> Closed:
-        joint, leg, bodies = closing.joint, closing.leg, self.layout.link_number
-        if leg is not None:
-            ends = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o
-            slide = None
-            if leg.slide is not None:
-                slide = self._number(self.layout.edge_number[leg.slide.name], 0)
-            places = bodies[leg.first], bodies[leg.second], *ends
-            return Distance(*places, norm(leg.span), slide, leg.slide_sign)
-        first, second = bodies[joint.first], bodies[joint.second]
+        joint, constraint, bodies = closing.joint, closing.constraint, self.layout.link_number
+        first, second = bodies[constraint.first], bodies[constraint.second]
+        if constraint.length is not None:
+            one, other = (at.vector for at in constraint.points)
+            slide, hung = None, constraint.hung
+            for own in constraint.slides:
+                slide = self._number(self.layout.edge_number[own.name], 0)
+            sign = 0.0 if hung is None else hung.slide_sign
+            return Distance(first, second, one, other, constraint.length, slide, sign)
         if joint.type.is_ball:
             return CommonPoint(first, second, joint.on_first.o, joint.on_second.o)
         freedom, found = 0, []

@@ -19,7 +19,6 @@ from mechkin_cli.balances import DenseSystem, dense_system, row_motion
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, BenchScene, Values
 from mechkin_cli.kernel.functions import widths
-from mechkin_cli.mechanism import find_legs
 from mechkin_cli.plan import Demand
 from mechkin_cli.session import RESIDUAL_TESTS, Batch, Packing, follow, step_limits
 from mechkin_cli.show import Floats
@@ -147,7 +146,7 @@ EFFORT = 4
 
 def dense_methods(scene: BenchScene) -> Iterator[Method]:
     """The solution of all places in one call."""
-    if find_legs(scene.problem.mechanism):
+    if scene.problem.mechanism.spins:
         raise Unable("links between two balls spin freely, so that its system is singular")
     systems = [dense_system(scene.result, int(row)) for row in scene.places]
     first = systems[0]

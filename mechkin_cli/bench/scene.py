@@ -20,7 +20,6 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.bench.chain import BodyTree, chain_of
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import find_legs
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import RESIDUAL_TESTS, Ask, Batch, Packing, Session
 from mechkin_cli.sweep import analyze, at_once
@@ -167,12 +166,10 @@ class BenchScene:
         """One call of the kernel that closes some rows of the sweep from guesses (states, rows) and
         computes a level, or some quantities, and what is demanded beside them."""
         wanted = self.wanted(self.names(level))
-        session, inputs = self.session.packed(packing), self.session.inputs
+        session = self.session.packed(packing)
         demand = demand_of(self.problem.mechanism, wanted) | more
-        moments = self.problem.motion.time
-        time = None if moments is None else moments.values
         states = self.result.row_states
-        rows = inputs.at(states.states, states.turns, time, session.tie_rates).at(at)
+        rows = session.row_inputs(states.states, states.turns).at(at)
         readout = session.readout(wanted)
         ask = Ask(demand, readout, iterations=iterations, tests=tests)
 
@@ -248,7 +245,7 @@ class BenchScene:
     def _points(self) -> dict[str, Attached]:
         """Named points on links that move and have a place of their own."""
         mechanism = self.problem.mechanism
-        spinning = {link for leg in find_legs(mechanism) for link in leg.links}
+        spinning = {link for spin in mechanism.spins for link in spin.links}
         fixed = {"ground", *spinning}
         return {name: at for name, at in mechanism.points.items() if at.link not in fixed}
 

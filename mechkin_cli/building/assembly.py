@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli.building.fields import Fields, Path, dimension_of, is_coordinate
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.idle import held_freedoms
-from mechkin_cli.mechanism import Assembly, Joint, Problem, find_legs
+from mechkin_cli.mechanism import Assembly, Joint, Problem
 from mechkin_cli.schema import AssemblySection
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def held_of(problem: Problem) -> tuple[LockedFreedom, ...]:
 def note_spins(fields: Fields, problem: Problem, *, free: bool = False) -> None:
     """Notes what would drive the idle freedoms: kinematics alone does not know how they move, and a
     `free` motion where its start does not name them."""
-    if not (find_legs(problem.mechanism) or problem.held):
+    if not problem.has_idle:
         return
     from mechkin_cli.idle import spin_errors
 

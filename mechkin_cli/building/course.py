@@ -1,4 +1,4 @@
-"""The course of the inputs between the rows, recorded from their laws and ties.
+"""The course of the inputs between the rows, recorded from their laws.
 
 The parameter is the time where there is one, else the one input that the others follow, else the
 number of the row. Laws and expressions are written down on a tape as they stand in the file; where
@@ -154,7 +154,7 @@ def _recorded(
     return Formula(tape, edges, constants)
 
 
-def build_ties(
+def build_paths(
     fields: Fields,
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
@@ -168,7 +168,7 @@ def build_ties(
     own = [item for item in inputs if item.name not in expressions]
     values = [float(item.values[0]) for item in own]
     moment = [] if time is None else [float(time.values[0])]
-    ties = []
+    paths = []
     for leader in own:
         if leader.name not in _leaders(expressions):
             continue
@@ -183,8 +183,8 @@ def build_ties(
         }
         if time is not None:
             known["time"] = Quantity(registers[-1], TIME)
-        ties.append((leader.name, _tape(fields, inputs, expressions, known, recorder)))
-    return tuple(ties)
+        paths.append((leader.name, _tape(fields, inputs, expressions, known, recorder)))
+    return tuple(paths)
 
 
 def _leaders(expressions: Mapping[str, Expression]) -> set[str]:
@@ -228,8 +228,8 @@ class Following:
 
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
     that are known, by name, and `path` leads to their section; `expressions` gets those of inputs
-    that follow, in the order in which they are evaluated; `tied` are those that the motors of
-    others move.
+    that follow, in the order in which they are evaluated; `constrained` are those that the
+    motors of others move.
     """
 
     def __init__(
@@ -246,7 +246,7 @@ class Following:
         self.time = time
         self.path = path
         self.expressions: dict[str, Expression] = {}
-        self.tied: set[str] = set()
+        self.constrained: set[str] = set()
 
     def add_all(self, sections: Mapping[str, FollowingInput], coordinates: frozenset[str]) -> None:
         """Adds all inputs of some sections to `orders`; errors are noted in `fields`.
@@ -256,7 +256,7 @@ class Following:
         waiting: dict[str, Expression] = {}
         for name, section in sections.items():
             if section.drive == "tie":
-                self.tied.add(name)
+                self.constrained.add(name)
             if literal(section.value) is not None:
                 self._hold(name, section.value)
                 continue
@@ -272,12 +272,12 @@ class Following:
             for name in ready:
                 self._follow(name, waiting.pop(name))
 
-    def tie_rates(self) -> dict[tuple[str, str], Floats]:
-        """Rates (rows,) in SI of each tied input by each input that is not tied and that it
-        follows, through others or not; what follows none is noted in `fields`."""
+    def constraint_rates(self) -> dict[tuple[str, str], Floats]:
+        """Rates (rows,) in SI of each constrained input by each free one that it follows,
+        through others or not; what follows none is noted in `fields`."""
         found: dict[str, dict[str, Floats]] = {}
         for name, expression in self.expressions.items():
-            if name not in self.tied:
+            if name not in self.constrained:
                 continue
             own = found[name] = {}
             for used in sorted(expression.names & self.orders.keys()):
@@ -285,7 +285,7 @@ class Following:
                 leaders = found.get(used) or {used: np.ones(self.rows)}
                 for leader, through in leaders.items():
                     own[leader] = own.get(leader, np.zeros(self.rows)) + rate * through
-        for name in sorted(self.tied - {name for name, own in found.items() if own}):
+        for name in sorted(self.constrained - {name for name, own in found.items() if own}):
             text = f"{name} follows no input whose motor could move it"
             self.fields.error(
                 "tied-to-nothing", (*self.path, name, "drive"), text, "remove drive: tie"

@@ -143,7 +143,7 @@ def exact_motion(
     if section.time is not None:
         written["time"] = reading.moment
         in_si["time"] = fields.units.to_si(reading.moment, TIME)
-    return ExactMotion(rows, in_si, written, reading.tie_rates(motion))
+    return ExactMotion(rows, in_si, written, reading.constraint_rates(motion))
 
 
 def exact_moments(
@@ -256,11 +256,11 @@ class _Reading:
                 for k, order in enumerate(orders)
             )
 
-    def tie_rates(self, motion: MotionInputs) -> tuple[Any, ...]:
-        """The rates of tied inputs by those of their leaders, in the motion's order."""
+    def constraint_rates(self, motion: MotionInputs) -> tuple[Any, ...]:
+        """The rates of constrained inputs by those of their leaders, in the motion's order."""
         names = [item.name for item in motion.inputs]
         found = []
-        for tied, leader in motion.tied:
+        for number, leader in motion.constraints:
             seeds: dict[str, Any] = {
                 name: (self.in_si[name][0], float(name == names[leader]), 0.0, 0.0)
                 for name in self.in_si
@@ -274,7 +274,7 @@ class _Reading:
                     name.rpartition(".")[2],
                     lambda used, known=known: self._quantity(used, known),
                 )
-            found.append(seeds[names[tied]][1])
+            found.append(seeds[names[number]][1])
         return tuple(found)
 
     def _followed(self, expression: Expression, coordinate: str, resolve: Any) -> Orders:

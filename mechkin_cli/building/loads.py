@@ -367,7 +367,7 @@ class LoadBuilder:
         return True
 
 
-# `actuators:` - the coordinates at which efforts act, when not at the inputs; and `drive: tie`.
+# `actuators:` - the coordinates at which efforts act, when not at the inputs.
 
 EFFORT = "effort"
 
@@ -387,14 +387,14 @@ def build_drives(
         if _is_actuator(fields, ("actuators", number), name, joints, names[:number])
         for joint, _, coordinate in (name.rpartition("."),)
     )
-    drives = Drives(tuple(motion.driven), actuators, motion.tied)
+    drives = Drives(tuple(motion.driven), actuators, motion.constraints)
     if fields.error_count == errors and names:
         _check_count(fields, drives, section)
     if fields.error_count > errors:
         # nothing is said of the efforts that follow from what is wrong here
         for joint in joints.values():
             fields.refused.update(f"{n}.{EFFORT}" for n in (joint.name, *joint.coordinates))
-        return Drives(tuple(motion.driven), (), motion.tied)
+        return Drives(tuple(motion.driven), (), motion.constraints)
     return drives
 
 

@@ -22,6 +22,7 @@ from mechkin_cli.mechanism import (
     Attached,
     DrivenInput,
     Frame,
+    InputConstraint,
     Joint,
     JointType,
     Moments,
@@ -224,16 +225,16 @@ def build_inputs(
     if fields.error_count == errors:
         limit.is_exceeded(fields, written.path, rows)
     expressions: dict[str, Expression] = {}
-    tie_rates: dict[tuple[str, str], Floats] = {}
+    constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.course import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        tied = Following(fields, orders, rows, time, written.path)
-        tied.add_all(following, coordinates)
-        expressions = tied.expressions
+        followed = Following(fields, orders, rows, time, written.path)
+        followed.add_all(following, coordinates)
+        expressions = followed.expressions
         if fields.error_count == errors:
-            tie_rates = tied.tie_rates()
+            constraint_rates = followed.constraint_rates()
     if fields.error_count > errors:
         return None
     inputs = [
@@ -245,17 +246,17 @@ def build_inputs(
     ]
     if fields.error_count > errors:
         return None
-    moving = _tied(MotionInputs(tuple(inputs), rows, time), tie_rates)
+    moving = _constrained(MotionInputs(tuple(inputs), rows, time), constraint_rates)
     return _with_course(fields, written, moving, expressions)
 
 
-def _tied(motion: MotionInputs, rates: Mapping[tuple[str, str], Floats]) -> MotionInputs:
+def _constrained(motion: MotionInputs, rates: Mapping[tuple[str, str], Floats]) -> MotionInputs:
     """A motion with the inputs that motors of others move."""
     if not rates:
         return motion
     number = {item.name: k for k, item in enumerate(motion.inputs)}
-    pairs = tuple((number[tied], number[leader]) for tied, leader in rates)
-    return motion._replace(tied=pairs, tie_rates=np.array(list(rates.values())))
+    constraints = tuple(InputConstraint(*(number[name] for name in pair)) for pair in rates)
+    return motion._replace(constraints=constraints, constraint_rates=np.array(list(rates.values())))
 
 
 def _with_course(
@@ -266,11 +267,11 @@ def _with_course(
     inputs, time = motion.inputs, motion.time
     if not inputs or (time is None and not expressions):
         return motion
-    from mechkin_cli.building.course import build_course, build_ties
+    from mechkin_cli.building.course import build_course, build_paths
 
     course = build_course(fields, written, inputs, expressions)
-    ties = build_ties(fields, inputs, expressions, time) if expressions else motion.ties
-    return motion._replace(course=course, ties=ties)
+    paths = build_paths(fields, inputs, expressions, time) if expressions else motion.paths
+    return motion._replace(course=course, paths=paths)
 
 
 def _timed(

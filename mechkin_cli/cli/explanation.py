@@ -29,8 +29,8 @@ def explanation(analysis: Analysis) -> str:
         loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
         count = closing.equations
         equations = f", {count} equation{'s' * (count > 1)}"
-        if closing.leg is not None:
-            equations = f", 1 equation: the distance {'-'.join(closing.leg.joints)}"
+        if closing.constraint.words:
+            equations += f": {closing.constraint.words}"
         lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
     if graph.blocks:
         lines.append("  blocks, solved in this order")

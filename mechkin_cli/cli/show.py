@@ -14,7 +14,6 @@ import numpy as np
 from mechkin_cli.assembly import NEAR
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.errors import WORDS
-from mechkin_cli.mechanism import find_legs
 from mechkin_cli.tables import (
     ALL_COLUMNS,
     AT_DEAD_CENTRE,
@@ -218,7 +217,7 @@ def _driven(analysis: Analysis) -> str:
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
-    words = [leg.words for leg in find_legs(mechanism)]
+    words = [spin.words for spin in mechanism.spins]
     several = Counter(held.words for held in analysis.model.problem.held)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
@@ -231,10 +230,7 @@ def _loops(analysis: Analysis) -> str:
     graph = analysis.result.graph
     if not graph.closings:
         return "none (open chain)"
-    closed = ", ".join(
-        "-".join(c.leg.joints) if c.leg else f"{c.joint.name} ({c.joint.letter})"
-        for c in graph.closings
-    )
+    closed = ", ".join(closing.constraint.label for closing in graph.closings)
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
     return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
 

@@ -160,7 +160,7 @@ def continuous_quaternion(run: BasisQuantities, joint: str) -> Quaternion:
         return q
     part = _part(q, reached)
     followed = _followed(run, joint, reached)
-    # a joint of a leg turns with the leg's line, less than half a turn from row to row
+    # a joint of a hung body turns with its line, less than half a turn from row to row
     signs = _alike(part) if followed is None else continuous_signs(part, followed, 0)
     first = -1.0 if part[0][0] < 0.0 else 1.0
     every = np.ones(run.result.row_states.reached.size)
@@ -175,7 +175,7 @@ def _upright(run: BasisQuantities, joint: str) -> Quaternion:
 
 def _followed(run: BasisQuantities, name: str, reached: NDArray[np.intp]) -> Quaternion | None:
     """The orientation in some rows as it was followed, of either sign as a whole; None for the
-    spheres of a leg."""
+    spheres of a hung body."""
     layout, rows = run.session.layout, run.result.row_states
     joint = layout.mechanism.joints[name]
     reference = layout.joint_reference[name]

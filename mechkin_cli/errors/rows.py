@@ -429,7 +429,7 @@ class KernelRows:
         given, rows = self.given, self.result.row_states
         values, rates, accelerations, jerks, reduced, _ = map(as_parts, inputs)
         in_parts = KernelInputs(values, rates, accelerations, jerks, reduced, given.whole)
-        return in_parts.at(rows.states, rows.turns, given.time, given.tie_rates)
+        return in_parts.at(rows.states, rows.turns, given.time, given.constraint_rates)
 
     def _constants(self, session: Session) -> Floats:
         """The constants of a session's plan as the text says them (constants, 2); kept."""

@@ -483,10 +483,10 @@ def idle_groups(
     driven: Collection[Coordinate],
     size: float,
     origin: Vector,
-    legs: Collection[frozenset[str]],
+    spinning: Collection[frozenset[str]],
 ) -> Groups:
     """Groups of links with common motions that move no driven coordinate; lengths in parts of
-    `size` (m), about `origin` (m). Those of `legs` only where others are beside them."""
+    `size` (m), about `origin` (m). Those of `spinning` only where others are beside them."""
     drawn = General(DRAWN, size, origin)
     general = [General(place, size, origin) for place in range(PLACES)]
     groups: list[RigidGroup] = []
@@ -503,7 +503,7 @@ def idle_groups(
             for name, coordinate in driven
             if name == joint.name
         ]
-        if frozenset(links) in legs:
+        if frozenset(links) in spinning:
             waiting.append((chain, still))
             continue
         if not common_motions(*chain, still, drawn):

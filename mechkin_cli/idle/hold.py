@@ -33,7 +33,6 @@ from mechkin_cli.mechanism import (
     add,
     cross,
     dot,
-    find_legs,
     frame_about,
     frame_on,
     is_turn,
@@ -151,7 +150,7 @@ class Holder:
         self.split: set[str] = set()
         self.taken = {*driven}
         self.found = IdleBasis()
-        self.in_legs = {name for leg in find_legs(mechanism) for name in leg.joints}
+        self.inside = {name for c in mechanism.constraints for name in c.joints}
 
     def leave(self, group: RigidGroup) -> None:
         """Accounts for the motions of a group that need nothing to hold them."""
@@ -164,7 +163,7 @@ class Holder:
         found = [
             (joint, name, (joint.name, freedom))
             for joint in group.joints
-            if joint.name not in self.in_legs
+            if joint.name not in self.inside
             for name, freedom in joint.type.scalars.items()
             if (joint.name, name) not in self.taken
             and group.count
@@ -217,7 +216,7 @@ class Holder:
         for joint in group.joints:
             link = joint.second if joint.second in group.links else joint.first
             screw = screws[link]
-            if screw is None or not is_slide(screw) or joint.name in self.in_legs:
+            if screw is None or not is_slide(screw) or joint.name in self.inside:
                 continue
             rates = group.left[0][0].own.rates
             stop = stop_of(joint, link, screw[1])
@@ -229,7 +228,7 @@ class Holder:
     def _balls(self, group: RigidGroup) -> list[Joint]:
         """The balls around a group that are free to be told otherwise, plain ones first."""
         told = {one.told.name for one in self.held if one.told is not None}
-        busy = {*told, *self.in_legs, *(name for name, _ in self.taken)}
+        busy = {*told, *self.inside, *(name for name, _ in self.taken)}
         balls = [j for j in group.joints if j.type.is_oriented and j.name not in busy]
         return sorted(balls, key=lambda joint: joint.type.has_slip)
 
@@ -292,7 +291,7 @@ class Holder:
                 name = turn_name(number) if of_ball else slide_name(number)
                 told = number in joint.type.scalars.values() or (joint.name, name) in self.taken
                 allowed = joint.name in balls if of_ball else slides
-                if told or joint.name in self.in_legs or not allowed:
+                if told or joint.name in self.inside or not allowed:
                     continue
                 rate = group.least_rate((joint.name, number))
                 if rate > least:
@@ -401,10 +400,10 @@ class Holding(NamedTuple):
 
 
 def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> Holding:
-    """The idle freedoms that joints have wherever they are, but those of legs."""
+    """The idle freedoms that joints have wherever they are, but the spins."""
     size = mechanism.box_diagonal()
     origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
-    groups, drawn = idle_groups(mechanism, driven, size, origin, _legs(mechanism))
+    groups, drawn = idle_groups(mechanism, driven, size, origin, _spinning(mechanism))
     held = held_groups(mechanism, driven, groups, size, origin)
     as_drawn = any(_moves_as_drawn(one, held) for one in drawn)
     return Holding(held, as_drawn or _count(drawn) != len(held))
@@ -446,11 +445,11 @@ def held_groups(
 ) -> tuple[LockedFreedom, ...]:
     """What holds the motions of some groups; lengths in parts of `size` (m), about `origin` (m)."""
     holder = Holder(mechanism, driven, size, origin)
-    legs = _legs(mechanism)
-    others = [group for group in groups if frozenset(group.links) not in legs]
+    spinning = _spinning(mechanism)
+    others = [group for group in groups if frozenset(group.links) not in spinning]
     known = IdleBasis()
     for group in groups:
-        if frozenset(group.links) in legs:
+        if frozenset(group.links) in spinning:
             group.join(known)
             holder.leave(group)
     for group in sorted(others, key=lambda group: len(group.links)):
@@ -462,8 +461,8 @@ def held_groups(
     return tuple(_from_ground(one, origin) for one in holder.held)
 
 
-def _legs(mechanism: Mechanism) -> set[frozenset[str]]:
-    return {frozenset(leg.links) for leg in find_legs(mechanism)}
+def _spinning(mechanism: Mechanism) -> set[frozenset[str]]:
+    return {frozenset(spin.links) for spin in mechanism.spins}
 
 
 def _from_ground(held: LockedFreedom, origin: Vector) -> LockedFreedom:

@@ -1,7 +1,7 @@
 """Idle freedoms: what moves freely while all else stands still, and by what convention it is told.
 
-A leg spins about the line of its spheres (legs.py): its pose is the shortest turn from the drawing,
-and its rate is zero. Other idle freedoms are held at a coordinate (held.py). Nothing else moves
+The own links of a constraint may spin (`Spin`): their pose is the shortest turn from the drawing,
+and their rate is zero. Other idle freedoms are held at a coordinate (held.py). Nothing else moves
 with them. Forces are exact as long as nothing drives such a motion; otherwise it is a dynamic
 freedom that a kinematic analysis cannot know.
 
@@ -31,7 +31,6 @@ from mechkin_cli.mechanism import (
     Damper,
     Joint,
     JointLoad,
-    Leg,
     Line,
     LinkLoad,
     Load,
@@ -39,6 +38,7 @@ from mechkin_cli.mechanism import (
     Mechanism,
     Problem,
     RigidLink,
+    Spin,
     Spring,
     Vector,
     Wanted,
@@ -46,8 +46,6 @@ from mechkin_cli.mechanism import (
     base_quantity,
     cross,
     dot,
-    find_legs,
-    frame_on,
     norm,
     scale,
     varying,
@@ -80,31 +78,24 @@ class Idle(NamedTuple):
 
 
 def idle_freedoms(problem: Problem) -> Iterator[Idle]:
-    """Legs, then what is held."""
-    for leg in find_legs(problem.mechanism):
-        yield _of_leg(leg)
+    """Spins, then what is held."""
+    for spin in problem.mechanism.spins:
+        yield _of_spin(spin)
     for held in problem.held:
         yield _of_held(problem.mechanism, held)
 
 
-def _of_leg(leg: Leg) -> Idle:
-    lines: dict[str, Line | None] = {}
-    for link in leg.links:
-        if link == leg.body:
-            lines[link] = Line(leg.line, frame_on(leg.start, link).o)
-        else:
-            assert leg.slide is not None
-            lines[link] = Line(frame_on(leg.slide, link).z, frame_on(leg.end, link).o)
+def _of_spin(spin: Spin) -> Idle:
     return Idle(
-        leg.words,
-        leg.links,
-        lines,
+        spin.words,
+        spin.links,
+        spin.lines,
         False,
         frozenset(),
-        norm(leg.span),
-        "its pose is the shortest turn from the drawing and it does not spin",
-        "replace one S by U",
-        f"{leg.body}.holding_moment",
+        spin.length,
+        spin.convention,
+        spin.cure,
+        spin.holding,
     )
 
 

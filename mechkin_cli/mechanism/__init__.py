@@ -10,6 +10,12 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.mechanism.constraint import (
+        Constraint as Constraint,
+        InputConstraint as InputConstraint,
+        PairConstraint as PairConstraint,
+        Spin as Spin,
+    )
     from mechkin_cli.mechanism.curve import (
         Curve as Curve,
         Joining as Joining,
@@ -36,21 +42,25 @@ if TYPE_CHECKING:
         reference_point as reference_point,
     )
     from mechkin_cli.mechanism.held import (
-        Line as Line,
         LockedFreedom as LockedFreedom,
         is_turn as is_turn,
         is_unnamed as is_unnamed,
         slide_name as slide_name,
         turn_name as turn_name,
     )
-    from mechkin_cli.mechanism.model import (
+    from mechkin_cli.mechanism.joint import (
         GROUND_NAME as GROUND_NAME,
+        Joint as Joint,
+        far_link as far_link,
+        frame_on as frame_on,
+        is_written as is_written,
+        stop_of as stop_of,
+    )
+    from mechkin_cli.mechanism.model import (
         Amount as Amount,
         Damper as Damper,
         Drives as Drives,
-        Joint as Joint,
         JointLoad as JointLoad,
-        Leg as Leg,
         LinkLoad as LinkLoad,
         Load as Load,
         Mechanism as Mechanism,
@@ -59,11 +69,7 @@ if TYPE_CHECKING:
         Tensor as Tensor,
         Varying as Varying,
         diagonal as diagonal,
-        find_legs as find_legs,
-        frame_on as frame_on,
-        is_written as is_written,
         renumbered as renumbered,
-        stop_of as stop_of,
         varying as varying,
         without_effort as without_effort,
     )
@@ -147,6 +153,7 @@ if TYPE_CHECKING:
         GROUND as GROUND,
         ZERO as ZERO,
         Frame as Frame,
+        Line as Line,
         Vector as Vector,
         add as add,
         cross as cross,
@@ -166,6 +173,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "constraint": ["Constraint", "InputConstraint", "PairConstraint", "Spin"],
         "curve": ["Curve", "Joining", "LoadLaw", "joined_curve"],
         "derived": [
             "COEFFICIENT_KINDS",
@@ -186,15 +194,13 @@ __getattr__, __dir__ = lazy_names(
             "hint_of",
             "reference_point",
         ],
-        "held": ["Line", "LockedFreedom", "is_turn", "is_unnamed", "slide_name", "turn_name"],
+        "held": ["LockedFreedom", "is_turn", "is_unnamed", "slide_name", "turn_name"],
+        "joint": ["GROUND_NAME", "Joint", "far_link", "frame_on", "is_written", "stop_of"],
         "model": [
             "Amount",
             "Damper",
             "Drives",
-            "GROUND_NAME",
-            "Joint",
             "JointLoad",
-            "Leg",
             "LinkLoad",
             "Load",
             "Mechanism",
@@ -203,11 +209,7 @@ __getattr__, __dir__ = lazy_names(
             "Tensor",
             "Varying",
             "diagonal",
-            "find_legs",
-            "frame_on",
-            "is_written",
             "renumbered",
-            "stop_of",
             "varying",
             "without_effort",
         ],
@@ -290,6 +292,7 @@ __getattr__, __dir__ = lazy_names(
         "vectors": [
             "Frame",
             "GROUND",
+            "Line",
             "Vector",
             "ZERO",
             "add",

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from mechkin_cli.mechanism.model import GROUND_NAME, Joint, Mechanism, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
+from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pair_type import Attached
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, dimension_of, is_angle

@@ -2,8 +2,8 @@
 
 Some links may move, in a chain as one body, while all others stay at rest. No equation tells that
 motion, so one coordinate of it is held where it is drawn (or where `near` puts it), as if it were
-an input at rest; nothing that is not conventional depends on it. Links between two spheres have no
-such coordinate and are legs (legs.py).
+an input at rest; nothing that is not conventional depends on it. The own links of a constraint have
+no such coordinate (constraint.py, `Spin`).
 """
 
 from __future__ import annotations
@@ -11,22 +11,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from mechkin_cli.mechanism.model import GROUND_NAME, Coordinate, Joint, Mechanism
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint
+from mechkin_cli.mechanism.model import Coordinate, Mechanism
 from mechkin_cli.mechanism.pairs import is_angle
-from mechkin_cli.mechanism.vectors import Vector, cross, norm, subtract
-
-
-class Line(NamedTuple):
-    """A line that a link carries, on its drawing: unit vector, and a point in m. Without a vector
-    it is every line through the point."""
-
-    along: Vector | None
-    start: Vector
-
-    def distance(self, point: Vector) -> float:
-        """How far a point lies off it, m."""
-        way = subtract(point, self.start)
-        return norm(way if self.along is None else cross(way, self.along))
+from mechkin_cli.mechanism.vectors import Line
 
 
 class LockedFreedom(NamedTuple):

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from mechkin_cli.mechanism.constraint import InputConstraint
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactRows, Tape
     from mechkin_cli.units import Dimension
@@ -66,17 +67,17 @@ class Moments(NamedTuple):
 
 class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
-    `course` where inputs move by laws or follow others; `ties` are all inputs as functions of each
-    one that others follow (`building.course`). `tied` are pairs (input, leader) of inputs of which
-    the leader's motor moves both, `tie_rates` (tied, rows) the rates of the first by the second."""
+    `course` where inputs move by laws or follow others; `paths` are all inputs as functions of each
+    one that others follow (`building.course`). Of `constraints` between inputs `constraint_rates`
+    (constraints, rows) are the rates of the input by its leader."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
     time: Moments | None = None
     course: Course | None = None
-    ties: tuple[tuple[str, Tape], ...] = ()
-    tied: tuple[tuple[int, int], ...] = ()
-    tie_rates: Floats | None = None
+    paths: tuple[tuple[str, Tape], ...] = ()
+    constraints: tuple[InputConstraint, ...] = ()
+    constraint_rates: Floats | None = None
 
     @property
     def driven(self) -> list[tuple[str, str]]:
@@ -101,7 +102,7 @@ class Assembly:
     straight: bool = False
 
 
-# The course of the inputs: their laws and ties between the rows, as data.
+# The course of the inputs: their laws between the rows, as data.
 #
 # A course is a function of one parameter (the time, the one input that others follow, or the number
 # of the row where several are swept together), recorded as a tape. It is smooth on each *cell*
@@ -172,10 +173,10 @@ class ExactMotion(NamedTuple):
         rows: holds the numbers that differ from row to row.
         in_si: in rad, m and s.
         written: in the file's units.
-        tie_rates: of tied inputs by their leaders, in the order of `Motion.tied`, in SI.
+        constraint_rates: as `MotionInputs` has them, in SI.
     """
 
     rows: ExactRows
     in_si: Mapping[str, Any]
     written: Mapping[str, Any]
-    tie_rates: tuple[Any, ...] = ()
+    constraint_rates: tuple[Any, ...] = ()

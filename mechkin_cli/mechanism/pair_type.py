@@ -89,7 +89,7 @@ ELEMENTARY = {
     "W": Elementary("W", 5, (), 0),
     "L": Elementary("L", 6, (), 0),
 }
-"""By letter; W keeps two frames together, L hangs the body of a leg between two points."""
+"""By letter; W keeps two frames together, L hangs a body between two points."""
 
 
 class Part(NamedTuple):

@@ -247,7 +247,7 @@ FREE = JointType(
     (_length("x", 0, _X1), _length("y", 1, _Y1), _length("z", 2, _Z1)),
     Drawing("ball"),
 )
-"""The pair without constraints by which the solver hangs a body that only legs hold."""
+"""The pair without constraints by which the solver hangs a body that no joint leads to."""
 
 
 _POINT = Condition("lengths", "xyz")

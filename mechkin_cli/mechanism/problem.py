@@ -29,7 +29,8 @@ from mechkin_cli.mechanism.derived import (
     ledger_catalogue,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
-from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, without_effort
+from mechkin_cli.mechanism.joint import GROUND_NAME
+from mechkin_cli.mechanism.model import Mechanism, without_effort
 from mechkin_cli.mechanism.motion import Assembly, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
@@ -79,6 +80,11 @@ class Problem:
         """Where efforts act (joint, coordinate): at actuators, else at the inputs."""
         drives = self.mechanism.drives
         return self.motion.driven if drives is None else drives.acting
+
+    @property
+    def has_idle(self) -> bool:
+        """Whether something may move freely while all else stands still."""
+        return bool(self.mechanism.spins or self.held)
 
     @cached_property
     def held_at(self) -> dict[tuple[str, str], float]:

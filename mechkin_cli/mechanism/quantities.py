@@ -18,7 +18,8 @@ from mechkin_cli.expressions import (
     parse,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
-from mechkin_cli.mechanism.model import GROUND_NAME, Mechanism, find_legs, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, is_written
+from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.wanted import Kind, Wanted
@@ -216,9 +217,8 @@ def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
         if name != GROUND_NAME and is_written(name):
             yield Wanted(f"{name}.omega", "omega", name, ANGULAR_RATE, True)
             yield Wanted(f"{name}.alpha", "alpha", name, ANGULAR_ACCELERATION, True)
-    for leg in find_legs(mechanism):
-        name = f"{leg.body}.holding_moment"
-        yield Wanted(name, "holding_moment", leg.body, MOMENT, False)
+    for spin in mechanism.spins:
+        yield Wanted(spin.holding, "holding_moment", spin.links[0], MOMENT, False)
 
 
 def _of_held(held: Sequence[LockedFreedom]) -> Iterator[Wanted]:

@@ -156,3 +156,16 @@ def turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:
 
     x, y, z = (frame.components(times(axis)) for axis in (frame.x, frame.y, frame.z))
     return (x[0], y[1], z[2], y[0], z[0], z[1])
+
+
+class Line(NamedTuple):
+    """A line that a link carries, on its drawing: unit vector, and a point in m. Without a vector
+    it is every line through the point."""
+
+    along: Vector | None
+    start: Vector
+
+    def distance(self, point: Vector) -> float:
+        """How far a point lies off it, m."""
+        way = subtract(point, self.start)
+        return norm(way if self.along is None else cross(way, self.along))

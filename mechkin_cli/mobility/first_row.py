@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import choose_start, probe_of
-from mechkin_cli.mechanism import Frame, find_legs, is_unnamed
+from mechkin_cli.mechanism import Frame, is_unnamed
 from mechkin_cli.mobility.configurations import Body, Configuration, home, with_links_at
 from mechkin_cli.mobility.opened import Pose, Poses, quaternion_of, rank_of
 
@@ -94,7 +94,7 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     driven = np.eye(body.count)[[body.column(*each) for each in problem.motion.driven]]
     at_rest = np.concatenate([_scaled(place), driven])
     motions = rank_of(at_rest, tolerances.REGULAR_WITHOUT_HOLDS).motions
-    if motions.shape[1] != len(problem.held) + len(find_legs(problem.mechanism)):
+    if motions.shape[1] != len(problem.held) + len(problem.mechanism.spins):
         return ()
     return _dependent(problem.held, body, motions)
 

@@ -164,7 +164,7 @@ class Solver:
         return Position(cells, status.label)
 
     def _check_following(self, given: Mapping[str, float]) -> None:
-        """Refuses to leave an input at its first row whose law ties it to one that moves."""
+        """Refuses to leave an input at its first row whose law makes it follow one that moves."""
         missing = sorted(self.following - given.keys())
         if missing:
             raise UsageError(
@@ -308,8 +308,11 @@ def _pair(result: Result, row: int, places: Floats) -> MotionInputs:
                 written_orders=orders,
             )
         )
-    ties = None if motion.tie_rates is None else np.repeat(motion.tie_rates[:, [row]], 2, axis=1)
-    return motion._replace(inputs=tuple(inputs), rows=2, time=None, course=None, tie_rates=ties)
+    rates = motion.constraint_rates
+    rates = None if rates is None else np.repeat(rates[:, [row]], 2, axis=1)
+    return motion._replace(
+        inputs=tuple(inputs), rows=2, time=None, course=None, constraint_rates=rates
+    )
 
 
 def _cells(result: Result, row: int, found: Result, wanted: Wanted) -> Floats:

@@ -17,7 +17,7 @@ from mechkin_cli.session import BranchFold, BranchPoint, Runaway, find_limit
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from mechkin_cli.session import Followed, InputTie, Session
+    from mechkin_cli.session import Followed, InputPath, Session
     from mechkin_cli.show import Floats
 
 
@@ -73,13 +73,13 @@ class Walker:
         session: the mechanism as it is driven.
         number: the input that moves.
         inputs: (inputs,) where places are taken.
-        tie: what follows it.
+        path: all inputs along it, where some follow it.
     """
 
     def __init__(
-        self, session: Session, number: int, inputs: Floats, tie: InputTie | None = None
+        self, session: Session, number: int, inputs: Floats, path: InputPath | None = None
     ) -> None:
-        self.session, self.number, self.inputs, self.tie = session, number, inputs, tie
+        self.session, self.number, self.inputs, self.path = session, number, inputs, path
         layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
@@ -160,15 +160,15 @@ class Walker:
 
     def follow(self, values: Floats, state: Floats) -> Followed:
         """The branch through a state along values of the input."""
-        if self.tie is not None:
-            return self.session.follow_way(self.tie.way(values), state)
+        if self.path is not None:
+            return self.session.follow_way(self.path.way(values), state)
         return self.session.follow(np.ascontiguousarray(self.at(values)[0]), state)
 
     def at(self, values: Floats) -> Floats:
         """All inputs, and first and second derivatives by the one that moves, (3, inputs,
         places)."""
-        if self.tie is not None:
-            return self.tie.derivatives(values)
+        if self.path is not None:
+            return self.path.derivatives(values)
         found = np.zeros((3, self.inputs.size, values.size))
         found[0] = self.inputs[:, None]
         found[0, self.number], found[1, self.number] = values, 1.0

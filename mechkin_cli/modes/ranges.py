@@ -23,7 +23,7 @@ from mechkin_cli.mechanism import Problem, Wanted, dimension_of
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand
 from mechkin_cli.search import pose_keys, same_poses
-from mechkin_cli.session import Ask, RowInputs, input_number, input_tie
+from mechkin_cli.session import Ask, RowInputs, input_number, input_path
 from mechkin_cli.show import Listed, Listing
 
 if TYPE_CHECKING:
@@ -126,21 +126,21 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         row = nearest_to_home(session, path)
         named = name_modes(session, path[:, row])
     item, first = problem.motion.inputs[number], path[:, row]
-    leader, tied = _leader(session, number)
+    leader, moved = _leader(session, number)
     at = {
         i.name: float(i.written[row])
         for i in problem.motion.inputs
-        if i is not item and i.name not in tied
+        if i is not item and i.name not in moved
     }
     unit = problem.units.label(dimension_of(item.coordinate))
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(session, leader, first, input_tie(session, leader, row))
+    walker = Walker(session, leader, first, input_path(session, leader, row))
     ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
     notes = (
         *problem.diagnostics,
-        *_tied_note(problem, number, leader),
+        *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
     )
     return Ranges(item.name, unit, at, ranges, tuple(one.shown for one in circuits), notes)
@@ -148,18 +148,18 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:
     """The input that moves where `number` is asked for, and all that move with it."""
-    if not session.problem.motion.ties:
+    if not session.problem.motion.paths:
         return number, set()
     from mechkin_cli.session import followers_of
 
     names = [item.name for item in session.problem.motion.inputs]
     followers = followers_of(session)
     leader = followers.get(names[number], names[number])
-    moved = input_tie(session, names.index(leader))
+    moved = input_path(session, names.index(leader))
     return names.index(leader), {leader, *(moved.followers if moved else ())}
 
 
-def _tied_note(problem: Problem, number: int, leader: int) -> list[Diagnostic]:
+def _leader_note(problem: Problem, number: int, leader: int) -> list[Diagnostic]:
     """That an input moves with the one that it follows."""
     if number == leader:
         return []

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from mechkin_cli.plan.programs import kink_laws as kink_laws
     from mechkin_cli.plan.records import (
         ClosingJoint as ClosingJoint,
-        PlanLeg as PlanLeg,
+        HungLinks as HungLinks,
         TreeJoint as TreeJoint,
         flatten as flatten,
     )
@@ -58,6 +58,6 @@ __getattr__, __dir__ = lazy_names(
         ],
         "plan": ["build_plan", "plan_records"],
         "programs": ["kink_laws"],
-        "records": ["ClosingJoint", "PlanLeg", "TreeJoint", "flatten"],
+        "records": ["ClosingJoint", "HungLinks", "TreeJoint", "flatten"],
     },
 )

@@ -126,13 +126,13 @@ class Layout:
         """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
         joint."""
         tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
-        return tree | {c.joint.name: -1 - k for k, c in enumerate(self.graph.closings)}
+        return tree | {c.name: -1 - k for k, c in enumerate(self.graph.closings)}
 
     @cached_property
-    def leg_number(self) -> dict[str, int]:
-        """Number of each leg in the kernel, by its body."""
-        legs = [c.leg for c in self.graph.closings if c.leg is not None]
-        return {leg.body: k for k, leg in enumerate(legs)}
+    def hung_number(self) -> dict[str, int]:
+        """Number of each hung body in the kernel."""
+        hung = [c.constraint.links[0] for c in self.graph.closings if c.constraint.links]
+        return {body: k for k, body in enumerate(hung)}
 
     @cached_property
     def place_number(self) -> dict[str, int]:
@@ -218,7 +218,7 @@ def _outward(edge: TreeEdge) -> list[tuple[Part, int]]:
 
 
 def _hung(edge: TreeEdge) -> list[tuple[Part, int]]:
-    """The one part of a leg's body: its sphere, without a freedom."""
+    """The one part of a hung body: its sphere, without a freedom."""
     parent, body = (frame_on(edge.joint, link) for link in (edge.parent, edge.child))
     return [(Part("L", upright(parent.o), upright(body.o)), 0)]
 

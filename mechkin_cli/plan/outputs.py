@@ -223,7 +223,7 @@ class OutputPlan:
             joint_name, _, coordinate = wanted.coordinate.rpartition(".")
             return self._effort(joint_name, coordinate)
         if kind == "holding_moment":
-            number = layout.leg_number[owner]
+            number = layout.hung_number[owner]
             return self._output(OutputCode.HOLDING_MOMENT, number, length * length)
         if kind == "reaction_level":
             return self._output(OutputCode.REACTION_LEVEL, 0, length)
@@ -262,7 +262,7 @@ class OutputPlan:
         }[kind]
 
     def _motor(self, joint: str, coordinate: str) -> int:
-        """The effort where it acts: at an input with what its ties transmit, or at an actuator."""
+        """The effort where it acts: at an input with what it carries of others, or at actuators."""
         drives = self.layout.drives
         if drives is None or not drives.actuators:
             code = OutputCode.EFFORT if drives is None else OutputCode.MOTOR

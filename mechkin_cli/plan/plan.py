@@ -11,15 +11,13 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     ZERO,
     Attached,
+    Constraint,
     Damper,
-    Joint,
     JointLoad,
     LinkLoad,
     Spring,
     Varying,
     cross,
-    frame_on,
-    norm,
     scale,
     turned_tensor,
     varying,
@@ -33,6 +31,7 @@ from mechkin_cli.plan.records import (
     Driven,
     FreeDirections,
     Friction,
+    HungLinks,
     Inertia,
     Input,
     JointAxis,
@@ -40,12 +39,11 @@ from mechkin_cli.plan.records import (
     PlanBlock,
     PlanContact,
     PlanGravity,
-    PlanLeg,
     PlanRecord,
-    PlanTie,
     Program,
     Rest,
     SizePoint,
+    Transmission,
     TreeJoint,
     Units,
     hand_over,
@@ -223,37 +221,32 @@ def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | PlanLeg:
-    joint, leg = closing.joint, closing.leg
+def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
+    constraint = closing.constraint
     loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
-    if leg is None:
-        first, second = layout.link_number[joint.first], layout.link_number[joint.second]
-        frames = layout.frame_on(first, joint.on_first), layout.frame_on(second, joint.on_second)
-        return ClosingJoint(joint.type.code, first, second, *frames, joint.parameter, loop)
-    first, second = layout.link_number[leg.first], layout.link_number[leg.second]
-    ends = frame_on(leg.start, leg.first), frame_on(leg.end, leg.second)
-    return PlanLeg(
-        layout.link_number[leg.body],
-        layout.link_number[leg.rod] if leg.rod else -1,
+    first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
+    one, other = constraint.frames
+    frames = layout.frame_on(first, one), layout.frame_on(second, other)
+    hung = constraint.hung
+    if hung is None or constraint.length is None:
+        return ClosingJoint(constraint.code, first, second, *frames, constraint.parameter, loop)
+    return HungLinks(
+        layout.link_number[hung.body],
+        layout.link_number[hung.rod] if hung.rod else -1,
         first,
         second,
-        layout.frame_on(first, ends[0]),
-        layout.frame_on(second, ends[1]),
-        norm(leg.span) / layout.length,
-        leg.line,
-        leg.slide_sign,
+        *frames,
+        constraint.length / layout.length,
+        hung.line,
+        hung.slide_sign,
         loop,
     )
 
 
 def _places(layout: Layout) -> Iterator[JointPlace]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
-    # a leg pushes the link at its end, whether that is the sphere's first or second
-    backward |= {
-        c.joint.name
-        for c in layout.graph.closings
-        if c.leg is not None and c.leg.second == c.joint.first
-    }
+    # the multipliers push the second link, whether that is the joint's second or first
+    backward |= {c.name for c in layout.graph.closings if c.constraint.is_reversed}
     for name, joint in layout.mechanism.joints.items():
         yield JointPlace(
             layout.joint_reference[name],
@@ -302,8 +295,8 @@ def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached)
 def _blocks(layout: Layout) -> Iterator[PlanBlock | Rest]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
-        joints = [layout.graph.closings[c].joint for c in block.closings]
-        needed = _new_on_ways(layout, joints, placed)
+        constraints = [layout.graph.closings[c].constraint for c in block.closings]
+        needed = _new_on_ways(layout, constraints, placed)
         if block.charts:
             needed |= _new_carrying(layout, block.unknowns, placed | needed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
@@ -312,13 +305,13 @@ def _blocks(layout: Layout) -> Iterator[PlanBlock | Rest]:
     yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
 
 
-def _new_on_ways(layout: Layout, joints: Iterable[Joint], placed: set[int]) -> set[int]:
-    """Kernel joints on the ways from ground to both links of some joints that are not placed yet.
+def _new_on_ways(layout: Layout, constraints: Iterable[Constraint], placed: set[int]) -> set[int]:
+    """Kernel joints on the ways from ground to what some constraints place that are not placed yet.
 
     What carries a placed one is placed too.
     """
     found: set[int] = set()
-    for link in (link for joint in joints for link in (joint.first, joint.second)):
+    for link in (link for constraint in constraints for link in constraint.placed):
         k = layout.link_number[link]
         while k >= 0 and k not in placed and k not in found:
             found.add(k)
@@ -371,7 +364,7 @@ def _load_program(layout: Layout) -> list[Program]:
     return load_program(layout)
 
 
-def _drives(layout: Layout) -> Iterator[Driven | Actuator | PlanTie]:
+def _drives(layout: Layout) -> Iterator[Driven | Actuator | Transmission]:
     drives = layout.drives
     if drives is None:
         return
@@ -379,7 +372,7 @@ def _drives(layout: Layout) -> Iterator[Driven | Actuator | PlanTie]:
     for joint, coordinate in drives.actuators:
         axis, reference, freedom, _ = load_coordinate(layout, joint, coordinate)
         yield Actuator(axis, reference, freedom)
-    yield from (PlanTie(*pair) for pair in drives.ties)
+    yield from (Transmission(*constraint) for constraint in drives.constraints)
 
 
 def _size_points(layout: Layout) -> Iterator[SizePoint]:

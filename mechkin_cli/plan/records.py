@@ -58,8 +58,9 @@ class ClosingJoint(NamedTuple):
     loop: Loop
 
 
-class PlanLeg(NamedTuple):
-    """A leg between two points: `line` in its body, its length at zero slide."""
+class HungLinks(NamedTuple):
+    """A distance between two points and the links that hang between them: `line` in the body,
+    `length` at zero slide."""
 
     body: int
     rod: int
@@ -198,7 +199,7 @@ class Actuator(NamedTuple):
     freedom: int
 
 
-class PlanTie(NamedTuple):
+class Transmission(NamedTuple):
     """An input that is moved by the motor of another, its leader."""
 
     input: int
@@ -255,7 +256,7 @@ PlanRecord = (
     Units
     | TreeJoint
     | ClosingJoint
-    | PlanLeg
+    | HungLinks
     | JointPlace
     | JointAxis
     | FreeDirections
@@ -268,7 +269,7 @@ PlanRecord = (
     | Program
     | Driven
     | Actuator
-    | PlanTie
+    | Transmission
     | Friction
     | PlanContact
     | SizePoint
@@ -278,7 +279,7 @@ PlanRecord = (
 _VERBS: dict[type, str] = {
     TreeJoint: "add_tree_joint",
     ClosingJoint: "add_closing_joint",
-    PlanLeg: "add_leg",
+    HungLinks: "add_leg",
     JointPlace: "add_place",
     JointAxis: "add_axis",
     FreeDirections: "add_free_motion",
@@ -291,7 +292,7 @@ _VERBS: dict[type, str] = {
     Program: "set_load_program",
     Driven: "set_driven",
     Actuator: "add_actuator",
-    PlanTie: "add_tie",
+    Transmission: "add_tie",
     Friction: "add_friction",
     PlanContact: "add_contact",
     SizePoint: "add_size_point",
@@ -302,7 +303,7 @@ _CONSTANTS: dict[type, tuple[str, ...]] = {
     Units: ("length", "origin", "size"),
     TreeJoint: ("pitch", "at"),
     ClosingJoint: ("on_first", "on_second", "parameter"),
-    PlanLeg: ("on_first", "on_second", "length", "line"),
+    HungLinks: ("on_first", "on_second", "length", "line"),
     JointPlace: ("point",),
     JointAxis: ("vector", "other_vector"),
     FreeDirections: ("vector",),

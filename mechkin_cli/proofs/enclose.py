@@ -45,7 +45,7 @@ class Given(NamedTuple):
     Attributes:
         inputs, rates, accelerations, jerks: (inputs, 3, rows), values without whole turns.
         whole: those turns (inputs, rows).
-        ties: rates of tied inputs by those of their leaders (ties, 3, rows).
+        constraint_rates: rates of inputs by those that lead them (constraints, 3, rows).
         time: what laws of loads read as time, s (1, 3, rows).
     """
 
@@ -54,7 +54,7 @@ class Given(NamedTuple):
     accelerations: Floats
     jerks: Floats
     whole: Floats
-    ties: Floats | None
+    constraint_rates: Floats | None
     time: Floats | None
 
     @classmethod
@@ -66,20 +66,20 @@ class Given(NamedTuple):
             return cls.of_doubles(session)
         time = None if precise.time is None else precise.time[None]
         orders = precise.reduced, precise.rates, precise.accelerations, precise.jerks
-        return cls(*orders, precise.whole, precise.tie_rates, time)
+        return cls(*orders, precise.whole, precise.constraint_rates, time)
 
     @classmethod
     def of_doubles(cls, session: Session) -> Given:
         """As the kernel holds them."""
         inputs, moments = session.inputs, session.problem.motion.time
-        ties = session.tie_rates
+        rates = session.constraint_rates
         return cls(
             _point(inputs.reduced),
             _point(inputs.rates),
             _point(inputs.accelerations),
             _point(inputs.jerks),
             inputs.whole,
-            None if ties is None else _point(ties),
+            None if rates is None else _point(rates),
             None if moments is None else _point(moments.values[None]),
         )
 
@@ -139,7 +139,7 @@ def enclose(
         rates=_rows(given.rates) if moving else None,
         accelerations=_rows(given.accelerations) if accelerating else None,
         jerks=_rows(given.jerks) if demand & Demand.JERK else None,
-        ties=None if given.ties is None else _rows(given.ties),
+        ties=None if given.constraint_rates is None else _rows(given.constraint_rates),
         time=None if given.time is None else _rows(given.time),
         turned=turned,
         whole=given.whole,

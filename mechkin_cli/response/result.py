@@ -126,8 +126,8 @@ class ResponseResult(Result):
 
         return mode_letter(self.chosen, self.start)
 
-    def _row_inputs(self, inputs: KernelInputs, ties: Floats | None) -> RowInputs:
-        return super()._row_inputs(inputs, ties)._replace(chart=self.chart)
+    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
+        return super()._row_inputs(session, inputs)._replace(chart=self.chart)
 
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:

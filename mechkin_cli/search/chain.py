@@ -12,12 +12,12 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli.kernel import functions
-from mechkin_cli.mechanism import GROUND, Frame, Vector, add, cross, dot, norm, scale
+from mechkin_cli.mechanism import GROUND, Frame, Vector, add, cross, dot, scale
 from mechkin_cli.plan import Carrier, Layout
 from mechkin_cli.structure import Block, SolverGraph
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Joint, Leg
+    from mechkin_cli.mechanism import Joint
     from mechkin_cli.show import Floats
 
 
@@ -31,8 +31,7 @@ class ChainMotion(NamedTuple):
 
 class Chain(NamedTuple):
     """The unknown motions in the order of the loop, and the closing joint's frames on the first
-    and the second link, all in the kernel's lengths. Of a leg the frames are its spheres', and
-    `distance` is its length."""
+    and the second link, all in the kernel's lengths; `distance` is the length that it keeps."""
 
     joint: Joint
     motions: tuple[ChainMotion, ...]
@@ -43,7 +42,7 @@ class Chain(NamedTuple):
 
 def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     """The chain of a block with one closing joint, upstream states as in `base` (states,); None
-    where an unknown is a thread or a ball, or the loop passes a leg."""
+    where an unknown is a thread or a ball, or the loop passes a hung link."""
     graph = layout.graph
     block = graph.blocks[number]
     if len(block.closings) != 1:
@@ -52,10 +51,10 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     unknown = {layout.state(e, f): None for e, f in block.unknowns if not _is_other(layout, e, f)}
     if len(unknown) != len(block.unknowns):
         return None
-    joint, leg = closing.joint, closing.leg
-    if leg is not None and leg.slide is not None:
+    constraint = closing.constraint
+    if constraint.slides:
         return None
-    ends = (leg.first, leg.second) if leg is not None else (joint.first, joint.second)
+    ends = (constraint.first, constraint.second)
     paths = [_path(layout, layout.link_number[link]) for link in ends]
     shared = set(paths[0]) & set(paths[1])
     around = [*(k for k in paths[0] if k not in shared), *reversed(paths[1])]
@@ -71,9 +70,11 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
         motions += _motions(layout.carriers[k], set(unknown), places.before(k))
     if len(motions) != len(unknown):
         return None
-    first, second = _ends(layout, joint, leg, places)
-    distance = None if leg is None else _length(leg) / layout.length
-    return Chain(joint, tuple(motions), first, second, distance)
+    first, second = (
+        places.on_link(link, frame) for link, frame in zip(ends, constraint.frames, strict=True)
+    )
+    distance = None if constraint.length is None else constraint.length / layout.length
+    return Chain(closing.joint, tuple(motions), first, second, distance)
 
 
 def _is_other(layout: Layout, edge: int, freedom: int) -> bool:
@@ -97,25 +98,6 @@ def _motions(carrier: Carrier, unknown: set[int], before: Frame) -> list[ChainMo
         for local, slide in enumerate(carrier.part.type.slides)
         if carrier.state + local in unknown
     ]
-
-
-def _ends(
-    layout: Layout, joint: Joint, leg: Leg | None, places: _ChainFrames
-) -> tuple[Frame, Frame]:
-    from mechkin_cli.mechanism import frame_on
-
-    if leg is not None:
-        return (
-            places.on_link(leg.first, frame_on(leg.start, leg.first)),
-            places.on_link(leg.second, frame_on(leg.end, leg.second)),
-        )
-    return places.on_link(joint.first, joint.on_first), places.on_link(
-        joint.second, joint.on_second
-    )
-
-
-def _length(leg: Leg) -> float:
-    return norm(leg.span)
 
 
 class _ChainFrames:
@@ -208,8 +190,8 @@ def are_parallel(a: Vector, b: Vector, limit: float) -> bool:
 #   eight intersections lie on the circle at infinity.
 # - no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16.
 #
-# - a leg and one other freedom: circle or line and sphere, 2. A body on six legs: 40 (Ronga, Vust
-#   1995).
+# - a distance and one other freedom: circle or line and sphere, 2. A body at six distances: 40
+#   (Ronga, Vust 1995).
 #
 # Loops that are planar or spherical as they are drawn have less (`loop_count`).
 
@@ -220,14 +202,14 @@ WITHOUT_SPHERE = {3: 2, 4: 8, 5: 16, 6: 16}
 """Bound by the number of turns."""
 
 
-ON_SIX_LEGS = 40
-"""Bound of a body that six legs hold."""
+AT_SIX_DISTANCES = 40
+"""Bound of a body that six distances hold."""
 
 
 def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
-    if all(graph.closings[c].leg for c in block.closings):
-        return _of_legs(graph, block)
+    if all(graph.closings[c].constraint.length is not None for c in block.closings):
+        return _of_distances(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
         return None
     freedoms = list(graph.closings[block.closings[0]].joint.type.chain)
@@ -240,12 +222,12 @@ def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     return (WITHOUT_SPHERE, WITH_SPHERE)[spheres].get(turns) if spheres <= 1 else None
 
 
-def _of_legs(graph: SolverGraph, block: Block) -> int | None:
+def _of_distances(graph: SolverGraph, block: Block) -> int | None:
     joints = [graph.edges[number].joint for number, _ in block.unknowns]
     alone = len(joints) == len(block.closings) == 1
     if alone and [f.motion for f in joints[0].type.chain] in (["turn"], ["slide"]):
         return 2
     held = {joint.name for joint in joints}
     if len(block.closings) == 6 and len(held) == 1 and joints[0].type.is_free:
-        return ON_SIX_LEGS
+        return AT_SIX_DISTANCES
     return None

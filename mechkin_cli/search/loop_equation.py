@@ -1,7 +1,7 @@
 """The one equation to which a small loop is reduced, each of its roots one assembly.
 
 - A sphere and three motions: `sphere_loop`.
-- A leg and one motion: the distance of two points, of second degree.
+- A distance and one motion: the distance of two points, of second degree.
 - Two motions in a plane and a turn square to it at the closing joint: the first keeps the distance
   of that joint's point from its axis, or line; of second degree.
 - Two parallel turns and a slide square to them at the closing joint: the sum of the turns is given,
@@ -268,7 +268,7 @@ MOST_BY_DIRECTION = 2
 def reduced(chain: Chain) -> Reduced | None:
     """The equation of a chain; None for loops of other kinds."""
     if chain.distance is not None:
-        return _of_leg(chain)
+        return _of_distance(chain)
     motions = [freedom.motion for freedom in chain.joint.type.chain]
     if motions[:3] == ["ball"] * 3:
         slides = _slides(chain, len(motions) - 3)
@@ -293,7 +293,7 @@ def _slides(chain: Chain, count: int) -> tuple[ChainMotion, ...]:
     return tuple(ChainMotion(True, axis, frame.o) for axis in axes)
 
 
-def _of_leg(chain: Chain) -> Reduced | None:
+def _of_distance(chain: Chain) -> Reduced | None:
     """|x p - a|^2 = distance^2."""
     if len(chain.motions) != 1 or chain.distance is None:
         return None

@@ -53,7 +53,7 @@ def upstream_states(layout: Layout, number: int) -> list[int]:
     edges = {edge for loop in loops for edge, _ in loop}
     own = set(unknown_states(layout, number))
     if any(edge >= 0 and graph.edges[edge].hung for edge in edges):
-        # the body of a leg stands where the leg's ends are
+        # a hung body stands where its ends are
         return [state for state in range(layout.states) if state not in own]
     return [
         state

@@ -22,6 +22,11 @@ if TYPE_CHECKING:
         precise_inputs as precise_inputs,
     )
     from mechkin_cli.session.exchanged import Exchanged as Exchanged, exchange as exchange
+    from mechkin_cli.session.followers import (
+        InputPath as InputPath,
+        followers_of as followers_of,
+        input_path as input_path,
+    )
     from mechkin_cli.session.following import (
         BranchFold as BranchFold,
         BranchPoint as BranchPoint,
@@ -70,11 +75,6 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.session.shifted import ShiftingPrecise as ShiftingPrecise
     from mechkin_cli.session.structure import Coordinate as Coordinate, Structure as Structure
-    from mechkin_cli.session.ties import (
-        InputTie as InputTie,
-        followers_of as followers_of,
-        input_tie as input_tie,
-    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -84,6 +84,7 @@ __getattr__, __dir__ = lazy_names(
         "cells": ["Formula", "cells_of"],
         "double_double": ["Precise", "PreciseInputs", "precise_inputs"],
         "exchanged": ["Exchanged", "exchange"],
+        "followers": ["InputPath", "followers_of", "input_path"],
         "following": [
             "BranchFold",
             "BranchPoint",
@@ -127,6 +128,5 @@ __getattr__, __dir__ = lazy_names(
         "session": ["Continued", "ContinuedFrom", "Packing", "Session"],
         "shifted": ["ShiftingPrecise"],
         "structure": ["Coordinate", "Structure"],
-        "ties": ["InputTie", "followers_of", "input_tie"],
     },
 )

@@ -18,8 +18,6 @@ from mechkin_cli.mechanism import (
     Mechanism,
     add,
     cross,
-    find_legs,
-    frame_on,
     norm,
     scale,
     subtract,
@@ -71,8 +69,8 @@ def closed_places(
 
 
 def is_drawn_assembled(mechanism: Mechanism) -> bool:
-    """Whether all joints are drawn with their frames on each other, and legs as long as they are
-    apart."""
+    """Whether all joints are drawn with their frames on each other, and points at the distances
+    that constraints keep."""
     most = tolerances.LOOP_RANK
     size = mechanism.box_diagonal()
     parts = [part for joint in mechanism.joints.values() for part in joint.parts]
@@ -86,9 +84,10 @@ def is_drawn_assembled(mechanism: Mechanism) -> bool:
         norm(subtract(add(part.before.o, scale(part.drawn, part.before.z)), part.after.o))
         for part in parts
     ]
-    for leg in find_legs(mechanism):
-        foot, head = frame_on(leg.start, leg.first).o, frame_on(leg.end, leg.second).o
-        apart.append(abs(norm(subtract(head, foot)) - norm(leg.span)))
+    for constraint in mechanism.constraints:
+        if constraint.length is not None:
+            foot, head = (at.vector for at in constraint.points)
+            apart.append(abs(norm(subtract(head, foot)) - constraint.length))
     return max(turns, default=0.0) <= most and max(apart, default=0.0) <= most * size
 
 

@@ -74,7 +74,7 @@ class PreciseInputs(NamedTuple):
         reduced: (inputs, 2, rows) values without the whole turns of angles.
         whole: (inputs, rows) those turns, as `Session.inputs` has them.
         time: (2, rows) in s; None without any.
-        tie_rates: (ties, 2, rows) as `Session.tie_rates`; None without any.
+        constraint_rates: (constraints, 2, rows) as `Session.constraint_rates`; None without any.
         written: (2, rows) by the names of time, of inputs and of their rates, in the file's units.
     """
 
@@ -85,7 +85,7 @@ class PreciseInputs(NamedTuple):
     reduced: Floats
     whole: Floats
     time: Floats | None
-    tie_rates: Floats | None
+    constraint_rates: Floats | None
     written: Mapping[str, Floats]
 
 
@@ -96,14 +96,14 @@ class _Numbers(NamedTuple):
     orders: Sequence[Sequence[Any]]
     reduced: Sequence[Any]
     time: Sequence[Any]
-    tie_rates: Sequence[Any]
+    constraint_rates: Sequence[Any]
     written: Mapping[str, Any]
 
     @property
     def listed(self) -> list[Any]:
         """All of them."""
         orders = [number for order in self.orders for number in order]
-        return [*orders, *self.reduced, *self.time, *self.tie_rates, *self.written.values()]
+        return [*orders, *self.reduced, *self.time, *self.constraint_rates, *self.written.values()]
 
 
 def precise_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
@@ -120,8 +120,8 @@ def enclosed_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
 
 def _put_together(session: InDoubles, recorded: _Numbers, found: Floats) -> PreciseInputs:
     count = len(session.inputs.values)
-    ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.tie_rates)])
-    *parts, time, ties, written = np.split(found, ends)
+    ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.constraint_rates)])
+    *parts, time, transmitted, written = np.split(found, ends)
     values, rates, accelerations, jerks, reduced = parts
     names = dict(zip(recorded.written, written, strict=True))
     return PreciseInputs(
@@ -132,7 +132,7 @@ def _put_together(session: InDoubles, recorded: _Numbers, found: Floats) -> Prec
         reduced,
         session.inputs.whole,
         time[0] if len(time) else None,
-        ties if len(ties) else None,
+        transmitted if len(transmitted) else None,
         names,
     )
 
@@ -150,9 +150,9 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
         ]
         for k in range(len(ORDERS))
     ]
-    ties = [
-        rate * (units[leader] / units[tied])
-        for rate, (tied, leader) in zip(motion.tie_rates, problem.motion.tied, strict=False)
+    transmitted = [
+        rate * (units[c.leader] / units[c.input])
+        for rate, c in zip(motion.constraint_rates, problem.motion.constraints, strict=False)
     ]
     written = {} if "time" not in motion.written else {"time": motion.written["time"]}
     for item in inputs:
@@ -163,7 +163,7 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
         orders,
         [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])],
         [motion.in_si["time"]] if "time" in motion.in_si else [],
-        ties,
+        transmitted,
         written,
     )
 
@@ -198,8 +198,8 @@ def _motion_of(precise: Precise, problem: Problem) -> ExactMotion:
             units.to_si(number, dimension_of(item.coordinate) / TIME**order)
             for order, number in enumerate(written[item.name])
         ]
-    ties = () if motion.tie_rates is None else tuple(rows.given(rate) for rate in motion.tie_rates)
-    return ExactMotion(rows, in_si, written, ties)
+    rates = () if motion.constraint_rates is None else motion.constraint_rates
+    return ExactMotion(rows, in_si, written, tuple(rows.given(rate) for rate in rates))
 
 
 class Precise:

@@ -161,12 +161,13 @@ class KernelInputs(NamedTuple):
         states: Floats,
         turned: Floats,
         time: Floats | None = None,
-        ties: Floats | None = None,
+        constraint_rates: Floats | None = None,
     ) -> RowInputs:
         """All rows on their states (states, rows) and turns (turn slots, rows), as a run takes
-        them; time (rows,) in s, and the rates of ties (ties, rows)."""
+        them; time (rows,) in s, and what `Session.constraint_rates` are."""
         moving = (self.rates, self.accelerations, self.jerks)
-        return RowInputs(self.reduced, states, *moving, ties, turned, self.whole, self.values, time)
+        of_rows = (constraint_rates, turned, self.whole, self.values, time)
+        return RowInputs(self.reduced, states, *moving, *of_rows)
 
     def part(self, rows: slice | Floats) -> KernelInputs:
         """Some of the rows."""

@@ -75,8 +75,8 @@ class RowInputs(NamedTuple):
         rates: (inputs, rows), needed for velocities.
         accelerations: (inputs, rows), needed for accelerations.
         jerks: (inputs, rows), needed for third derivatives.
-        ties: rates of tied inputs by those of their leaders (ties, rows), needed for forces where
-            there are any.
+        constraint_rates: rates of inputs by those that lead them (constraints, rows), needed for
+            forces where there are any.
         turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
             loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
@@ -90,7 +90,7 @@ class RowInputs(NamedTuple):
     rates: Floats | None = None
     accelerations: Floats | None = None
     jerks: Floats | None = None
-    ties: Floats | None = None
+    constraint_rates: Floats | None = None
     turned: Floats | None = None
     whole: Floats | None = None
     full: Floats | None = None
@@ -199,7 +199,7 @@ def run(
     Raises:
         ValueError: shapes, codes or numbers that do not fit the plan or each other.
     """
-    inputs, guess, rates, accelerations, jerks, ties, turned, whole, full, time, chart = rows
+    inputs, guess, rates, accelerations, jerks, transmitted, turned, whole, full, time, chart = rows
     count = inputs.shape[-1]
     demand = int(ask.demand)  # flags of an enumeration are slow, and short calls are many
     outputs = None if ask.readout is None else ask.readout.outputs
@@ -251,7 +251,7 @@ def run(
         rates=given(rates) if moving else None,
         accelerations=given(accelerations) if accelerating else None,
         jerks=given(jerks) if demand & _JERK else None,
-        ties=given(ties) if forced else None,
+        ties=given(transmitted) if forced else None,
         turned=None if turned is None else given(turned),
         whole=None if whole is None else given(whole),
         full=None if full is None else given(full),

@@ -19,7 +19,6 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from mechkin_cli.mechanism import (
-    CLOSING_CONDITIONS,
     Frame,
     Vector,
     add,
@@ -295,9 +294,9 @@ def _follow(closing: CutJoint, layout: Layout, tests: Tests) -> list[bool]:
     """Which equations of a closing joint follow from the others."""
     joint = closing.joint
     nothing = [False] * closing.equations
-    conditions = CLOSING_CONDITIONS.get(joint.type.closing or "")
+    conditions = closing.constraint.conditions
     edges = [layout.graph.edges[edge] for edge, _ in closing.loop]
-    if closing.leg is not None or conditions is None or any(edge.hung for edge in edges):
+    if conditions is None or any(edge.hung for edge in edges):
         return nothing
     kinds = {condition.kind for condition in conditions}
     if not _is_closed(joint, kinds, tests):

@@ -183,15 +183,24 @@ class Session:
         return Route(course, self.inputs.values, np.array(units))
 
     @cached_property
-    def tie_rates(self) -> Floats | None:
-        """Rates of tied inputs by those of their leaders in kernel units (ties, rows)."""
+    def constraint_rates(self) -> Floats | None:
+        """Rates of inputs by those that lead them in kernel units (constraints, rows)."""
         drives, motion = self.layout.drives, self.problem.motion
-        if drives is None or motion.tie_rates is None:
+        if drives is None or motion.constraint_rates is None:
             return None
         units = [input_unit(self.layout, item) for item in motion.inputs]
-        factors = [units[leader] / units[tied] for tied, leader in motion.tied]
-        rates: Floats = motion.tie_rates * np.array(factors)[:, None]
+        factors = [units[c.leader] / units[c.input] for c in motion.constraints]
+        rates: Floats = motion.constraint_rates * np.array(factors)[:, None]
         return rates
+
+    def row_inputs(
+        self, states: Floats, turned: Floats, inputs: KernelInputs | None = None
+    ) -> RowInputs:
+        """What a run is given for all rows on their states (states, rows) and turns (turn slots,
+        rows); with other rates where `inputs` have them."""
+        moments = self.problem.motion.time
+        time = None if moments is None else moments.values
+        return (inputs or self.inputs).at(states, turned, time, self.constraint_rates)
 
     @property
     def is_redundant(self) -> bool:
@@ -320,7 +329,7 @@ class Session:
     ) -> Followed:
         """Follows the branch through `start` (states,) at a row along the rows from there on, or
         with step -1 back from there, with the turns of angles; between the rows the inputs follow
-        their laws and ties."""
+        their laws."""
         if self.route is None:
             inputs, rows = self.inputs, slice(row, None, step)
             path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]

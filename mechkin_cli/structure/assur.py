@@ -1,10 +1,10 @@
 """Assur groups: the smallest sets of links that are placed together, in order.
 
 In a component whose screws have order d, every link has d freedoms against the component's entry,
-and a joint of f freedoms has d - f equations between its links, one more for every input; a leg has
-one. The Dulmage-Mendelsohn parts of that system are the Assur groups, whatever tree is laid
-through them later (Assur 1914; for the matching Shai 2010). Regions of lower order (regions.py)
-have their own count: `d_r` freedoms a link beside the pose of the region's frame.
+and a joint of f freedoms has d - f equations between its links, one more for every input; another
+constraint has its own. The Dulmage-Mendelsohn parts of that system are the Assur groups, whatever
+tree is laid through them later (Assur 1914; for the matching Shai 2010). Regions of lower order
+(regions.py) have their own count: `d_r` freedoms a link beside the pose of the region's frame.
 
 What the screws as drawn leave undetermined is counted once more with all freedoms of a link: a
 drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
@@ -94,7 +94,7 @@ def _with_connections(
     component: GraphComponent, sets: Iterable[tuple[str, ...]]
 ) -> list[AssurGroup]:
     """Sets of links as groups, each with the connections that its links are the last to reach;
-    slides of legs come by themselves."""
+    own slides of constraints come by themselves."""
     found: list[AssurGroup] = []
     inside = {component.entry}
     waiting = list(component.connections)
@@ -102,7 +102,7 @@ def _with_connections(
         inside.update(links)
         reached = [c for c in waiting if c.first in inside and c.second in inside]
         waiting = [c for c in waiting if c.first not in inside or c.second not in inside]
-        slides = [c for c in reached if c.leg is not None and c.leg.slide and not c.driven]
+        slides = [c for c in reached if c.own_unknowns]
         members = tuple(c for c in reached if c not in slides)
         own = set(links)
         ordered = tuple(link for link in component.links if link in own)
@@ -162,7 +162,7 @@ def _own_names(
 
 
 class _System:
-    """Nodes and rows of a component: links, frames of regions, free slides of legs."""
+    """Nodes and rows of a component: links, frames of regions, own slides."""
 
     def __init__(self, component: GraphComponent, order: int, regions: Sequence[Region]) -> None:
         self.component = component
@@ -209,11 +209,10 @@ class _System:
     def _row(self, number: int) -> Row:
         """The equations of a connection."""
         c = self.component.connections[number]
-        if c.leg is not None:
+        if not c.has_coordinates:
             nodes = self._pose(c.first) | self._pose(c.second)
-            if c.leg.slide is not None and not c.driven:
-                nodes.add(self._node(1))
-            return Row(1, tuple(sorted(nodes)))
+            nodes |= {self._node(1) for _ in range(c.own_unknowns)}
+            return Row(c.equations, tuple(sorted(nodes)))
         if number not in self.region_of:
             nodes, order = self._pose(c.first) | self._pose(c.second), self.order
         else:
@@ -253,7 +252,14 @@ class _System:
     def _turns(self) -> list[int]:
         """Turns of the rows, by the place of the connections; memberships come last."""
         kinds = [
-            (c.leg is not None, c.freedoms, c.driven, c.joint.letter, row.equations, len(row.nodes))
+            (
+                not c.has_coordinates,
+                c.freedoms,
+                c.driven,
+                c.constraint.kind,
+                row.equations,
+                len(row.nodes),
+            )
             for c, row in zip(self.component.connections, self.rows, strict=False)
         ]
         place = {number: k for k, number in enumerate(_by_structure(self.component, kinds))}
@@ -318,10 +324,10 @@ def _together(one: AssurGroup, other: AssurGroup) -> AssurGroup:
 def _hangs(group: AssurGroup, placed: set[str]) -> bool:
     """Whether joints lead from placed links to all links of a group, which moves something."""
     if not group.links:
-        # a leg that only places its own slide
-        return all(c.leg is not None and c.leg.slide is not None for c in group.connections)
+        # it only places its own slide
+        return all(c.constraint.slides for c in group.connections)
     waiting = set(group.links)
-    joints = [c for c in group.connections if c.leg is None]
+    joints = [c for c in group.connections if c.has_coordinates]
     at = incidence(joints)
     front = [link for link in at if link not in waiting and (link in placed or link == group.entry)]
     for link in front:

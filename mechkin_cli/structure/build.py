@@ -7,7 +7,7 @@ from heapq import heapify, heappop, heappush
 from itertools import combinations, groupby, product
 from math import comb, prod
 
-from mechkin_cli.mechanism import GROUND_NAME, Frame, Joint, Leg, Mechanism
+from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
 from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
 from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge, UnsolvableGraph
@@ -38,7 +38,8 @@ AssembledPlaces = Callable[[Mechanism, Callable[[], SolverGraph]], Iterator[Call
 class NothingSolved(Exception):
     """Some connections without unknowns beside those of their closing joints.
 
-    `loops` are the names of the joints in their loops, the closing joint first; legs close others.
+    `loops` are the names of the joints in their loops, the closing joint first, without those that
+    constraints beside the joints close.
     """
 
     def __init__(
@@ -121,9 +122,9 @@ def lay_blocks(
         equations = sum(closing.equations for closing in some)
         if not unknowns:
             loops = [
-                [closing.joint.name, *(edges[k].joint.name for k, _ in closing.loop)]
+                [closing.name, *(edges[k].joint.name for k, _ in closing.loop)]
                 for closing in some
-                if closing.leg is None
+                if closing.constraint.has_coordinates
             ]
             raise NothingSolved(connections, loops, equations)
         start = len(laid)
@@ -137,7 +138,8 @@ def lay_blocks(
 
 
 def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | None:
-    """Edges from ground outward, breadth first, the legs last; None if no tree is left."""
+    """Edges from ground outward, breadth first, own links of constraints last; None if no tree is
+    left."""
     names = set(closing)
     free = [joint for name, joint in whole.joints.items() if name not in names]
     at: dict[str, list[Joint]] = {}
@@ -156,10 +158,8 @@ def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | 
                 front.append(other)
     if len(edges) != len(free) or len(reached) != len(whole.links) + 1:
         return None
-    for leg in whole.legs:
-        edges.append(TreeEdge(leg.start, leg.first, leg.body, hung=True))
-        if leg.slide is not None and leg.rod is not None:
-            edges.append(TreeEdge(leg.slide, leg.body, leg.rod))
+    for constraint in whole.constraints:
+        edges += [TreeEdge(*edge) for edge in constraint.own_edges]
     return edges
 
 
@@ -174,14 +174,10 @@ class Ways:
             self.depth[edge.child] = self.depth[edge.parent] + 1
         self.number = {edge.joint.name: k for k, edge in enumerate(edges) if not edge.hung}
 
-    def closing(self, joint: Joint) -> CutJoint:
-        """A joint that closes a loop."""
-        return CutJoint(joint, self._loop(joint.first, joint.second))
-
-    def leg(self, leg: Leg) -> CutJoint:
-        """A leg that closes one."""
-        slides = [(self.number[leg.slide.name], -1)] if leg.slide is not None else []
-        return CutJoint(leg.end, (*self._loop(leg.first, leg.second), *slides), leg)
+    def closing(self, constraint: Constraint) -> CutJoint:
+        """A constraint with the loop that it closes."""
+        slides = [(self.number[slide.name], -1) for slide in constraint.slides]
+        return CutJoint(constraint, (*self._loop(constraint.first, constraint.second), *slides))
 
     def _loop(self, one: str, other: str) -> tuple[tuple[int, int], ...]:
         """Edges from where the ways part to the other link (+1), then to the one (-1)."""
@@ -214,14 +210,14 @@ class NothingCloses(Exception):
 
 
 def closings_of(group: AssurGroup, depth: Mapping[str, int]) -> list[Connection]:
-    """The connections at which a group's loops are closed, legs left out.
+    """The connections at which a group's loops are cut.
 
     `depth` is the number of tree edges from ground to each link that is placed before.
 
     Raises:
         NothingCloses: a loop of inputs, H and the like alone.
     """
-    joints = [c for c in group.connections if c.leg is None]
+    joints = [c for c in group.connections if c.has_coordinates]
     loops = len(joints) - len(group.links)
     if not loops:
         _check_tree(group, joints)
@@ -309,19 +305,19 @@ def _most_even(
     depth: Mapping[str, int],
 ) -> list[Connection]:
     """Of the choices with as few equations the one whose loops are split most evenly."""
-    legs = [c for c in group.connections if c.leg is not None]
+    others = [c for c in group.connections if not c.has_coordinates]
     names = {c.name for c in chosen}
     classes = [list(some) for _, some in groupby(able, key=lambda c: c.equations)]
     counts = [sum(c.name in names for c in some) for some in classes]
     if prod(comb(len(s), n) for s, n in zip(classes, counts, strict=True)) > MOST_COMPARED_TREES:
-        return _exchanged(joints, legs, classes, list(chosen), depth)
-    best, least = list(chosen), _unevenness(joints, legs, chosen, depth)
+        return _exchanged(joints, others, classes, list(chosen), depth)
+    best, least = list(chosen), _unevenness(joints, others, chosen, depth)
     every = (combinations(s, n) for s, n in zip(classes, counts, strict=True))
     for choice in product(*every):
         if not least:
             break
         some = [c for part in choice for c in part]
-        found = _unevenness(joints, legs, some, depth, least)
+        found = _unevenness(joints, others, some, depth, least)
         if found < least:
             best, least = some, found
     return best
@@ -329,20 +325,20 @@ def _most_even(
 
 def _exchanged(
     joints: Sequence[Connection],
-    legs: Sequence[Connection],
+    others: Sequence[Connection],
     classes: Sequence[Sequence[Connection]],
     chosen: list[Connection],
     depth: Mapping[str, int],
 ) -> list[Connection]:
     """Exchanges a closing joint for another of its loop with as many freedoms where it helps."""
-    least = _unevenness(joints, legs, chosen, depth)
+    least = _unevenness(joints, others, chosen, depth)
     equals = {c.name: some for some in classes for c in some}
     for k, old in enumerate(chosen):
         for new in equals[old.name]:
             if new in chosen:
                 continue
             some = [*chosen[:k], new, *chosen[k + 1 :]]
-            found = _unevenness(joints, legs, some, depth, least)
+            found = _unevenness(joints, others, some, depth, least)
             if found < least:
                 chosen, least = some, found
     order = {c.name: k for k, c in enumerate(c for some in classes for c in some)}
@@ -351,7 +347,7 @@ def _exchanged(
 
 def _unevenness(
     joints: Sequence[Connection],
-    legs: Sequence[Connection],
+    others: Sequence[Connection],
     closings: Sequence[Connection],
     depth: Mapping[str, int],
     most: float = float("inf"),
@@ -361,13 +357,12 @@ def _unevenness(
     tree = [c for c in joints if c.name not in names]
     found = tree_depths(tree, depth)
     total = 0
-    for c in (*closings, *legs):
+    for c in (*closings, *others):
         first = found.get(c.first, depth.get(c.first))
         second = found.get(c.second, depth.get(c.second))
         if first is None or second is None:
             return float("inf")
-        slides = c.leg is not None and c.leg.slide is not None
-        total += abs(second - first - slides)
+        total += abs(second - first - len(c.constraint.slides))
         if total >= most:
             return float("inf")
     reached = all(c.first in found and c.second in found for c in tree)
@@ -497,7 +492,7 @@ def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
     chosen: dict[str, int] = {}
     for group in groups:
         some = {c.name: c.equations for c in closings_of(group, depth)}
-        tree = [c for c in group.connections if c.leg is None and c.name not in some]
+        tree = [c for c in group.connections if c.has_coordinates and c.name not in some]
         depth.update(tree_depths(tree, depth))
         chosen.update(some)
     written = [name for name in whole.joints if name in chosen]
@@ -561,8 +556,8 @@ def _laid(
             raise errors.input_closes(name)
         k = ways.number[name]
         driven.append((k, edges[k].joint.freedom_number(coordinate)))
-    closings = {name: ways.closing(whole.joints[name]) for name in names}
-    closings |= {leg.end.name: ways.leg(leg) for leg in whole.legs}
+    constraints = [PairConstraint.of(whole.joints[name]) for name in names]
+    closings = {c.name: ways.closing(c) for c in (*constraints, *whole.constraints)}
     place = {name: k for k, name in enumerate(closings)}
     order = in_order(groups, edges, place)
     laid, blocks, solved = lay_blocks(order, edges, closings, place, driven)

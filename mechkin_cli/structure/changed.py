@@ -7,10 +7,10 @@ a dead centre.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Container
 from typing import TYPE_CHECKING
 
-from mechkin_cli.mechanism import Joint, Leg, Mechanism
+from mechkin_cli.mechanism import Joint, Mechanism, PairConstraint
 from mechkin_cli.structure.graph import Block, SolverGraph
 from mechkin_cli.structure.network import reduce
 
@@ -86,10 +86,11 @@ def exchanged(
 
 
 def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:
-    """The graph with the joints and legs of `mechanism` in the places of those with their names."""
+    """The graph with the joints and constraints of `mechanism` in the places of those with their
+    names."""
     reduction = reduce(mechanism)
     joints = {**mechanism.joints, **reduction.joints}
-    legs = {leg.body: leg for leg in reduction.legs}
+    others = {c.name: c for c in reduction.constraints}
 
     def renewed(joint: Joint) -> Joint:
         other = joints.get(joint.name)  # the weld of a cut link has no dimensions
@@ -97,11 +98,9 @@ def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:
 
     edges = tuple(edge._replace(joint=renewed(edge.joint)) for edge in graph.edges)
     closings = tuple(
-        closing._replace(joint=renewed(closing.joint), leg=_leg(closing.leg, legs))
+        closing._replace(
+            constraint=others.get(closing.name) or PairConstraint.of(renewed(closing.joint))
+        )
         for closing in graph.closings
     )
     return graph._replace(edges=edges, closings=closings)
-
-
-def _leg(leg: Leg | None, legs: Mapping[str, Leg]) -> Leg | None:
-    return None if leg is None else legs[leg.body]

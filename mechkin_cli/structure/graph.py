@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
-from mechkin_cli.mechanism import Joint, Leg, Mechanism
+from mechkin_cli.mechanism import Constraint, Joint, Mechanism
 from mechkin_cli.structure.assur import Undriven
 from mechkin_cli.structure.network import Connection
 
@@ -34,7 +34,7 @@ class TreeEdge(NamedTuple):
     """A joint of the tree: it carries `child`; `forward` where the child is the joint's second
     link.
 
-    The body of a leg is `hung`: two points place it, it has no freedom of its own.
+    The body of a constraint may be `hung`: two points place it, it has no freedom of its own.
     """
 
     joint: Joint
@@ -54,21 +54,26 @@ class TreeEdge(NamedTuple):
 
 
 class CutJoint(NamedTuple):
-    """A closing joint; `loop` holds the tree edges on the way to its second (+1) and first link
-    (-1).
+    """A constraint that closes loops; `loop` holds the tree edges on the way to its second (+1)
+    and first link (-1), and its own slides (-1)."""
 
-    Of a leg it is the sphere at the end; the ways lead to the links that the leg joins, and its
-    slide counts -1.
-    """
-
-    joint: Joint
+    constraint: Constraint
     loop: tuple[tuple[int, int], ...]
-    leg: Leg | None = None
+
+    @property
+    def name(self) -> str:
+        """The constraint's name."""
+        return self.constraint.name
+
+    @property
+    def joint(self) -> Joint:
+        """The joint whose name it has."""
+        return self.constraint.joint
 
     @property
     def equations(self) -> int:
         """Number of closing equations."""
-        return 1 if self.leg else self.joint.type.equations
+        return self.constraint.equations
 
 
 class Block(NamedTuple):
@@ -148,7 +153,7 @@ def disconnected(links: Sequence[str]) -> UnsolvableGraph:
 
 def driven_solid(connections: Iterable[Connection], equations: int) -> UnsolvableGraph:
     """A loop all of whose freedoms are driven."""
-    joints = sorted({name for c in connections for name in _joints(c)})
+    joints = sorted({name for c in connections for name in c.constraint.joints})
     diagnostic = Diagnostic(
         "driven-solid",
         "error",
@@ -164,7 +169,7 @@ def undriven(
     mechanism: Mechanism, inputs: Sequence[tuple[str, str]], parts: Sequence[Undriven]
 ) -> UnsolvableGraph:
     """Freedoms that neither an input nor a loop determines."""
-    concerned = {name for part in parts for c in part.connections for name in _joints(c)}
+    concerned = {name for part in parts for c in part.connections for name in c.constraint.joints}
     joints = [joint for name, joint in mechanism.joints.items() if name in concerned]
     taken = set(inputs)
     names = [
@@ -189,12 +194,8 @@ def undriven(
     return UnsolvableGraph(diagnostic, around, missing, tuple(names))
 
 
-def _joints(c: Connection) -> tuple[str, ...]:
-    return (c.name,) if c.leg is None else c.leg.joints
-
-
 def structure_of(graph: SolverGraph) -> object:
     """What two graphs of the same structure have in common."""
     edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
-    closings = tuple((closing.joint.name, closing.loop) for closing in graph.closings)
+    closings = tuple((closing.name, closing.loop) for closing in graph.closings)
     return edges, closings, graph.blocks, graph.inputs

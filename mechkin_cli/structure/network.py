@@ -1,6 +1,6 @@
-"""The mechanism as a network: links are vertices, every joint and every leg is a connection.
+"""The mechanism as a network: links are vertices, every joint and constraint is a connection.
 
-Independent of any tree. A leg is one distance equation between the links that it joins.
+Independent of any tree.
 """
 
 from __future__ import annotations
@@ -16,29 +16,28 @@ from mechkin_cli.mechanism import (
     GROUND,
     GROUND_NAME,
     ZERO,
+    Constraint,
     Joint,
-    Leg,
     Mechanism,
+    PairConstraint,
     Part,
     Screw,
     Spring,
     Vector,
     add,
     diagonal,
-    find_legs,
     frame_about,
-    frame_on,
     is_angle,
     scale,
     upright,
 )
 from mechkin_cli.tolerances import LOOP_RANK
 
-# What the spanning tree is laid through: a mechanism without its legs, every body within reach.
+# What the spanning tree is laid through: a mechanism of joints alone, every body within reach.
 #
-# Legs become distance equations (legs.py). A body that only legs hold hangs from ground by a free
-# pair of six unknowns. A loop without a joint to close it at, or whose closing joint has all its
-# unknowns, is closed through a link: the link is cut in two halves that a weld joins
+# The joints and links of a constraint leave it. A body that only constraints hold hangs from ground
+# by a free pair of six unknowns. A loop without a joint to close it at, or whose closing joint has
+# all its unknowns, is closed through a link: the link is cut in two halves that a weld joins
 # (docs/numerics.md, Closing joints).
 
 HALF = " (cut)"
@@ -46,43 +45,43 @@ HALF = " (cut)"
 
 
 class Reduction(NamedTuple):
-    """Joints by name and moving links of the tree and its closing joints, and the legs beside
-    them; joints in loops that are `cut` close none."""
+    """Joints by name and moving links of the tree and its closing joints, and the constraints
+    beside them; joints in loops that are `cut` close none."""
 
     joints: Mapping[str, Joint]
     links: tuple[str, ...]
-    legs: tuple[Leg, ...]
+    constraints: tuple[Constraint, ...]
     cut: frozenset[str] = frozenset()
 
     @property
     def loops(self) -> int:
-        """Joints that close loops, legs not counted."""
+        """Joints that close loops."""
         return len(self.joints) - len(self.links)
 
 
 def reduce(mechanism: Mechanism) -> Reduction:
-    """The mechanism without its legs, with free pairs for what only legs hold."""
-    legs = find_legs(mechanism)
-    of_legs = {name for leg in legs for name in leg.joints}
-    bodies = {name for leg in legs for name in leg.links}
+    """The mechanism of joints alone, with free pairs for what only other constraints hold."""
+    constraints = mechanism.constraints
+    inside = {name for c in constraints for name in c.joints}
+    bodies = {name for c in constraints for name in c.links}
     links = tuple(n for n in mechanism.links if n != GROUND_NAME and n not in bodies)
-    joints = {name: joint for name, joint in mechanism.joints.items() if name not in of_legs}
+    joints = {name: joint for name, joint in mechanism.joints.items() if name not in inside}
     held: dict[str, list[Vector]] = {}
-    for leg in legs:
-        for link in (leg.first, leg.second):
-            held.setdefault(link, []).append(_end_point(leg, link))
+    for constraint in constraints:
+        for link, point in constraint.points:
+            held.setdefault(link, []).append(point)
     at: dict[str, list[str]] = {}
     for joint in joints.values():
         at.setdefault(joint.first, []).append(joint.second)
         at.setdefault(joint.second, []).append(joint.first)
     reached = {GROUND_NAME}
     _reach(at, reached, GROUND_NAME)
-    # of bodies that joints hold together the one that most legs hold
+    # of bodies that joints hold together the one that most of them hold
     for body in sorted(held, key=lambda link: -len(held[link])):
         if body not in reached:
             joints[f"{body} (free)"] = _free_pair(body, held[body])
             _reach(at, reached, body)
-    return Reduction(joints, links, legs)
+    return Reduction(joints, links, constraints)
 
 
 def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
@@ -99,7 +98,9 @@ def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
     joints[own[-1].name] = _moved(own[-1], link, half)
     parts = (Part("W", GROUND, GROUND),)
     joints[half] = Joint(half, "W", link, half, GROUND, GROUND, parts, plane=own[-1].plane)
-    return Reduction(joints, (*reduction.links, half), reduction.legs, reduction.cut.union(loop))
+    return reduction._replace(
+        joints=joints, links=(*reduction.links, half), cut=reduction.cut.union(loop)
+    )
 
 
 def whole_link(link: str) -> str:
@@ -126,12 +127,8 @@ def _reach(at: Mapping[str, list[str]], reached: set[str], start: str) -> None:
                 front.append(other)
 
 
-def _end_point(leg: Leg, link: str) -> Vector:
-    return frame_on(leg.start if link == leg.first else leg.end, link).o
-
-
 def _free_pair(body: str, points: list[Vector]) -> Joint:
-    """Slides along the ground's axes, then turns about the middle of the legs' ends."""
+    """Slides along the ground's axes, then turns about the middle of its points."""
     total = ZERO
     for point in points:
         total = add(total, point)
@@ -144,41 +141,53 @@ def _free_pair(body: str, points: list[Vector]) -> Joint:
 
 
 class Connection(NamedTuple):
-    """A joint or a leg between two links.
+    """A joint or another constraint between two links.
 
-    `driven` counts its driven freedoms (of a leg: of its slide); `stays` says that no loop may be
-    closed at it.
+    `driven` counts its driven freedoms (of its slides, where it has no others); `stays` says that
+    no loop may be closed at it.
     """
 
     name: str
     first: str
     second: str
-    joint: Joint
+    constraint: Constraint
     driven: int = 0
     stays: bool = False
-    leg: Leg | None = None
+
+    @property
+    def joint(self) -> Joint:
+        """The joint whose name it has."""
+        return self.constraint.joint
 
     @property
     def freedoms(self) -> int:
-        """Freedoms between the two links, a leg's slide included."""
-        if self.leg is None:
-            return self.joint.type.freedoms
-        return 5 if self.leg.slide is None else 6
+        """Freedoms between the two links, those of its own slides included."""
+        return self.constraint.freedoms
 
     @property
     def equations(self) -> int:
         """Closing equations."""
-        return 1 if self.leg is not None else self.joint.type.equations
+        return self.constraint.equations
+
+    @property
+    def has_coordinates(self) -> bool:
+        """Whether a tree may go through it."""
+        return self.constraint.has_coordinates
+
+    @property
+    def own_unknowns(self) -> int:
+        """Freedoms of its own slides that are not driven: its equations only place these."""
+        return max(0, len(self.constraint.slides) - self.driven)
 
     @property
     def space(self) -> int:
         """Freedoms of a free body where it works: six, or three in a plane."""
-        return self.joint.type.space
+        return self.constraint.space
 
     @property
     def has_screws(self) -> bool:
-        """Whether its freedoms are screws of a joint: neither a leg nor a free pair."""
-        return self.leg is None and not self.joint.type.is_free
+        """Whether its freedoms are screws of a joint that holds something."""
+        return self.has_coordinates and not self.joint.type.is_free
 
     def other(self, link: str) -> str:
         """The link at the other end."""
@@ -188,7 +197,7 @@ class Connection(NamedTuple):
 def connections_of(
     mechanism: Mechanism, whole: Reduction, inputs: Sequence[tuple[str, str]]
 ) -> list[Connection]:
-    """The joints in the order written, then the legs.
+    """The joints in the order written, then the other constraints.
 
     Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a closing joint
     does not count; so do H and free pairs, which close no loop, and joints of loops that are cut.
@@ -204,15 +213,15 @@ def connections_of(
             name,
             joint.first,
             joint.second,
-            joint,
+            PairConstraint.of(joint),
             driven[name],
             name in driven or name in sprung or name in whole.cut or not joint.type.equations,
         )
         for name, joint in whole.joints.items()
     ]
-    for leg in whole.legs:
-        count = driven[leg.slide.name] if leg.slide is not None else 0
-        found.append(Connection(leg.end.name, leg.first, leg.second, leg.end, count, True, leg))
+    for c in whole.constraints:
+        count = sum(driven[slide.name] for slide in c.slides)
+        found.append(Connection(c.name, c.first, c.second, c, count, True))
     return found
 
 
@@ -361,7 +370,7 @@ class Region(NamedTuple):
 
 
 def order_of(connections: Iterable[Connection]) -> int:
-    """Rank of the screws of some connections; six with a leg or a free pair among them."""
+    """Rank of the screws of some connections; six where not all have screws."""
     members = tuple(connections)
     if not all(c.has_screws for c in members):
         return SPACE

@@ -2,9 +2,9 @@
 
 Counting equations says too much where loops hold by their dimensions: of the equations of an equal
 second rod none is new, of a plane loop closed in space two of five. The rates of a part's joints
-are the null space of its loops' screws and its legs' forces, taken at a place where all loops are
-closed (Hunt 1978; Davies 1981). Lengths are in parts of the mechanism's size, and a rank is decided
-by complete pivoting, far above rounding and far below what a regular place has.
+are the null space of its loops' screws and its other constraints' forces, taken at a place where
+all loops are closed (Hunt 1978; Davies 1981). Lengths are in parts of the mechanism's size, and a
+rank is decided by complete pivoting, far above rounding and far below what a regular place has.
 """
 
 from __future__ import annotations
@@ -23,13 +23,11 @@ from mechkin_cli.mechanism import (
     DrawnDirection,
     Frame,
     Joint,
-    Leg,
     Mechanism,
     Part,
     Vector,
     add,
     cross,
-    frame_on,
     norm,
     scale,
     subtract,
@@ -91,7 +89,7 @@ class Rates:
         them and those that lead to it; none is said to where that would take more than
         `RANK_WORK`."""
         some = [c for c in connections if joins(c, links, placed)]
-        tree, closing = _tree([c for c in some if c.leg is None], placed)
+        tree, closing = _tree([c for c in some if c.has_coordinates], placed)
         if not tree:
             return set()
         columns, count = self._columns([*tree.values(), *closing])
@@ -108,9 +106,9 @@ class Rates:
             rows.append(apart)
         for c in some:
             ends = [end for end in (c.first, c.second) if end not in placed]
-            if c.leg is not None and all(end in tree for end in ends):
+            if not c.has_coordinates and all(end in tree for end in ends):
                 apart = _of(twists, c.second, count) - _of(twists, c.first, count)
-                rows.append(_along(self._force(c.name, c.leg), apart)[None])
+                rows.append(_along(self._force(c), apart)[None])
         equations = np.concatenate(rows)
         below = np.concatenate([twists[link] for link in tree])
         left = _reduced(equations, below).reshape(len(tree), -1)
@@ -197,15 +195,12 @@ class Rates:
         middle = self._direction(Attached(joint.first, parts[1].before.z))
         return [first, scale(1.0 / length, across) if length > LOOP_RANK else middle, last]
 
-    def _force(self, name: str, leg: Leg) -> tuple[float, ...]:
-        """The force along a leg: its moment, then itself."""
-        if name not in self._forces:
-            foot = self._point(Attached(leg.first, frame_on(leg.start, leg.first).o))
-            head = self._point(Attached(leg.second, frame_on(leg.end, leg.second).o))
-            span = subtract(head, foot)
-            line = scale(1.0 / (norm(span) or 1.0), span)
-            self._forces[name] = (*cross(self.unit.place(foot), line), *line)
-        return self._forces[name]
+    def _force(self, c: Connection) -> tuple[float, ...]:
+        """The force of a constraint without coordinates: its moment, then itself."""
+        if c.name not in self._forces:
+            point, line = c.constraint.force_line(self._point)
+            self._forces[c.name] = (*cross(self.unit.place(point), line), *line)
+        return self._forces[c.name]
 
     def _direction(self, at: Attached) -> Vector:
         pose = self.poses(at.link)
@@ -218,7 +213,7 @@ class Rates:
 
 def joins(c: Connection, links: Collection[str], placed: Collection[str]) -> bool:
     """Whether a connection holds some of the links, or two of them together."""
-    if c.leg is not None and c.leg.slide is not None and not c.driven:
+    if c.own_unknowns:
         return False  # it only moves its slide
     ends = (c.first in links, c.second in links)
     return any(ends) and all(
@@ -427,7 +422,7 @@ class _DeterminedSearch:
         """Whether some links are determined; tried again only where more of their connections
         lead to what is placed."""
         inside = [c for c in self.around(links) if joins(c, links, placed)]
-        joints = [c for c in inside if c.leg is None]
+        joints = [c for c in inside if c.has_coordinates]
         freedoms = sum(c.freedoms - c.driven for c in joints)
         most = SPACE * (len(joints) - len(links)) + len(inside) - len(joints)
         if freedoms > most or self._failed.get(tuple(links)) == len(inside):

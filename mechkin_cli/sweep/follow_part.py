@@ -75,26 +75,26 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
         joints = {
             graph.edges[k].joint.name for c in block.closings for k, _ in graph.closings[c].loop
         }
-        joints |= {graph.closings[c].joint.name for c in block.closings}
+        joints |= {graph.closings[c].name for c in block.closings}
         if joints & set(problem.follow or ()):
             needed.add(b)
     front = list(needed)
     for b in front:
         for c in graph.blocks[b].closings:
-            joint = graph.closings[c].joint
-            more = (blocks_of(joint.first) | blocks_of(joint.second)) - needed
+            placed = graph.closings[c].constraint.placed
+            more = {b for link in placed for b in blocks_of(link)} - needed
             needed |= more
             front += more
     return needed
 
 
 def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
-    """The block in which the leg of each hung body is closed."""
+    """The block whose closings place each link that hangs between two points."""
     return {
-        leg.body: b
+        link: b
         for b, block in enumerate(graph.blocks)
         for c in block.closings
-        if (leg := graph.closings[c].leg) is not None
+        for link in graph.closings[c].constraint.links
     }
 
 
@@ -112,12 +112,12 @@ def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
 def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) -> Mechanism:
     """The mechanism without some blocks' closing joints and what their unknowns carry."""
     unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
-    gone_joints = {graph.closings[c].joint.name for b in left_out for c in graph.blocks[b].closings}
+    gone_joints = {graph.closings[c].name for b in left_out for c in graph.blocks[b].closings}
     gone_links: set[str] = set()
     hangs, gone_blocks = _hanging_blocks(graph), set(left_out)
     for k, edge in enumerate(graph.edges):
-        leg_gone = edge.hung and hangs[edge.child] in gone_blocks
-        if k in unknown or leg_gone or edge.parent in gone_links:
+        unhung = edge.hung and hangs[edge.child] in gone_blocks
+        if k in unknown or unhung or edge.parent in gone_links:
             gone_links.add(edge.child)
             gone_joints.add(edge.joint.name)
     return Mechanism(
@@ -137,7 +137,7 @@ def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
         for c in graph.blocks[b].closings:
             closing = graph.closings[c]
             loop = [graph.edges[k].joint.name for k, _ in closing.loop]
-            names.append(", ".join(sorted({*loop, closing.joint.name})))
+            names.append(", ".join(sorted({*loop, closing.name})))
     loops = "the loop" if len(names) == 1 else "the loops"
     left = "is left out" if len(names) == 1 else "are left out"
     return Diagnostic(

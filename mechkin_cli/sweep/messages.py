@@ -14,7 +14,6 @@ from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
-    find_legs,
     is_written,
     quantities_read,
     undefined_laws,
@@ -118,7 +117,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
     joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
-    joints = sorted(filter(is_written, {*joints, *(c.joint.name for c in graph.closings)}))
+    joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
     unique = _unique_loads(result, asked)
@@ -363,7 +362,7 @@ def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
         UsageError: one of some quantities is such, and something would spin.
     """
     problem = session.problem
-    if not names or not (find_legs(problem.mechanism) or problem.held):
+    if not names or not problem.has_idle:
         return
     for diagnostic in _causes_of_spin(session):
         known = problem.quantities()

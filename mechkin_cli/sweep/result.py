@@ -426,7 +426,7 @@ class Result(Proven):
         """One call of the kernel over all rows on their states; rows without a state repeat
         another's."""
         session, states = session or self.session, self.row_states
-        rows = self._row_inputs(inputs or self.session.inputs, session.tie_rates)
+        rows = self._row_inputs(session, inputs or self.session.inputs)
         if not states.reached.all():
             reached = states.reached
             rows = rows.at(np.where(reached, np.arange(reached.size), reached.argmax()))
@@ -437,11 +437,9 @@ class Result(Proven):
             put_unbounded(session, states, rows, ask, batch)
         return batch
 
-    def _row_inputs(self, inputs: KernelInputs, ties: Floats | None) -> RowInputs:
-        """What a run is given for the rows."""
-        moments = self.problem.motion.time
-        time = None if moments is None else moments.values
-        return inputs.at(self.row_states.states, self.row_states.turns, time, ties)
+    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
+        """What a run of a session is given for the rows."""
+        return session.row_inputs(self.row_states.states, self.row_states.turns, inputs)
 
     def _split(self, readout: Readout, batch: Batch) -> Columns:
         return read_off(self.row_states, self.problem.mechanism, readout, batch)

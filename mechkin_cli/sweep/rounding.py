@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.plan import ClosingJoint, PlanLeg, TreeJoint, flatten, plan_records
+from mechkin_cli.plan import ClosingJoint, HungLinks, TreeJoint, flatten, plan_records
 from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
 
@@ -93,7 +93,7 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
     reads must not change a random number."""
     records = plan_records(session.layout)
     placing = [
-        isinstance(r, TreeJoint | ClosingJoint | PlanLeg) for r in records for _ in flatten([r])
+        isinstance(r, TreeJoint | ClosingJoint | HungLinks) for r in records for _ in flatten([r])
     ]
     return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
 

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand
 from mechkin_cli.session import continuous_angle
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from typing import Any
 
     from numpy.typing import NDArray
 
@@ -263,53 +261,3 @@ def _angles(session: Session, wanted: tuple[Wanted, ...]) -> _Angles:
 def has_turns(quantity: Wanted) -> bool:
     """Whether a quantity is an angle, which may have whole turns."""
     return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
-
-
-class RowPlaces(NamedTuple):
-    """Arguments of `Session.run` by their names there, the last axis of each over places."""
-
-    inputs: Floats
-    guess: Floats
-    rates: Floats | None
-    accelerations: Floats | None
-    jerks: Floats | None
-    turned: Floats
-    whole: Floats
-    full: Floats
-    time: Floats | None
-    ties: Floats | None
-
-    @classmethod
-    def of(
-        cls,
-        own: Session,
-        rows: SweepRows,
-        inputs: KernelInputs,
-        demand: Demand,
-        ties: Floats | None,
-    ) -> RowPlaces:
-        """The rows of a run of the session `own` on their states, with rates of `inputs` as far as
-        they are demanded."""
-        moments = own.problem.motion.time
-        return cls(
-            inputs=inputs.reduced,
-            guess=rows.states,
-            rates=inputs.rates if demand & Demand.VELOCITY else None,
-            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
-            jerks=inputs.jerks if demand & Demand.JERK else None,
-            turned=rows.turns,
-            whole=own.inputs.whole,
-            full=own.inputs.values,
-            time=None if moments is None else moments.values,
-            ties=ties if demand & Demand.FORCES else None,
-        )
-
-    def at(self, numbers: NDArray[np.intp] | Sequence[int]) -> RowPlaces:
-        """Some of the places, in this order."""
-        parts: Any = (None if part is None else part[..., numbers] for part in self)
-        return RowPlaces(*parts)
-
-    @property
-    def arguments(self) -> dict[str, Any]:
-        """As `Session.run` takes them."""
-        return self._asdict()

@@ -18,7 +18,6 @@ from mechkin_cli.mechanism import (
     base_name,
     base_quantity,
     dimension_of,
-    find_legs,
     read_for,
 )
 from mechkin_cli.memo import remembered
@@ -81,7 +80,7 @@ def question(session: Session, asked: tuple[Wanted, ...], *, verdicts: bool) -> 
 
 
 def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
-    """The moments that hold idle legs, where forces are computed and they are not asked for."""
+    """The moments that hold idle freedoms, where forces are computed and they are not asked for."""
     if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
         return []
     from mechkin_cli.idle import idle_freedoms
@@ -326,7 +325,7 @@ def row_notes(
     """What is conventional, left open by a full turn, held, or not unique."""
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
-    if find_legs(problem.mechanism) or problem.held:
+    if problem.has_idle:
         from mechkin_cli.idle import (
             holding_notes,
             idle_freedoms,
@@ -370,9 +369,9 @@ class Between(NamedTuple):
     @classmethod
     def of(cls, result: Result) -> Between | None:
         """None where the motion is not known there: without time, and where several inputs move by
-        one motor, whose ties are those of the rows."""
+        one motor, whose rates by it are those of the rows."""
         motion = result.problem.motion
-        if motion.time is None or motion.course is None or motion.tied:
+        if motion.time is None or motion.course is None or motion.constraints:
             return None
         return cls(result, np.unique(motion.course.at[motion.course.rows < 0]))
 

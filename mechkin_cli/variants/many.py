@@ -18,7 +18,6 @@ from mechkin_cli.mechanism import (
     BEARING_KINDS,
     DERIVED_KINDS,
     bearing_load,
-    find_legs,
     friction_states,
     read_for,
 )
@@ -154,7 +153,7 @@ class VariantRun:
         mechanism = self.problem.mechanism
         if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
             return False
-        return bool(session.is_redundant or find_legs(mechanism) or self.problem.held)
+        return session.is_redundant or self.problem.has_idle
 
     def _states(self, reading: VariantReadout) -> list[Wanted]:
         """What tells the rows without an answer of friction."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import legible
-from mechkin_cli.mechanism import GROUND_NAME, find_legs, is_written
+from mechkin_cli.mechanism import GROUND_NAME, is_written
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import SWEEP
 
@@ -276,7 +276,7 @@ def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
 
 
 def _idle(problem: Problem) -> Iterator[str]:
-    for leg in find_legs(problem.mechanism):
-        yield f"{leg.words}: where it stands about that line is told by convention."
+    for spin in problem.mechanism.spins:
+        yield f"{spin.words}: where it stands about that line is told by convention."
     for held in problem.held:
         yield f"{held.words}: {held.convention}."

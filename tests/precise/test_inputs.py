@@ -252,13 +252,13 @@ def test_rates_of_ties() -> None:
     )
     made = mk.loads(ARM.format(motion=motion, time="s"))
     session = made.session
-    found = session.precise.inputs(session).tie_rates
+    found = session.precise.inputs(session).constraint_rates
     assert found is not None
-    assert session.tie_rates is not None
+    assert session.constraint_rates is not None
     for row in range(9):
         true = mp.mpf(2) / 100 * mp.cos(2 * 5 * row * DEGREE) / mp.mpf(session.layout.length)
         assert abs(mp.mpf(found[0, 0, row]) + mp.mpf(found[0, 1, row]) - true) <= 1e-30
-        assert abs(session.tie_rates[0, row] - true) <= 1e-14
+        assert abs(session.constraint_rates[0, row] - true) <= 1e-14
 
 
 @pytest.mark.parametrize("stem", STEMS)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from mechkin_cli.tape import Tape
 
 
-class InputTie:
-    """What follows input `number` of a session, where all others stand as in a row.
+class InputPath:
+    """All inputs of a session along input `number`, which others follow, the rest as in a row.
 
     Args:
         session: the mechanism as it is driven.
@@ -90,7 +90,7 @@ def followers_of(session: Session) -> dict[str, str]:
     """Inputs that follow another, and the first of those that they follow."""
     motion = session.problem.motion
     found: dict[str, str] = {}
-    for leader, tape in motion.ties:
+    for leader, tape in motion.paths:
         number = [item.name for item in motion.inputs].index(leader)
         for k, item in enumerate(motion.inputs):
             if k != number and tape.depends(k):
@@ -99,8 +99,8 @@ def followers_of(session: Session) -> dict[str, str]:
 
 
 @remembered
-def input_tie(session: Session, number: int, row: int = 0) -> InputTie | None:
+def input_path(session: Session, number: int, row: int = 0) -> InputPath | None:
     """What follows input `number` where all others stand as in a row; None where nothing does."""
     name = session.problem.motion.inputs[number].name
-    tapes = dict(session.problem.motion.ties)
-    return InputTie(session, tapes[name], number, row) if name in tapes else None
+    tapes = dict(session.problem.motion.paths)
+    return InputPath(session, tapes[name], number, row) if name in tapes else None

@@ -1,0 +1,70 @@
+"""Constraints are of one kind: `mechanism/constraint.py` alone tells one from another.
+
+What depends on the kind is a property of its entry (`equations`, `has_coordinates`, `links`,
+`spin`, ...), so that a new kind is one class.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from architecture.package import FILES, NAMES, ROOT, tree
+
+HOME = "mechanism/constraint.py"
+KINDS = {"DistanceConstraint", "InputConstraint", "PairConstraint"}
+LEG = re.compile(r"(?<![A-Za-z])(legs?|Legs?)(?![a-z])")
+OF_THE_FORMAT = {
+    "schema/advice.py": "coordinates in an example",
+    "schema/json_schema.py": "coordinates in an example",
+    "tolerances/__init__.py": "a file of the kernel",
+    "tolerances/closing.py": "a file of the kernel",
+    "tolerances/mobility.py": "what a telescope is",
+}
+"""Files that may speak of legs beside the one that knows them."""
+
+
+def told_apart(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """(line, source) of every question for a kind: by isinstance, by type, or by a pattern."""
+    for node in ast.walk(module):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
+            names = {part.id for part in ast.walk(node.args[1]) if isinstance(part, ast.Name)}
+        elif isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            names = {side.id for side in sides if isinstance(side, ast.Name)}
+        elif isinstance(node, ast.MatchClass):
+            names = {ast.unparse(node.cls)}
+        else:
+            continue
+        if names & KINDS:
+            yield getattr(node, "lineno", 0), ast.unparse(node)
+
+
+@pytest.mark.parametrize("path", FILES, ids=NAMES)
+def test_no_module_asks_for_a_kind(path: Path) -> None:
+    assert list(told_apart(tree(path))) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "isinstance(c, PairConstraint)",
+        "isinstance(c, Joint | DistanceConstraint)",
+        "type(c) is DistanceConstraint",
+        "match c:\n    case PairConstraint():\n        pass",
+    ],
+)
+def test_what_would_be_found(source: str) -> None:
+    assert list(told_apart(ast.parse(source)))
+
+
+def test_one_file_knows_legs() -> None:
+    names = {
+        str(path.relative_to(ROOT))
+        for path in FILES
+        if LEG.search(path.read_text(encoding="utf-8").replace('"add_leg"', ""))
+    }
+    assert names == {HOME, *OF_THE_FORMAT}
