@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.messages import (
     FORMS,
@@ -24,6 +24,7 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
 from mechkin_cli.verdict import SWEEP
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, Protocol, TypeVar
 
@@ -25,6 +24,7 @@ from mechkin_cli.cli.messages import (
 from mechkin_cli.cli.options import File, Json, Quiet, Set, response_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.record import dataclass
 
 if TYPE_CHECKING:
     from mechkin_cli.mobility import Mobility

@@ -10,11 +10,12 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from mechkin_cli.cli.interrupts import said
 from mechkin_cli.cli.messages import ExitCode, say, say_diagnostics, stdout_failed, tell_as
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
+from mechkin_cli.record import NamedTuple
 
 # Plain command lines of `mechkin analyze`, read without typer.
 #

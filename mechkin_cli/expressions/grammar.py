@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions.functions import FORMS, FUNCTIONS, INSTEAD
@@ -21,6 +21,7 @@ from mechkin_cli.expressions.quantity import (
     OperationNode,
     read,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import UNITS, CompoundUnit, UnitError, bounded_exponent, compound, named_unit
 
 Kind = Literal["number", "name", "component", "symbol", "end"]

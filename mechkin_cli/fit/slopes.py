@@ -4,11 +4,12 @@ rule through scales, weights and nearest places.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.diagnostics import MechkinError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:

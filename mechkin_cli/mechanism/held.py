@@ -9,11 +9,11 @@ such coordinate and are legs (legs.py).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from mechkin_cli.mechanism.model import GROUND_NAME, Coordinate, Joint, Mechanism
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.vectors import Vector, cross, norm, subtract
+from mechkin_cli.record import NamedTuple
 
 
 class Line(NamedTuple):

@@ -7,9 +7,8 @@ not move.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import SHORT_LIST
@@ -38,6 +37,7 @@ from mechkin_cli.mechanism.vectors import (
     subtract,
     upright,
 )
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tape import largest, nonzero, smallest
 
 if TYPE_CHECKING:

@@ -14,19 +14,11 @@ from inspect import get_annotations
 from itertools import pairwise
 from textwrap import dedent
 from types import NoneType, UnionType
-from typing import (
-    Annotated,
-    Any,
-    ClassVar,
-    Literal,
-    NamedTuple,
-    TypeVar,
-    Union,
-    get_args,
-    get_origin,
-)
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, Union, get_args, get_origin
 
 from pydantic_core import PydanticCustomError, SchemaValidator, core_schema as core
+
+from mechkin_cli.record import NamedTuple
 
 NOTHING: Any = {}
 """Default of a mapping that may be left out; sections are read, never changed."""

@@ -17,9 +17,9 @@ Where there are more equations than freedoms, all this only proposes groups: ran
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 from mechkin_cli import tolerances
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.matching import Matching, Row
 from mechkin_cli.structure.network import (
     Connection,

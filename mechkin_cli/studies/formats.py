@@ -11,11 +11,12 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TypeAlias
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

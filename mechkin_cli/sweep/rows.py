@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.session import continuous_angle
 from mechkin_cli.verdict import Status
 

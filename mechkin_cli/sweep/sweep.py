@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.session import Ask, assembly_size, moves_freely, places_at
 from mechkin_cli.sweep.following import follow_rows
 from mechkin_cli.sweep.friction import judged_by

@@ -10,10 +10,9 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.summary import Summary
 
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from mechkin_cli.record import dataclass
 from mechkin_cli.tables.columns import AT, TableColumn, column_of, column_of_numbers, words_of
 from mechkin_cli.tables.layout import TableLayout
 

@@ -9,15 +9,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.exact import PI, Exact
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tolerances import LARGEST_CONVERSION, LARGEST_FACTOR
 from mechkin_cli.units.dimension import (
     ACCELERATION,
