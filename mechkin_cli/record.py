@@ -12,6 +12,7 @@ from __future__ import annotations
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
     from dataclasses import (
+        asdict as asdict,
         dataclass as dataclass,
         field as field,
         fields as fields,
@@ -127,6 +128,17 @@ else:
     def is_dataclass(value):
         """Whether a value is a dataclass or an instance of one."""
         return hasattr(value, "_record_fields")
+
+    def asdict(value):
+        """The record as a dictionary, and those in it."""
+        return {one.name: _plain(getattr(value, one.name)) for one in fields(value)}
+
+    def _plain(value):
+        if is_dataclass(value):
+            return asdict(value)
+        if isinstance(value, dict):
+            return {key: _plain(one) for key, one in value.items()}
+        return type(value)(map(_plain, value)) if type(value) in (list, tuple) else value
 
     def replace(record, /, **changes):
         """The record with other values in some fields."""

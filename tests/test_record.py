@@ -94,6 +94,7 @@ CASES = [
     "[one.name for one in fields(Named)], [one.name for one in fields(Named(1.0))]",
     "is_dataclass(Named), is_dataclass(Pair), is_dataclass(Named(1.0))",
     "Named.__match_args__",
+    "asdict(Named(1.0)), asdict(Open(1, [2])), asdict(Open(Small(1), [Small(2), 3]))",
     "Small(1), Small(1) == Small(1, 2), hash(Small(1)) == hash(Small(1)), {Small(1): 1}[Small(1)]",
     "hasattr(Small(1), '__dict__')",
     "Same(1) == Same(1)",

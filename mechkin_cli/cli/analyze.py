@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.cli.messages import (
     FORMS,
@@ -98,11 +98,8 @@ def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
             )
 
 
-FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
-
-
 class AnalyzeCommand(NamedTuple):
-    """The options of the command, as `analyze_command` declares them."""
+    """The options of the command, as `commands` declares them."""
 
     files: list[Path]
     out: Path | None = None
@@ -140,6 +137,15 @@ class AnalyzeCommand(NamedTuple):
     def writes(self) -> bool:
         """Whether files are written."""
         return not self.json or self.out is not None or bool(self.format) or self.view
+
+
+def analyze(**given: Any) -> ExitCode:
+    """Runs the sweep and the responses of each file and writes their tables.
+
+    Args:
+        given: the fields of `AnalyzeCommand`.
+    """
+    return analyze_files(AnalyzeCommand(**given))
 
 
 def analyze_files(command: AnalyzeCommand) -> ExitCode:

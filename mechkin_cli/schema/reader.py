@@ -50,9 +50,9 @@ _SHARED: dict[int, tuple[Any, Read]] = {}
 
 def _section(section: type[Section]) -> Read:
     """What reads a section."""
-    read = _SECTIONS.get(section)
-    if read is not None:
-        return read
+    known = _SECTIONS.get(section)
+    if known is not None:
+        return known
     fields = {
         key: (field.name, _value(field.annotation)) for key, field in fields_of(section).items()
     }

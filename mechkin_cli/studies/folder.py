@@ -22,7 +22,8 @@ from typing import Any, BinaryIO
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
+from mechkin_cli.studies import FORMATS
+from mechkin_cli.studies.formats import Format, Heading, Records
 from mechkin_cli.tables import Claim
 
 MANIFEST = "study.json"

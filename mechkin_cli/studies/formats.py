@@ -17,6 +17,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.studies import FORMATS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -102,9 +103,6 @@ def format_of(name: str) -> Format:
     if name == "parquet":
         return Parquet()
     raise UsageError(f"there is no format {name[:60]} of studies; they are {', '.join(FORMATS)}")
-
-
-FORMATS = ("csv", "parquet")
 
 
 class Csv:
