@@ -298,12 +298,12 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
 def _report(
     file: str, analyses: list[Analysis], folder: Path, written: list[Path], command: AnalyzeCommand
 ) -> None:
-    from mechkin_cli.cli.show import files_line, shown_tables, summary
-
+    if command.explain:
+        from mechkin_cli.cli.explanation import explanation
+    if not command.quiet:
+        from mechkin_cli.cli.show import files_line, shown_tables, summary
     for analysis in analyses:
         if command.explain:
-            from mechkin_cli.cli.explanation import explanation
-
             put(f"{explanation(analysis)}\n")
         for part in () if command.quiet else shown_tables(analysis, folder):
             put(part)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
 from inspect import Parameter, Signature
@@ -13,7 +12,7 @@ import typer
 
 from mechkin_cli.cli import offers
 from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
-from mechkin_cli.cli.messages import ExitCode, put, say
+from mechkin_cli.cli.messages import ExitCode, discard, put, say
 from mechkin_cli.verdict import version as package_version
 
 app = typer.Typer(
@@ -104,6 +103,9 @@ def run() -> int:
 
 def _show(error: Any) -> None:
     """A usage error of the command line itself, as typer words it."""
-    with contextlib.suppress(OSError):
-        if sys.stderr is not None:
-            error.show()
+    if sys.stderr is None:
+        return
+    try:
+        error.show()
+    except OSError:
+        discard(sys.stderr)

@@ -262,7 +262,8 @@ def _resolved(name: str, resolve: Resolve) -> Quantity:
     value: Value = quantity.value
     if isinstance(value, Vector):
         return replace(quantity, value=Vector(*map(_plain, value.components)))
-    return replace(quantity, value=_plain(value))
+    number = _plain(value)
+    return quantity if number is value else replace(quantity, value=number)
 
 
 def _plain(value: Scalar) -> Scalar:

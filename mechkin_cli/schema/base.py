@@ -74,6 +74,7 @@ class FieldOfSection(NamedTuple):
     default: Any
 
 
+@cache
 def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
     """The fields of a section by key, those of its base classes first."""
     found: dict[str, FieldOfSection] = {}

@@ -53,13 +53,10 @@ def _section(section: type[Section]) -> Read:
     known = _SECTIONS.get(section)
     if known is not None:
         return known
-    fields = {
-        key: (field.name, _value(field.annotation)) for key, field in fields_of(section).items()
-    }
-    required = {key for key, field in fields_of(section).items() if field.required}
-    defaults = {
-        field.name: field.default for field in fields_of(section).values() if not field.required
-    }
+    declared = fields_of(section).items()
+    fields = {key: (field.name, _value(field.annotation)) for key, field in declared}
+    required = {key for key, field in declared if field.required}
+    defaults = {field.name: field.default for _, field in declared if not field.required}
     check = None if section.check is Section.check else section.check
 
     def read(data: Any) -> Section:

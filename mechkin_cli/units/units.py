@@ -413,6 +413,9 @@ class UnitSystem:
     _conversions: dict[Dimension, Conversion] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    _units: dict[Dimension, CompoundUnit] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def from_mapping(cls, texts: Mapping[str, str | None]) -> UnitSystem:
@@ -426,6 +429,12 @@ class UnitSystem:
 
     def unit(self, dimension: Dimension) -> CompoundUnit:
         """The unit of a dimension, composed by the rules above."""
+        known = self._units.get(dimension)
+        if known is None:
+            known = self._units[dimension] = self._composed(dimension)
+        return known
+
+    def _composed(self, dimension: Dimension) -> CompoundUnit:
         reduced = dimension.reduced()
         time, length = reduced.time, reduced.length
         product = CompoundUnit()
