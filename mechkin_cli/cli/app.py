@@ -64,8 +64,10 @@ def _parameter(word: Word) -> Parameter:
 def _add(command: Command) -> None:
     """Tells typer of a command."""
 
-    def call(**given: Any) -> int:
-        return command.call(given)
+    def call(**given: Any) -> None:
+        code = command.call(given)
+        if code:
+            raise typer.Exit(code)
 
     parameters = [_parameter(word) for word in command.words]
     call.__signature__ = Signature(parameters)  # type: ignore[attr-defined]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import isfinite, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS
 from mechkin_cli.model.settings import input_values
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import (
     angle_slots,
     held_values,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from mechkin_cli import response as response_room
 from mechkin_cli.arguments import a_text, a_whole_number, texts
@@ -16,7 +17,6 @@ from mechkin_cli.mechanism import find_legs, response_problem
 from mechkin_cli.memo import remembered
 from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.plan import needs_all_links
-from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Packing, Session
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import analyze

@@ -227,20 +227,19 @@ class TreeBuilder:
 
     def take(self, event: events.Event) -> None:
         """Add one scalar, alias, or the start or end of a list or mapping."""
-        kind = type(event)
-        if kind is events.ScalarEvent:
+        if isinstance(event, events.ScalarEvent):
             has_properties = self._check_properties(event)
             self._check_escapes(event)
             style = _STYLES.get(event.style or "", Style.PLAIN)
             if has_properties and not event.value:
                 style = Style.SINGLE_QUOTED  # one message about this scalar is enough
             self._add(ScalarNode(event.value, mark_of(event), style))
-        elif kind in (events.SequenceStartEvent, events.MappingStartEvent):
+        elif isinstance(event, (events.SequenceStartEvent, events.MappingStartEvent)):
             self._check_properties(event)
-            self._open(mark_of(event), kind is events.MappingStartEvent)
-        elif kind in (events.SequenceEndEvent, events.MappingEndEvent):
+            self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
+        elif isinstance(event, (events.SequenceEndEvent, events.MappingEndEvent)):
             self._add(self._close(self._stack.pop()))
-        elif kind is events.AliasEvent:
+        elif isinstance(event, events.AliasEvent):
             hint = (
                 "write the value out, or use a parameter; put a text that starts with * in quotes"
             )

@@ -74,9 +74,13 @@ class FieldOfSection(NamedTuple):
     default: Any
 
 
-@cache
+_FIELDS: dict[type[Section], dict[str, FieldOfSection]] = {}
+
+
 def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
     """The fields of a section by key, those of its base classes first."""
+    if section in _FIELDS:
+        return _FIELDS[section]
     found: dict[str, FieldOfSection] = {}
     for model in reversed(section.__mro__):
         for name, annotation in get_annotations(model).items():
@@ -86,6 +90,7 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
             key = next((item.key for item in metadata if isinstance(item, Key)), name)
             default = getattr(section, name, _REQUIRED)
             found[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
+    _FIELDS[section] = found
     return found
 
 

@@ -63,7 +63,7 @@ COMMANDS = [
     ["analyze", "FILE", "--out", "DIR"],
     ["analyze", "FILE", "--out", "DIR", "--quiet"],
 ]
-HEAVY = {"typer", "click", "rich", "pydantic", "pydantic_core", "dataclasses", "scipy"}
+HEAVY = {"typer", "click", "rich", "pydantic", "pydantic_core", "scipy"}
 
 
 @cache
