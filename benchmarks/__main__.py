@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,9 +11,9 @@ import typer
 from benchmarks.stress import options
 from benchmarks.stress.command import Stress, stress_command
 from benchmarks.suite import OF_FILES, WHOLE
-from mechkin_cli.cli.bench import STRESS_IS_ALONE, Out, Quick, measure, refuse_options, show
+from mechkin_cli.cli.bench import STRESS_IS_ALONE, measure, refuse_options, show
 from mechkin_cli.cli.messages import say, say_diagnostics
-from mechkin_cli.cli.options import Json
+from mechkin_cli.cli.offers import folder
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
 
 OF_STRESS = ("rows", "seed", "family", "only", "page", "check", "processes", "small")
@@ -24,6 +25,21 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
+
+
+Quick = Annotated[
+    bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        parser=folder,
+        help="Also write bench.json, bench.csv, bench.md, bench.svg.",
+    ),
+]
+Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")]
 
 
 @app.command()
@@ -55,15 +71,24 @@ def benchmarks(
     mechanisms by the thousand instead, and decides every row in double-double.
     """
     if stress:
-        refuse_options(context, OF_TIMES, STRESS_IS_ALONE)
+        refuse_options(_given(context, OF_TIMES), STRESS_IS_ALONE)
         asked = Stress(round(rows), seed, family, only, page, check, processes, small, json)
         code = stress_command(asked, show)
     else:
-        refuse_options(context, OF_STRESS, STRESS_IS_MISSING)
+        refuse_options(_given(context, OF_STRESS), STRESS_IS_MISSING)
         suite = OF_FILES if files else WHOLE
         code = measure(suite, files or [], quick=quick, out=out, json=json)
     if code:
         raise typer.Exit(code)
+
+
+def _given(context: typer.Context, names: Sequence[str]) -> dict[str, bool]:
+    """Which of the parameters stand on the command line."""
+    sources = {name: context.get_parameter_source(name) for name in names}
+    return {
+        name: source is not None and source.name == "COMMANDLINE"
+        for name, source in sources.items()
+    }
 
 
 def main() -> None:

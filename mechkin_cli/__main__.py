@@ -1,5 +1,5 @@
 """`python -m mechkin_cli`: the same as the command `mechkin`."""
 
-from mechkin_cli.cli.main import main
+from mechkin_cli.cli.main import program
 
-main()
+program()

@@ -10,7 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from math import isfinite
-from typing import Literal, NamedTuple
+from typing import Literal
+
+from mechkin_cli.record import NamedTuple
 
 LONGEST_NAME = 60
 """Characters of an unknown name that a message repeats."""

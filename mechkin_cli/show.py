@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Generic, NamedTuple, SupportsIndex, TypeVar, overload
+from typing import Any, Generic, SupportsIndex, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, legible, nearest_hint
+from mechkin_cli.record import NamedTuple
 
 Item = TypeVar("Item")
 

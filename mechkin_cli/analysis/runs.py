@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from mechkin_cli.expressions import ExpressionError, constant_in_file_units, loo
 from mechkin_cli.kernel.functions import check_threads, check_width
 from mechkin_cli.mechanism import Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Packing, Session
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import analyze, refuse_loaded_spin

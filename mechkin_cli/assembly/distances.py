@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import inf, sqrt
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import is_cyclic, probe_of, wrapped
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import dimension_of, is_angle
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:

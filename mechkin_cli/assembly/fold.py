@@ -4,8 +4,7 @@ it, unless `near` tells them apart at the first.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from mechkin_cli.assembly.distances import (
 )
 from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.tolerances import BEFORE_DEAD_CENTRE, OFF_FOLD

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import ceil, pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, home_inputs, home_state
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
 from mechkin_cli.session import Ask, RowInputs
 

@@ -15,7 +15,7 @@ most n times the root of the sum of both squares.
 from __future__ import annotations
 
 from math import inf, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import GROUND_NAME, norm
 from mechkin_cli.plan import Demand, home_state
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search import Within, single_assembly
 
 if TYPE_CHECKING:

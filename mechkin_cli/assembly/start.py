@@ -5,7 +5,6 @@ nearest to it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,6 +37,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Layout, TrackEnd, build_plan
+from mechkin_cli.record import replace
 from mechkin_cli.search import (
     Assemblies,
     all_assemblies,

@@ -7,7 +7,7 @@ force -m a through the mass centre and the couple -(I alpha + omega x I omega).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -39,6 +39,7 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import ACCELERATION, ANGULAR_ACCELERATION, ANGULAR_RATE, LENGTH, VELOCITY
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from mechkin_cli.balances.dense import (
 )
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, cross, scale
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import Columns, TableColumn, words_of
 from mechkin_cli.tolerances import DENSE_PIVOT, DENSE_ROUNDING
 from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT, Dimension

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from mechkin_cli.derived import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import atan2, cos, sin
 from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, LoadWork
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import input_path
 from mechkin_cli.sweep import stands_elsewhere
 from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, Words, column_of

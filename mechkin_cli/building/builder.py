@@ -6,10 +6,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from math import inf
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
 from mechkin_cli.building.fields import (
@@ -55,6 +54,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import in_order
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.schema import MechanismFile
 from mechkin_cli.session import solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed

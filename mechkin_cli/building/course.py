@@ -8,7 +8,7 @@ they bend, jump or rest is found on that tape (`solver.cells`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from mechkin_cli.expressions import (
     scalar,
 )
 from mechkin_cli.mechanism import Course, DrivenInput, Moments, Parameter
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import FollowingInput, HeldCoordinate, HeldInput, ListedInput, SweptInput
 from mechkin_cli.session import Formula, cells_of, places_of
 from mechkin_cli.show import Floats

@@ -8,7 +8,6 @@ found.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from math import pi, prod
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +18,7 @@ from mechkin_cli.building.load_laws import joining_of, read_rows
 from mechkin_cli.exact import PI, TURN, Exact
 from mechkin_cli.expressions import Expression, Quantity, literal, parse, scalar
 from mechkin_cli.mechanism import ExactMotion, joined_curve
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.schema import (
     ConstantAcceleration,
     ConstantRate,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism import Moments
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import HeldCoordinate, InputMotion
 from mechkin_cli.show import Floats
 
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     pass
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
 from mechkin_cli.expressions import (
@@ -32,6 +32,7 @@ from mechkin_cli.expressions import (
 )
 from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, pairs as joint_table
 from mechkin_cli.reading import CORRECT_FIRST, MOST_DIAGNOSTICS, Document, in_order
+from mechkin_cli.record import dataclass, field, replace
 from mechkin_cli.schema import MechanismFile, UnitsSection
 from mechkin_cli.tape import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE

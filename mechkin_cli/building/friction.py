@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.mechanism import (
@@ -19,6 +19,7 @@ from mechkin_cli.mechanism import (
     subtract,
     unit,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import FallingCoefficient
 from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY

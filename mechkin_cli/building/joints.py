@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path, place_at
 from mechkin_cli.diagnostics import nearest_hint
@@ -29,6 +29,7 @@ from mechkin_cli.mechanism import (
     unit,
     upright,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import (
     AnyAxisJoint,
     AnyJoint,

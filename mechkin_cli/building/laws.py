@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import pi, prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
 from mechkin_cli.building.load_laws import joining_of, read_rows
 from mechkin_cli.expressions import literal
 from mechkin_cli.mechanism import joined_curve
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import Cycloidal, Harmonic, Law, Polynomial, TableLaw
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import cos, sin

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
@@ -30,6 +29,7 @@ from mechkin_cli.mechanism import (
     subtract,
     unit,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import ChainRow, MechanismFile, links_joints as written
 from mechkin_cli.tape import Recorded, advice, cos, largest, sin
 from mechkin_cli.units import ANGLE, INERTIA, LENGTH, MASS

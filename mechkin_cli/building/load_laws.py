@@ -7,8 +7,6 @@ that it can be evaluated before any force is.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Set
-from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,6 +32,7 @@ from mechkin_cli.expressions import (
     scalar,
 )
 from mechkin_cli.mechanism import Curve, Joining, LoadLaw, Varying, Wanted, joined_curve
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import JoinedTable, TableValue
 from mechkin_cli.tape import is_finite, is_traced, plain
 from mechkin_cli.tolerances import LARGEST_NUMBER, OVERSHOOT, SMALLEST_SIZE

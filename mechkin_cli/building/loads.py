@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from math import sqrt
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.building.fields import CODE, Fields, Path, is_coordinate_at, place_at, without
 from mechkin_cli.building.tables import unknown_run
@@ -36,6 +35,7 @@ from mechkin_cli.mechanism import (
     scale,
     varying,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import (
     AnyLoad,
     DamperAtJoint,

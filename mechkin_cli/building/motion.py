@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from decimal import Decimal
 from math import floor, isfinite
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -38,6 +37,7 @@ from mechkin_cli.mechanism import (
     seat_letter,
     upright,
 )
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.schema import (
     FollowingInput,
     HeldCoordinate,

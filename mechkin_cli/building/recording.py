@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from decimal import Decimal
 from fractions import Fraction
 from math import pi
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.building.assembly import settled
 from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
@@ -29,6 +28,7 @@ from mechkin_cli.mechanism import (
     Problem,
     response_problem,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Precise, ShiftingPrecise
 from mechkin_cli.tape import (
     ExactRecorder,

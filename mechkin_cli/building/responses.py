@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +26,7 @@ from mechkin_cli.mechanism import (
     is_angle,
     response_problem,
 )
+from mechkin_cli.record import replace
 from mechkin_cli.schema import TimeSection, responses as written
 from mechkin_cli.session import left_free, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, is_redundant, listed

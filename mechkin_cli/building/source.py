@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading import (
@@ -17,6 +16,7 @@ from mechkin_cli.reading import (
     read_document,
     read_regular,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import InvalidDataError, MechanismFile, validate
 
 _NONE: Mapping[str, str] = MappingProxyType({})

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Vector, is_written
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.cli.messages import (
     FORMS,
@@ -24,6 +24,7 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
 from mechkin_cli.verdict import SWEEP
 
@@ -98,11 +99,8 @@ def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
             )
 
 
-FORMATS = f"{', '.join(tuple(WRITERS)[:-1])} or {tuple(WRITERS)[-1]}"
-
-
 class AnalyzeCommand(NamedTuple):
-    """The options of the command, as `analyze_command` declares them."""
+    """The options of the command, as `commands` declares them."""
 
     files: list[Path]
     out: Path | None = None
@@ -140,6 +138,15 @@ class AnalyzeCommand(NamedTuple):
     def writes(self) -> bool:
         """Whether files are written."""
         return not self.json or self.out is not None or bool(self.format) or self.view
+
+
+def analyze(**given: Any) -> ExitCode:
+    """Runs the sweep and the responses of each file and writes their tables.
+
+    Args:
+        given: the fields of `AnalyzeCommand`.
+    """
+    return analyze_files(AnalyzeCommand(**given))
 
 
 def analyze_files(command: AnalyzeCommand) -> ExitCode:
@@ -292,12 +299,12 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
 def _report(
     file: str, analyses: list[Analysis], folder: Path, written: list[Path], command: AnalyzeCommand
 ) -> None:
-    from mechkin_cli.cli.show import files_line, shown_tables, summary
-
+    if command.explain:
+        from mechkin_cli.cli.explanation import explanation
+    if not command.quiet:
+        from mechkin_cli.cli.show import files_line, shown_tables, summary
     for analysis in analyses:
         if command.explain:
-            from mechkin_cli.cli.explanation import explanation
-
             put(f"{explanation(analysis)}\n")
         for part in () if command.quiet else shown_tables(analysis, folder):
             put(part)

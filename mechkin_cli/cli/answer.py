@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Generic, Protocol, TypeVar
-
-import typer
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -22,9 +19,9 @@ from mechkin_cli.cli.messages import (
     say_diagnostics,
     shown,
 )
-from mechkin_cli.cli.options import File, Json, Quiet, Set, response_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.record import dataclass
 
 if TYPE_CHECKING:
     from mechkin_cli.mobility import Mobility
@@ -53,12 +50,11 @@ class Question(Generic[Found]):
     words: str
 
 
-def answer(file: Path, settings: list[str] | None, json: bool, question: Question[Found]) -> None:
-    """Asks the file's model, and shows the answer or writes one JSON object to stdout.
-
-    Raises:
-        typer.Exit: with the exit code, unless all is well.
-    """
+def answer(
+    file: Path, settings: list[str] | None, json: bool, question: Question[Found]
+) -> ExitCode:
+    """Asks the file's model, and shows the answer or writes one JSON object to stdout; the exit
+    code."""
     record: Record = {}
     try:
         model = model_of(file, parameters(settings))
@@ -75,18 +71,16 @@ def answer(file: Path, settings: list[str] | None, json: bool, question: Questio
             question.show(model, found)
     if json:
         put_json(record)
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 # `mechkin mobility`: what can move, by count and in truth.
 
 
-def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = False) -> None:
-    """Find the mobility, idle freedoms and redundant constraints.
-
-    Compares Kutzbach's count with the true mobility. Inputs need not be declared.
-    """
+def mobility(
+    file: Path, set_: list[str] | None = None, json: bool = False, quiet: bool = False
+) -> ExitCode:
+    """The mobility, idle freedoms and redundant constraints."""
     question = Question(
         ask=lambda model: model.mobility(),
         is_answered=lambda found: found.mobility is not None,
@@ -94,7 +88,7 @@ def mobility(file: File, set_: Set = None, json: Json = False, quiet: Quiet = Fa
         show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
         words="looking for what can move",
     )
-    answer(file, set_, json, question)
+    return answer(file, set_, json, question)
 
 
 def _record(found: Mobility) -> Record:
@@ -163,34 +157,15 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
 
 
 def modes(
-    file: File,
-    at: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--at",
-            metavar="VALUE",
-            help="Value of the input instead of the first row's; of several as O1.theta=VALUE, "
-            "repeatable.",
-        ),
-    ] = None,
-    run: Annotated[
-        str | None,
-        typer.Option(
-            "--run",
-            metavar="NAME",
-            help="Take the modes at the start of this response.",
-            autocompletion=response_names,
-        ),
-    ] = None,
-    certify: Annotated[
-        bool,
-        typer.Option("--certify", help="Prove that each exists, and that no two are the same."),
-    ] = False,
-    set_: Set = None,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """List the assembly modes: the ways to put a mechanism together."""
+    file: Path,
+    at: list[str] | None = None,
+    run: str | None = None,
+    certify: bool = False,
+    set_: list[str] | None = None,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """The assembly modes: the ways to put a mechanism together."""
     question = Question(
         ask=lambda model: model.modes(_place(at), run=run, certify=certify),
         is_answered=lambda found: bool(found.modes),
@@ -198,7 +173,7 @@ def modes(
         show=lambda model, found: _print(model, found, quiet),
         words="searching for assembly modes",
     )
-    answer(file, set_, json, question)
+    return answer(file, set_, json, question)
 
 
 def _place(texts: list[str] | None) -> str | dict[str, str] | None:

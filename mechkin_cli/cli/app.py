@@ -2,24 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
-from typing import Any
+from inspect import Parameter, Signature
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
-from mechkin_cli.cli.analyze_command import analyze
-from mechkin_cli.cli.answer import mobility, modes
-from mechkin_cli.cli.bench import bench
-from mechkin_cli.cli.check import check
-from mechkin_cli.cli.messages import ExitCode, put, say
-from mechkin_cli.cli.new import new, schema
-from mechkin_cli.cli.plot import plot
-from mechkin_cli.cli.ranges import ranges
-from mechkin_cli.cli.study import study
-from mechkin_cli.cli.tables import tables
-from mechkin_cli.cli.view import view
+from mechkin_cli.cli import offers
+from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
+from mechkin_cli.cli.messages import ExitCode, discard, put, say
 from mechkin_cli.verdict import version as package_version
 
 app = typer.Typer(
@@ -31,12 +24,59 @@ app = typer.Typer(
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
-COMMANDS = (
-    *(new, analyze, view, check, modes, ranges, mobility),
-    *(plot, study, tables, schema, bench),
-)
-for command in COMMANDS:
-    app.command()(command)
+TYPES: dict[str, type] = {
+    "flag": bool,
+    "text": str,
+    "whole": int,
+    "path": Path,
+    "folder": Path,
+}
+"""What typer makes of a word, by its kind."""
+
+
+def _parameter(word: Word) -> Parameter:
+    """A word of a command line as typer wants it."""
+    told: dict[str, Any] = {
+        "help": word.help.format(formats=all_formats()),
+        "metavar": word.metavar,
+        "autocompletion": None if word.offers is None else getattr(offers, word.offers),
+    }
+    if word.kind == "folder":
+        told["parser"] = offers.folder
+    kind: Any = TYPES[word.kind]
+    default: Any = word.default
+    if word.kind == "flag":
+        default = False
+    elif word.default is not None:
+        default = kind(word.default)
+    else:
+        kind = list[kind] if word.repeated else kind
+        kind = kind if word.required else kind | None
+    info = typer.Option(*word.names, **told) if word.names else typer.Argument(**told)
+    return Parameter(
+        word.parameter,
+        Parameter.KEYWORD_ONLY,
+        default=Parameter.empty if word.required else default,
+        annotation=Annotated[kind, info],
+    )
+
+
+def _add(command: Command) -> None:
+    """Tells typer of a command."""
+
+    def call(**given: Any) -> None:
+        code = command.call(given)
+        if code:
+            raise typer.Exit(code)
+
+    parameters = [_parameter(word) for word in command.words]
+    call.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    call.__annotations__ = {one.name: one.annotation for one in parameters}
+    app.command(command.name, help=command.help)(call)
+
+
+for command in COMMANDS.values():
+    _add(command)
 
 
 @app.callback(invoke_without_command=True)
@@ -65,6 +105,9 @@ def run() -> int:
 
 def _show(error: Any) -> None:
     """A usage error of the command line itself, as typer words it."""
-    with contextlib.suppress(OSError):
-        if sys.stderr is not None:
-            error.show()
+    if sys.stderr is None:
+        return
+    try:
+        error.show()
+    except OSError:
+        discard(sys.stderr)

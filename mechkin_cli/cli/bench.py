@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.messages import ExitCode, Record, put, put_json, refusal, refuse_stdin
-from mechkin_cli.cli.options import Json, folder
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -23,75 +20,39 @@ if TYPE_CHECKING:
     from mechkin_cli.bench.scene import BenchScene, Subject
 
 
-Quick = Annotated[
-    bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
-]
-Out = Annotated[
-    Path | None,
-    typer.Option(
-        "--out",
-        metavar="DIR",
-        parser=folder,
-        help="Also write bench.json, bench.csv, bench.md, bench.svg.",
-    ),
-]
-
-
 def bench(
-    context: typer.Context,
-    files: Annotated[
-        list[Path] | None,
-        typer.Argument(
-            help="Mechanism files to measure instead of some templates.", metavar="FILE"
-        ),
-    ] = None,
-    quick: Quick = False,
-    out: Out = None,
-    json: Json = False,
-    stress: Annotated[
-        bool, typer.Option("--stress", help="Hard mechanisms of known rows instead of run times.")
-    ] = False,
-) -> None:
-    """Measure run time against error.
-
-    Beside mechkin's own settings it measures scipy (pip install 'mechkin[bench]'), the dense
-    systems of the sources, and explicit stepping. Without files it measures some of the templates.
-    With --stress it runs a small set of hard mechanisms instead, whose rows are known, and judges
-    every row.
-    """
+    files: list[Path] | None = None,
+    quick: bool = False,
+    out: Path | None = None,
+    json: bool = False,
+    stress: bool = False,
+) -> int:
+    """Measures run time against error, or runs hard mechanisms."""
     if stress:
-        refuse_options(context, ("files", "quick", "out"), STRESS_IS_ALONE)
-        code = _stress(json=json)
-    else:
-        from mechkin_cli.bench.runs import SUITE
+        refuse_options({"files": files, "quick": quick, "out": out}, STRESS_IS_ALONE)
+        return _stress(json=json)
+    from mechkin_cli.bench.runs import SUITE
 
-        code = measure(SUITE, files or [], quick=quick, out=out, json=json)
-    if code:
-        raise typer.Exit(code)
+    return measure(SUITE, files or [], quick=quick, out=out, json=json)
 
 
 STRESS_IS_ALONE = "--stress judges mechanisms of its own and times nothing; leave {} out"
 
 
-def refuse_options(context: typer.Context, names: Sequence[str], message: str) -> None:
+def refuse_options(given: Mapping[str, object], message: str) -> None:
     """Refuses options that mean nothing beside others.
 
     Args:
-        names: the parameters that must not be given.
+        given: the parameters that must not be given, and whether they are.
         message: why, and what to do, with {} for those that are.
 
     Raises:
         UsageError: one of them is given.
     """
-    given = [name for name in names if _is_given(context, name)]
-    if given:
-        words = ", ".join("FILE" if name == "files" else f"--{name}" for name in given)
+    names = [name for name, value in given.items() if value]
+    if names:
+        words = ", ".join("FILE" if name == "files" else f"--{name}" for name in names)
         raise UsageError(message.format(words))
-
-
-def _is_given(context: typer.Context, name: str) -> bool:
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
 
 
 def measure(

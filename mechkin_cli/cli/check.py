@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -19,7 +17,6 @@ from mechkin_cli.cli.messages import (
     shown,
     tell_as,
 )
-from mechkin_cli.cli.options import MESSAGES_HELP, Files, Json, Quiet, Set, message_forms
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP
 
@@ -29,22 +26,13 @@ if TYPE_CHECKING:
 
 
 def check(
-    files: Files,
-    set_: Set = None,
-    messages: Annotated[
-        str | None,
-        typer.Option(
-            "--messages",
-            "--format",
-            metavar="FORM",
-            help=MESSAGES_HELP,
-            autocompletion=message_forms,
-        ),
-    ] = None,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Validate mechanism files; every error with its line and column."""
+    files: list[Path],
+    set_: list[str] | None = None,
+    messages: str | None = None,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """Validates mechanism files; every error with its line and column."""
     tell_as(messages)
     settings = parameters(set_)
     code = ExitCode.OK
@@ -55,8 +43,7 @@ def check(
         records.append(record | {"valid": outcome == ExitCode.OK})
     if json:
         put_json({"files": records})
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, Record]:

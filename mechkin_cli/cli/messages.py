@@ -172,7 +172,7 @@ def stdout_failed(error: OSError) -> None:
     Raises:
         UsageError: it takes no more for another reason.
     """
-    _discard(sys.stdout)
+    discard(sys.stdout)
     if isinstance(error, BrokenPipeError):
         return
     reason = error.strerror or str(error)
@@ -197,7 +197,7 @@ def _say(text: str, end: str = "\n") -> None:
         sys.stderr.write(text + end)
         sys.stderr.flush()
     except OSError:
-        _discard(sys.stderr)
+        discard(sys.stderr)
 
 
 def _clear_progress() -> None:
@@ -207,7 +207,7 @@ def _clear_progress() -> None:
         progress.pause()
 
 
-def _discard(stream: TextIO) -> None:
+def discard(stream: TextIO) -> None:
     """Lets whatever is still written to a stream go nowhere."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 

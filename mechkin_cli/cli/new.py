@@ -4,27 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import Annotated
-
-import typer
 
 from mechkin_cli.cli.messages import ExitCode, put, say
 from mechkin_cli.diagnostics import UsageError
 
 
-def new(
-    name: Annotated[
-        str | None, typer.Argument(metavar="NAME", help="The file to write; .yaml is added.")
-    ] = None,
-    template: Annotated[
-        str,
-        typer.Option(
-            "--template", metavar="TEMPLATE", help="Template to start from; --list names them."
-        ),
-    ] = "four-bar",
-    list_: Annotated[bool, typer.Option("--list", help="List the templates.")] = False,
-) -> None:
-    """Write a commented mechanism file that runs, to start from.
+def new(name: str | None = None, template: str = "four-bar", list_: bool = False) -> ExitCode:
+    """Writes a commented mechanism file that runs, to start from.
 
     An existing file is never written over.
     """
@@ -34,7 +20,7 @@ def new(
         names = template_names()
         width = max(map(len, names))
         put("".join(f"{one:{width}}  {purpose(template_text(one))}\n" for one in names))
-        return
+        return ExitCode.OK
     if name is None:
         raise UsageError(
             "name the file to write: mechkin new NAME; mechkin new --list tells of what"
@@ -50,6 +36,7 @@ def new(
     _write_anew(path, text)
     say(f"{path}: {purpose(text)}")
     say(f"mechkin analyze {quote(str(path))}")
+    return ExitCode.OK
 
 
 def _write_anew(path: Path, text: str) -> None:
@@ -83,20 +70,8 @@ def committed(name: str) -> Path:
     return Path(f"schemas/{name}.schema.json")
 
 
-def schema(
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="FILE", help="Write to a file instead of stdout."),
-    ] = None,
-    check: Annotated[
-        bool,
-        typer.Option("--check", help="Compare with the files in schemas/ (or --out) instead."),
-    ] = False,
-    study: Annotated[
-        bool, typer.Option("--study", help="Print the schema of study files instead.")
-    ] = False,
-) -> None:
-    """Print the JSON Schema of mechanism files."""
+def schema(out: Path | None = None, check: bool = False, study: bool = False) -> ExitCode:
+    """Prints the JSON Schema of mechanism files, or compares it."""
     from mechkin_cli.schema import SCHEMAS, json_schema_text
 
     name = "study" if study else MECHANISM
@@ -106,9 +81,7 @@ def schema(
             # studies are not everybody's
             names += [one for one in SCHEMAS if one != name and committed(one).exists()]
         found = [_is_up_to_date(one, out or committed(one)) for one in names]
-        if not all(found):
-            raise typer.Exit(ExitCode.DIFFERENCES)
-        return
+        return ExitCode.OK if all(found) else ExitCode.DIFFERENCES
     text = json_schema_text(name)
     if out is not None:
         from mechkin_cli.tables import write_files
@@ -116,6 +89,7 @@ def schema(
         write_files(out.parent, {out.name: text.encode()})
     else:
         put(text)
+    return ExitCode.OK
 
 
 def _is_up_to_date(name: str, path: Path) -> bool:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -17,7 +15,6 @@ from mechkin_cli.cli.messages import (
     shown,
     stem_of,
 )
-from mechkin_cli.cli.options import File, Quiet, Set, mode_names, run_names, table_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP
@@ -37,61 +34,17 @@ ENDING = "svg"
 
 
 def plot(
-    file: File,
-    x: Annotated[
-        str | None,
-        typer.Option(
-            "--x",
-            metavar="NAME",
-            help="What the horizontal axis shows (default: the input or time).",
-        ),
-    ] = None,
-    y: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--y", metavar="NAMES", help="What is drawn, separated by commas; repeatable."
-        ),
-    ] = None,
-    table: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--table",
-            metavar="NAME",
-            help="Only this table; may be repeated.",
-            autocompletion=table_names,
-        ),
-    ] = None,
-    run: Annotated[
-        str | None,
-        typer.Option(
-            "--run",
-            metavar="NAME",
-            help="Run to draw: sweep, or a response (default: the first).",
-            autocompletion=run_names,
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", metavar="PICTURE", help="File to write: .svg, .png or .pdf."),
-    ] = None,
-    mode: Annotated[
-        str | None,
-        typer.Option(
-            "--mode",
-            metavar="NAME",
-            help="Assembly mode at the first row.",
-            autocompletion=mode_names,
-        ),
-    ] = None,
-    set_: Set = None,
-    quiet: Quiet = False,
-) -> None:
-    """Draw curves, coupler curves and polar diagrams of a file.
-
-    Without --y, one picture for each table, as its `plot:` says, in out/STEM/TABLE.svg. --y takes
-    labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
-    as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
-    """
+    file: Path,
+    x: str | None = None,
+    y: list[str] | None = None,
+    table: list[str] | None = None,
+    run: str | None = None,
+    out: Path | None = None,
+    mode: str | None = None,
+    set_: list[str] | None = None,
+    quiet: bool = False,
+) -> ExitCode:
+    """Draws curves, coupler curves and polar diagrams of a file."""
     from mechkin_cli.plots import format_of, image
 
     ending = ENDING if out is None else format_of(out)
@@ -114,14 +67,13 @@ def plot(
                 picture = _picture(drawn, names, x)
                 files[f"{name}.{ending}" if out is None else out.name] = image(picture, ending)
     except (InvalidFile, UsageError) as error:
-        code, _ = refusal(file, error)
-        raise typer.Exit(code) from error
+        return refusal(file, error)[0]
     _write(file, out, files, quiet)
     found = [analysis for analysis, _ in analyses.values()]
     said = dict.fromkeys(one for analysis in found for one in analysis.diagnostics)
     say_diagnostics(tuple(said), shown(file))
-    if not all(analysis.complete for analysis in found):
-        raise typer.Exit(ExitCode.ROWS_MISSING)
+    complete = all(analysis.complete for analysis in found)
+    return ExitCode.OK if complete else ExitCode.ROWS_MISSING
 
 
 def _picture(drawn: Drawn, names: list[str], x: str | None) -> Picture:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.answer import Question, answer
-from mechkin_cli.cli.messages import Record, put, say
-from mechkin_cli.cli.options import File, Json, Quiet, Set, input_names
+from mechkin_cli.cli.messages import ExitCode, Record, put, say
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mechkin_cli.model import Model
     from mechkin_cli.modes import Range, Ranges
     from mechkin_cli.tables import Columns
@@ -29,32 +28,14 @@ WORDS = {
 
 
 def ranges(
-    file: File,
-    input: Annotated[
-        str | None,
-        typer.Option(
-            "--input",
-            metavar="NAME",
-            help="Input that moves (default: the first one swept).",
-            autocompletion=input_names,
-        ),
-    ] = None,
-    output: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--output",
-            metavar="NAME",
-            help="Output whose own dead centres are located, too; repeatable.",
-        ),
-    ] = None,
-    set_: Set = None,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Find the range of an input in each assembly mode.
-
-    Lists dead centres, branch points and full turns, and the circuits that the modes form.
-    """
+    file: Path,
+    input: str | None = None,
+    output: list[str] | None = None,
+    set_: list[str] | None = None,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """The range of an input in each assembly mode, and the circuits that the modes form."""
     question = Question(
         ask=lambda model: model.ranges(input, output or ()),
         is_answered=lambda found: bool(found.ranges),
@@ -62,7 +43,7 @@ def ranges(
         show=lambda model, found: _print(model, found, quiet),
         words="following each mode to its ends",
     )
-    answer(file, set_, json, question)
+    return answer(file, set_, json, question)
 
 
 def _record(model: Model, found: Ranges) -> Record:

@@ -1,89 +1,75 @@
 """A command line to its exit code: exceptions become messages.
 
-A plain `mechkin analyze` is run without typer, whose import and checks take longer than an
-analysis; everything else, help and mistakes included, goes to `app`.
+A plain command line is run without typer, whose import and checks take longer than an analysis;
+everything else, help and mistakes included, goes to `app`.
 """
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
 
+from mechkin_cli.cli.commands import COMMANDS, Command, Word
 from mechkin_cli.cli.interrupts import said
-from mechkin_cli.cli.messages import ExitCode, say, say_diagnostics, stdout_failed, tell_as
+from mechkin_cli.cli.messages import ExitCode, put, say, say_diagnostics, stdout_failed, tell_as
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
+from mechkin_cli.verdict import version
 
-# Plain command lines of `mechkin analyze`, read without typer.
+TYPE_CHECKING = False  # typing is not loaded for its flag alone
+if TYPE_CHECKING:
+    from typing import Any
+
+# Plain command lines, read without typer.
 #
-# Plain is: files (or `-`), known options in full, each with its value as a word of its own that is
-# not empty and does not start with a dash, nothing given twice that is wanted once. Of all else
-# typer is to judge.
+# Plain is: a command, its arguments, known options in full, each with its value as a word of its
+# own that is not empty and does not start with a dash, nothing given twice that is wanted once. Of
+# all else typer is to judge.
 
 
-class Option(NamedTuple):
-    """An option: the field of `AnalyzeCommand`, what turns its word into a value (None: a flag),
-    and whether it may be repeated."""
-
-    argument: str
-    value: type[str] | type[int] | type[Path] | None
-    repeated: bool = False
-
-
-OPTIONS = {
-    "--out": Option("out", Path),
-    "--format": Option("format", str, True),
-    "--units": Option("units", None),
-    "--messages": Option("messages", str),
-    "--set": Option("set_", str, True),
-    "--mode": Option("mode", str),
-    "--table": Option("table", str, True),
-    "--lanes": Option("lanes", int),
-    "--threads": Option("threads", int),
-    "--certify": Option("certify", None),
-    "--strict": Option("strict", None),
-    "--errors": Option("errors", None),
-    "--view": Option("view", None),
-    "--explain": Option("explain", None),
-    "--json": Option("json", None),
-    "--quiet": Option("quiet", None),
-}
-
-
-def plain_analysis(words: Sequence[str]) -> dict[str, Any] | None:
-    """The fields of `AnalyzeCommand` that a command line means; None where it is not plain."""
-    if words[:1] != ["analyze"] or "_MECHKIN_COMPLETE" in os.environ:
+def plain_line(words: Sequence[str]) -> tuple[Command, dict[str, Any]] | None:
+    """The command that a line means and the values of its parameters; None where it is not
+    plain."""
+    command = COMMANDS.get(words[0]) if words else None
+    if command is None or "_MECHKIN_COMPLETE" in os.environ:
         return None
-    given: dict[str, Any] = {"files": []}
+    options = {name: word for word in command.words for name in word.names}
+    arguments = [word for word in command.words if not word.names]
+    given: dict[str, Any] = {}
     rest = iter(words[1:])
-    for word in rest:
-        if not word.startswith("-") or word == "-":
-            given["files"].append(Path(word))
-        elif word not in OPTIONS or not _add(given, OPTIONS[word], rest):
+    for text in rest:
+        if text.startswith("-") and text != "-":
+            if text not in options or not _add(given, options[text], rest):
+                return None
+        elif not arguments or not _put(given, arguments[0], text):
             return None
-    return given if given["files"] else None
+    if any(word.required and word.parameter not in given for word in arguments):
+        return None
+    return command, given
 
 
-def _add(given: dict[str, Any], option: Option, rest: Any) -> bool:
+def _add(given: dict[str, Any], option: Word, rest: Iterator[str]) -> bool:
     """Whether an option, with the word behind it where it takes one, is plain."""
-    if option.argument in given and not option.repeated:
+    if option.kind == "flag":
+        is_new = option.parameter not in given
+        given[option.parameter] = True
+        return is_new
+    text = next(rest, "-")
+    return bool(text) and not text.startswith("-") and _put(given, option, text)
+
+
+def _put(given: dict[str, Any], word: Word, text: str) -> bool:
+    """Whether a text is plain as the value of a word."""
+    if word.kind == "whole" and not (text.isascii() and text.isdecimal()):
         return False
-    if option.value is None:
-        given[option.argument] = True
-        return True
-    word = next(rest, "-")
-    if (
-        not word
-        or word.startswith("-")
-        or (option.value is int and not (word.isascii() and word.isdecimal()))
-    ):
+    if word.parameter in given and not word.repeated:
         return False
-    if option.repeated:
-        given.setdefault(option.argument, []).append(word)
+    kind = {"text": str, "whole": int}.get(word.kind, Path)
+    if word.repeated:
+        given.setdefault(word.parameter, []).append(kind(text))
     else:
-        given[option.argument] = option.value(word)
+        given[word.parameter] = kind(text)
     return True
 
 
@@ -98,9 +84,13 @@ def run() -> int:
 
 def _run() -> int:
     try:
-        given = plain_analysis(sys.argv[1:])
-        if given is not None:
-            return _analyzed(given)
+        if sys.argv[1:] == ["--version"] and "_MECHKIN_COMPLETE" not in os.environ:
+            put(f"mechkin {version()}\n")
+            return ExitCode.OK
+        plain = plain_line(sys.argv[1:])
+        if plain is not None:
+            command, given = plain
+            return command.call(given)
         from mechkin_cli.cli.app import run
 
         return run()
@@ -116,31 +106,6 @@ def _run() -> int:
         return ExitCode.INTERRUPTED
     except Exception as error:
         return _failed(error)
-
-
-def _analyzed(given: dict[str, Any]) -> int:
-    """A plain analysis; it loads what that needs, and no more."""
-    # an analysis multiplies no large matrices: one thread of BLAS per core would only be started
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    if "mechkin_cli.model.model" not in sys.modules:
-        _load_without_collecting()
-    from mechkin_cli.cli.analyze import AnalyzeCommand, analyze_files
-
-    return int(analyze_files(AnalyzeCommand(**given)))
-
-
-def _load_without_collecting() -> None:
-    """Modules live as long as the process: looking for garbage among them is a tenth of a short
-    run. What else there is at the time is never collected either, so this is for the first analysis
-    of a process."""
-    import gc
-
-    gc.disable()
-    try:
-        from mechkin_cli.model import Model  # noqa: F401
-    finally:
-        gc.freeze()
-        gc.enable()
 
 
 def _failed(error: Exception) -> int:

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.cli.interrupts import then
 from mechkin_cli.cli.messages import (
@@ -21,15 +19,6 @@ from mechkin_cli.cli.messages import (
     say_diagnostics,
     tell_as,
 )
-from mechkin_cli.cli.options import (
-    Json,
-    Messages,
-    Quiet,
-    Set,
-    folder,
-    study_files,
-    study_format_names,
-)
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.model import load
 
@@ -42,62 +31,21 @@ SHOWN_VARIANTS = 6
 
 
 def study(
-    file: Annotated[
-        Path,
-        typer.Argument(help="Study file (YAML).", metavar="STUDY", autocompletion=study_files),
-    ],
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--out",
-            metavar="FOLDER",
-            parser=folder,
-            help="Folder to write to (default: out/STUDY).",
-        ),
-    ] = None,
-    set_: Set = None,
-    format_: Annotated[
-        str,
-        typer.Option(
-            "--format",
-            metavar="FORMAT",
-            help="csv or parquet.",
-            autocompletion=study_format_names,
-        ),
-    ] = "csv",
-    again: Annotated[
-        bool, typer.Option("--again", help="Discard the results in the folder and begin anew.")
-    ] = False,
-    threads: Annotated[
-        int, typer.Option("--threads", help="Threads of each process (0: as many as pay).")
-    ] = 0,
-    processes: Annotated[
-        int, typer.Option("--processes", help="Number of new processes (0: compute in this one).")
-    ] = 0,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            "--scheduler",
-            metavar="ADDRESS",
-            help="Compute on a Dask cluster at this address, as tcp://host:8786.",
-        ),
-    ] = None,
-    explain: Annotated[
-        bool, typer.Option("--explain", help="Estimate time and size from a trial; write nothing.")
-    ] = False,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Check the study and show variants; compute nothing.")
-    ] = False,
-    json: Json = False,
-    messages: Messages = None,
-    quiet: Quiet = False,
-) -> None:
-    """Run many variants of a mechanism and keep a few numbers of each.
-
-    Writes variants.csv, with a line for each variant, into a folder. A study that was stopped is
-    continued by the same command.
-    """
+    file: Path,
+    out: Path | None = None,
+    set_: list[str] | None = None,
+    format_: str = "csv",
+    again: bool = False,
+    threads: int = 0,
+    processes: int = 0,
+    scheduler: str | None = None,
+    explain: bool = False,
+    dry_run: bool = False,
+    json: bool = False,
+    messages: str | None = None,
+    quiet: bool = False,
+) -> ExitCode:
+    """Runs many variants of a mechanism and keeps a few numbers of each."""
     from mechkin_cli.studies import Study, Workers, end_without_warnings, open_study
 
     tell_as(messages)
@@ -128,8 +76,7 @@ def study(
         code, record = refusal(file, error)
     if json:
         put_json({"file": str(file), **record})
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _shown_variants(planned: Study, json: bool) -> Record:

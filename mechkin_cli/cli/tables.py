@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
@@ -21,9 +18,9 @@ from mechkin_cli.cli.messages import (
     say_diagnostics,
     tell_as,
 )
-from mechkin_cli.cli.options import Json, Messages, Quiet, mechanism_files
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.record import asdict
 from mechkin_cli.tables import MARK, OVERVIEW_PAGE, OverviewRow, overview_page
 
 if TYPE_CHECKING:
@@ -36,34 +33,14 @@ MECHANISMS = Path("mechanisms")
 
 
 def tables(
-    path: Annotated[
-        Path,
-        typer.Argument(
-            help="A mechanism file, or a folder of them or of such folders.",
-            metavar="PATH",
-            autocompletion=mechanism_files,
-        ),
-    ] = MECHANISMS,
-    check: Annotated[
-        bool, typer.Option("--check", help="Compare with the tables on disk; write nothing.")
-    ] = False,
-    against: Annotated[
-        bool,
-        typer.Option("--against", help="List printed cells that do not agree; write nothing."),
-    ] = False,
-    messages: Messages = None,
-    json: Json = False,
-    quiet: Quiet = False,
-) -> None:
-    """Regenerate the tables kept beside mechanism files.
-
-    Writes the tables of FOLDER/STEM.yaml to FOLDER/STEM/TABLE.csv and .md, and a small picture to
-    FOLDER/STEM/picture.svg. If tables name printed values, FOLDER/STEM/errata.md compares them and
-    disagreements.csv lists every printed cell that does not agree. What mechkin wrote for a table
-    that the file no longer has is removed; other files stay. A folder without mechanism files of
-    its own stands for those of the folders in it. FOLDER/README.md is an overview of its
-    mechanisms; a README.md of your own is left alone.
-    """
+    path: Path = MECHANISMS,
+    check: bool = False,
+    against: bool = False,
+    messages: str | None = None,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """Regenerates the tables kept beside mechanism files, or compares them."""
     tell_as(messages)
     refuse_stdin(path, "tables are kept beside a file, and - is none")
     files = _mechanism_files(path)
@@ -71,8 +48,7 @@ def tables(
     if against:
         if check:
             raise UsageError("--against and --check are two questions; ask them one by one")
-        list_disagreements(files, json, quiet)
-        return
+        return list_disagreements(files, json, quiet)
     code = ExitCode.OK
     records: list[Record] = []
     rows: list[OverviewRow] = []
@@ -92,8 +68,7 @@ def tables(
         code = max(code, outcome)
     if json:
         put_json(found)
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _mechanism_files(path: Path) -> list[Path]:
@@ -218,7 +193,7 @@ def _compare(
 # `mechkin tables --against`: printed cells that do not agree with what the files compute.
 
 
-def list_disagreements(files: Sequence[Path], json: bool, quiet: bool) -> None:
+def list_disagreements(files: Sequence[Path], json: bool, quiet: bool) -> ExitCode:
     """Counts to stderr and every disagreeing cell to stdout, as CSV or as one JSON object.
 
     Files without printed values are passed over. That cells disagree is an answer, no failure: the
@@ -237,8 +212,7 @@ def list_disagreements(files: Sequence[Path], json: bool, quiet: bool) -> None:
             records.append(_told(file, printed, json, quiet))
     if json:
         put_json({"files": records})
-    if code:
-        raise typer.Exit(code)
+    return code
 
 
 def _printed(file: Path) -> list[PrintedTable]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -19,7 +17,6 @@ from mechkin_cli.cli.messages import (
     stem_of,
     tell_as,
 )
-from mechkin_cli.cli.options import File, Messages, Quiet, Set, mode_names, run_names
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
@@ -28,46 +25,17 @@ if TYPE_CHECKING:
 
 
 def view(
-    file: File,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--out", metavar="PAGE", help="File to write (default: out/STEM/view.html)."
-        ),
-    ] = None,
-    set_: Set = None,
-    mode: Annotated[
-        str | None,
-        typer.Option(
-            "--mode",
-            metavar="NAME",
-            help="Assembly mode at the first row.",
-            autocompletion=mode_names,
-        ),
-    ] = None,
-    run: Annotated[
-        str | None,
-        typer.Option(
-            "--run",
-            metavar="NAME",
-            help="Show only this run: sweep, or the name of a response.",
-            autocompletion=run_names,
-        ),
-    ] = None,
-    no_modes: Annotated[
-        bool, typer.Option("--no-modes", help="Leave out the other assembly modes.")
-    ] = False,
-    open_: Annotated[
-        bool, typer.Option("--open", help="Also open the page in the browser.")
-    ] = False,
-    messages: Messages = None,
-    quiet: Quiet = False,
-) -> None:
-    """Write a page that shows a mechanism in motion.
-
-    One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
-    responses, in all assembly modes, with curves, tables, verdicts and notes.
-    """
+    file: Path,
+    out: Path | None = None,
+    set_: list[str] | None = None,
+    mode: str | None = None,
+    run: str | None = None,
+    no_modes: bool = False,
+    open_: bool = False,
+    messages: str | None = None,
+    quiet: bool = False,
+) -> ExitCode:
+    """Writes a page that shows a mechanism in motion."""
     from mechkin_cli.view import PAGE_NAME, view_page, write_view
 
     tell_as(messages)
@@ -80,7 +48,7 @@ def view(
             page, notes = view_page(analyses, not no_modes)
         target = write_view(out or Path("out", stem_of(file), PAGE_NAME), page)
     except (InvalidFile, UsageError) as error:
-        raise typer.Exit(refusal(file, error)[0]) from None
+        return refusal(file, error)[0]
     said = [found for analysis in analyses for found in analysis.diagnostics]
     say_diagnostics(dict.fromkeys([*said, *notes]), shown(file))
     put(f"{target}\n")
@@ -88,8 +56,8 @@ def view(
         say(_summary(analyses, len(page)))
     if open_:
         _show(target)
-    if not all(analysis.complete for analysis in analyses):
-        raise typer.Exit(ExitCode.ROWS_MISSING)
+    complete = all(analysis.complete for analysis in analyses)
+    return ExitCode.OK if complete else ExitCode.ROWS_MISSING
 
 
 def _summary(analyses: list[Analysis], size: int) -> str:

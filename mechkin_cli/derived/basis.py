@@ -7,10 +7,11 @@ of its joint points (`link_point`). The names have a space, so that no file can 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from mechkin_cli.mechanism import FINITE_KINDS, INSTANT_KINDS, ORIENTATION_KINDS, Mechanism, Wanted
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ rates and loads of the row give with no acceleration. The friction of joints is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +30,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS
+from mechkin_cli.record import replace
 from mechkin_cli.units import FORCE, POWER
 
 if TYPE_CHECKING:

@@ -12,10 +12,11 @@ from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tolerances import NEXT_TO_END, NEXT_TO_ZERO, TURNS_NOT
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ coordinate (Balli and Chand, Transmission angle in mechanisms, Mech. Mach. Theor
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -45,6 +44,7 @@ from mechkin_cli.mechanism import (
     driving_joint,
     reference_point,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.tape import of_two
 from mechkin_cli.verdict import has_rates
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +15,7 @@ from mechkin_cli.errors.cells import doubts, true_values
 from mechkin_cli.errors.repeat import repetition
 from mechkin_cli.errors.rows import BALANCE, DENSE, SUMMARY, WORDS, NotRepeated, Repeated, reason_of
 from mechkin_cli.mechanism import read_for
+from mechkin_cli.record import replace
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables import (
     ALL_COLUMNS,

@@ -10,11 +10,12 @@ from __future__ import annotations
 from decimal import Decimal, localcontext
 from functools import cache
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.kernel.functions import cos
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import DoubleDoubles, joined, stacked
 
 if TYPE_CHECKING:

@@ -10,9 +10,8 @@ coefficients do not fall, and steps are cut until what is missed there is below 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from math import sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from mechkin_cli.errors.rows import NOT_RESOLVED, as_number, as_parts
 from mechkin_cli.kernel.functions import power
 from mechkin_cli.mechanism import Damper, Spring
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.session import Ask, Chart, PreciseConstants, RowInputs
 from mechkin_cli.tape import DoubleDoubles, eliminate, joined
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, reduce
 from operator import add
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from mechkin_cli.expressions.quantity import (
     NumberNode,
     OperationNode,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Floats
 from mechkin_cli.units import conversion
 

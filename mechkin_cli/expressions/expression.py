@@ -10,9 +10,8 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -44,6 +43,7 @@ from mechkin_cli.expressions.quantity import (
     Value,
     Vector,
 )
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import DoubleDoubles, Recorded, as_recorded, is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
@@ -262,7 +262,8 @@ def _resolved(name: str, resolve: Resolve) -> Quantity:
     value: Value = quantity.value
     if isinstance(value, Vector):
         return replace(quantity, value=Vector(*map(_plain, value.components)))
-    return replace(quantity, value=_plain(value))
+    number = _plain(value)
+    return quantity if number is value else replace(quantity, value=number)
 
 
 def _plain(value: Scalar) -> Scalar:

@@ -7,11 +7,10 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import reduce
 from math import inf, nextafter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from mechkin_cli.expressions.operations import (
     require_alike,
 )
 from mechkin_cli.expressions.quantity import Operand, Quantity, Scalar, Site, Value, Vector
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.tape import is_number, of_one
 from mechkin_cli.tolerances import KNOWN_AT_DEAD_CENTRE
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, Dimension

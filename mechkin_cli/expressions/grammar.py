@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Literal, NamedTuple
+from functools import lru_cache
+from typing import Literal
 
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions.functions import FORMS, FUNCTIONS, INSTEAD
@@ -21,6 +22,7 @@ from mechkin_cli.expressions.quantity import (
     OperationNode,
     read,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import UNITS, CompoundUnit, UnitError, bounded_exponent, compound, named_unit
 
 Kind = Literal["number", "name", "component", "symbol", "end"]
@@ -235,8 +237,9 @@ _SIGN_BINDING = 30
 _COMPONENTS = (".x", ".y", ".z")
 
 
+@lru_cache(maxsize=1024)
 def parse_nodes(text: str) -> tuple[Node, ...]:
-    """The nodes of an expression in postfix order.
+    """The nodes of an expression in postfix order; a file repeats many, 0 above all.
 
     Raises:
         ExpressionError: the text is not an expression, or exceeds a limit.

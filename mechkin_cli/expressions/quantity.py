@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.diagnostics import MechkinError, nearest_hint
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, CompoundUnit, Dimension, UnitSystem
 
 Rows = NDArray[np.float64]

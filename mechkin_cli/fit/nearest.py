@@ -8,9 +8,11 @@ Eight rows would tell the place as well, but of the derivatives of a place only 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from mechkin_cli.arguments import a_setting, shown
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import Vector
 from mechkin_cli.mechanism import response_problem
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.units import TIME
 from mechkin_cli.variants import expressions_of, one_value, parameter_values, sample_of

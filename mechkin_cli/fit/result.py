@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from mechkin_cli.fit.request import Constraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, found
 from mechkin_cli.fit.slopes import FitSlopes
 from mechkin_cli.mechanism import response_problem
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
 from mechkin_cli.variants import vary, with_parameters

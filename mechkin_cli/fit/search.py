@@ -5,11 +5,12 @@ search from the best of it; the same seed gives the same answer.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tolerances import FIT_ENDED, FIT_HELD, FIT_NARROW_STEP, FIT_STEP
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ with them is told from one that only happens to be there.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import (
@@ -28,6 +27,7 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
+from mechkin_cli.record import NamedTuple
 
 Freedom = tuple[str, int]
 """A joint's name and the number of its freedom."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
-from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.idle.find import (
@@ -46,6 +45,7 @@ from mechkin_cli.mechanism import (
     turn_name,
     unit,
 )
+from mechkin_cli.record import NamedTuple
 
 # Balls told as three turns one after the other, of which some can be held.
 #

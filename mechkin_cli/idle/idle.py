@@ -13,8 +13,7 @@ with the link beside it (`without_spin`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -50,6 +49,7 @@ from mechkin_cli.mechanism import (
     scale,
     varying,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.tape import largest
 from mechkin_cli.units import LENGTH, MOMENT
 

@@ -24,9 +24,7 @@ kernel.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, far_link, frame_on
@@ -42,6 +40,7 @@ from mechkin_cli.mechanism.vectors import (
     scale,
     subtract,
 )
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import largest
 
 JointsAt = Mapping[str, tuple[Joint, ...]]

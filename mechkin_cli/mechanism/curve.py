@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Place
 from mechkin_cli.expressions import Expression
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import of_numbers, plain
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ no such coordinate (constraint.py, `Spin`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint
 from mechkin_cli.mechanism.model import Coordinate, Mechanism
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.vectors import Line
+from mechkin_cli.record import NamedTuple
 
 
 class LockedFreedom(NamedTuple):

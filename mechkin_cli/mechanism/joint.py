@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from mechkin_cli.exact import TURN
 from mechkin_cli.mechanism.pair_type import (
     FIRST,
@@ -24,6 +22,7 @@ from mechkin_cli.mechanism.vectors import (
     scale,
     upright,
 )
+from mechkin_cli.record import NamedTuple
 
 GROUND_NAME = "ground"
 

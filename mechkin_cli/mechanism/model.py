@@ -7,15 +7,15 @@ not move.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.diagnostics import SHORT_LIST
 from mechkin_cli.mechanism.constraint import Constraint, InputConstraint, Spin, find_constraints
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tape import largest, nonzero, smallest
 
 if TYPE_CHECKING:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tape import differ
 
 if TYPE_CHECKING:

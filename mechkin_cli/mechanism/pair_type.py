@@ -7,11 +7,11 @@ screws go through that frame's origin along its axes; they stand still in the bo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.mechanism.vectors import ZERO, Frame, Vector, add, cross, scale
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import cos, square_root
 from mechkin_cli.units import ANGLE, Dimension
 

@@ -7,7 +7,6 @@ that tells an assembly from a false root of them, are composed in the kernel's e
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 from mechkin_cli.mechanism import pair_type as friction
@@ -22,6 +21,7 @@ from mechkin_cli.mechanism.pair_type import (
     JointType,
     PairStep,
 )
+from mechkin_cli.record import replace
 from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 _X1, _Y1, _Z1 = DrawnDirection(FIRST, "x"), DrawnDirection(FIRST, "y"), DrawnDirection(FIRST)

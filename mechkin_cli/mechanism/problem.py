@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,6 +34,7 @@ from mechkin_cli.mechanism.motion import Assembly, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
 from mechkin_cli.mechanism.wanted import Wanted
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 from mechkin_cli.units import UnitSystem
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.expressions import (
     Expression,
@@ -23,6 +23,7 @@ from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.wanted import Kind, Wanted
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,

@@ -7,9 +7,8 @@ moment.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from mechkin_cli.expressions import Expression, parse
 from mechkin_cli.mechanism.curve import LoadLaw
 from mechkin_cli.mechanism.motion import ORDERS, DrivenInput, Moments, MotionInputs
 from mechkin_cli.mechanism.pairs import dimension_of
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism.motion import MotionInputs
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.mechanism.response import AnyBalance, Harmonics, ResponseProblem, first_motion
+from mechkin_cli.record import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -4,9 +4,8 @@ everywhere.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from mechkin_cli import tolerances
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import by_rounding, either, largest, nonzero, square_root
 from mechkin_cli.tolerances import UNIT_SQUARE
 

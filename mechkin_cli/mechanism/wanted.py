@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from mechkin_cli.expressions import Value, Vector
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import Dimension
 
 _SEEN = {"xyz": (0, 1, 2), "xy": (0, 1), "z": (2,)}

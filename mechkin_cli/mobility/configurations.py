@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.mobility.opened import LoopClosure, Loops, Pose, Poses, displacement, opened
 from mechkin_cli.plan import home_state
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Session
 from mechkin_cli.structure import RandomStarts
 from mechkin_cli.units import UnitSystem

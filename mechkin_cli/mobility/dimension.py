@@ -8,14 +8,14 @@ along every motion of first order are closed again: the rank of the chords is th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mobility.configurations import Closed, Sphere, closed, damped_steps
 from mechkin_cli.mobility.opened import Rank, rank_of
+from mechkin_cli.record import NamedTuple, dataclass, replace
 
 if TYPE_CHECKING:
     from mechkin_cli.mobility.configurations import LoopPart

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from mechkin_cli.mechanism import Joint, LockedFreedom, Problem, Vector
 from mechkin_cli.mobility.configurations import Body, Configuration, home
 from mechkin_cli.mobility.dimension import freedom_of
 from mechkin_cli.mobility.motions import Motions
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import RandomStarts
 
 if TYPE_CHECKING:

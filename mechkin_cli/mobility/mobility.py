@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +25,7 @@ from mechkin_cli.mobility.first_row import first_row
 from mechkin_cli.mobility.idle import IdleFreedom, idle_freedoms
 from mechkin_cli.mobility.motions import Motions
 from mechkin_cli.mobility.redundancy import Redundancy, redundancies
+from mechkin_cli.record import dataclass
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.structure import RandomStarts, listed
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.structure import SolverGraph, TreeEdge
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import Joint, joint_type
 from mechkin_cli.mobility.configurations import Configuration
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats

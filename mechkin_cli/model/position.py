@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from math import isfinite, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import (
     angle_slots,
     held_values,

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import TrackEnd
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import BranchFold, BranchPoint, Runaway, find_limit
 

@@ -8,8 +8,7 @@ has the name `-`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from mechkin_cli.assembly import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.plan import Layout, TrackEnd
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import Assemblies, all_assemblies, pose_keys, same_poses, with_assemblies
 from mechkin_cli.session import input_numbers, input_text, kernel_inputs
 from mechkin_cli.show import Listed, Listing

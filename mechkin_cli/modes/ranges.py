@@ -4,9 +4,8 @@ which modes belong to one circuit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from math import isfinite
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem, Wanted, dimension_of
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.session import Ask, RowInputs, input_number, input_path
 from mechkin_cli.show import Listed, Listing

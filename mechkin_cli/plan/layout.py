@@ -6,9 +6,8 @@ origin is the ground origin unless the drawing lies far from it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -32,6 +31,7 @@ from mechkin_cli.mechanism import (
     subtract,
     upright,
 )
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.structure import SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 

@@ -8,7 +8,7 @@ where something is damped or a load reads rates; an effort needs no joint reacti
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import (
@@ -31,6 +31,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan.codes import Demand, OutputCode
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import DIMENSIONLESS, FORCE
 
 if TYPE_CHECKING:

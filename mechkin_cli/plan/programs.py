@@ -9,7 +9,7 @@ plan; others serve numbers that are asked for while a motion is integrated.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.expressions import Expression, Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
@@ -18,6 +18,7 @@ from mechkin_cli.plan.codes import OutputCode, ReadCode
 from mechkin_cli.plan.loads import kernel_columns
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.records import Output, Program, ProgramCurve
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import Operation, RowRecorder, register
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 

@@ -10,9 +10,10 @@ results of other arithmetic that is recorded or repeated elsewhere.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Outputs, Plan

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import TableColumn, Words, row_texts, run_parameter
 from mechkin_cli.units import FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import Status

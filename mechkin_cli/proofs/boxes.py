@@ -7,7 +7,7 @@ of the way (docs/numerics.md, Proofs).
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs, equations_that_follow
 from mechkin_cli.tape import TraceLost
 

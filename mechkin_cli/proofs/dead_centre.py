@@ -4,8 +4,7 @@ to them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes, prove_tubes
 from mechkin_cli.proofs.fold import Fold, prove_fold
 from mechkin_cli.proofs.modes import FULL_TURN
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import exchange
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ Intervals).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.proofs.boxes import Enclosed, about_high, distance, enclosed_of, input_rounding
 from mechkin_cli.proofs.modes import FULL_TURN
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import TraceLost
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ Interval analysis, 1966): if s0 - u'(s0) / u''(S) lies within S, there is exactl
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mechkin_cli.plan import Demand
 from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, enclosed_of, prove_boxes
 from mechkin_cli.proofs.enclose import Positions, enclose_derivatives
 from mechkin_cli.proofs.modes import differences
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:

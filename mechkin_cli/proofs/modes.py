@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.proofs.boxes import Boxes, Nodes, enclosed_of, prove_boxes
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.verdict import Proof
 
 if TYPE_CHECKING:

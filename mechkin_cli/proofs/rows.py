@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, enclosed_of, prove_boxes, prove_tubes
 from mechkin_cli.proofs.dead_centre import DeadCentreProof, bridge, prove_dead_centre
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.verdict import Proof
 
 if TYPE_CHECKING:

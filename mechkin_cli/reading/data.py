@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
 from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Any
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place
 from mechkin_cli.reading.document import Document, KeyPath, document_from_text, key_words
 from mechkin_cli.reading.text import INVISIBLE, MOST_EVENTS, MOST_LEVELS, character_name
+from mechkin_cli.record import replace
 
 
 def document_from_data(data: Mapping[Any, Any], name: str, folder: Path | None) -> Document:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import collections.abc
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TypeAlias
@@ -28,6 +27,7 @@ from mechkin_cli.reading.yaml import (
     parse,
     plain_data,
 )
+from mechkin_cli.record import dataclass, field, replace
 
 KeyPath: TypeAlias = tuple[str | int, ...]
 

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 from mechkin_cli.diagnostics import Diagnostic, Place, nearest
 from mechkin_cli.reading.document import Document, KeyPath
 from mechkin_cli.reading.yaml import Mapping, Node, ScalarNode, Sequence, in_order
+from mechkin_cli.record import NamedTuple
 
 # What is wrong with one value, in words: a phrase per kind of validation error.
 #

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from dataclasses import dataclass, field
 from enum import Enum
 from functools import lru_cache
 from itertools import accumulate
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import yaml
 from yaml import MarkedYAMLError, YAMLError, events
@@ -29,6 +28,7 @@ from mechkin_cli.reading.text import (
     check_characters,
     lines_of,
 )
+from mechkin_cli.record import NamedTuple, dataclass, field
 
 # What the reader makes of a YAML text: scalars, sequences and mappings that know where they stand.
 #

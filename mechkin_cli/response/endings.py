@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.plan import Demand, kink_laws
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.response.integration import Fault, MotionEnd
 from mechkin_cli.session import Ask, RowInputs, input_numbers, input_text
 from mechkin_cli.sweep import passed_straight_on

@@ -5,9 +5,8 @@ kernel integrates its motion (kernel/core/response/charted_motion.hpp).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.plan import Layout
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import (
     RESIDUAL_TESTS,
     Chart,

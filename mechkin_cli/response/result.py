@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from mechkin_cli.mechanism import (
     law_value,
     response_quantities,
 )
+from mechkin_cli.record import replace
 from mechkin_cli.session import RowInputs
 from mechkin_cli.sweep import Result, SweepRows
 from mechkin_cli.units import TIME

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
 from math import nan
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from mechkin_cli.mechanism import (
     response_problem,
 )
 from mechkin_cli.memo import remembered
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.response.endings import ending
 from mechkin_cli.response.integration import (
     MotionEnd,

@@ -6,13 +6,14 @@ chosen as a sweep's first row is.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from types import UnionType
-from typing import Annotated, Any, Final, NamedTuple, Union, get_args, get_origin
+from typing import Annotated, Any, Final, Union, get_args, get_origin
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema.base import Section, Tag, field_descriptions, fields_of
 
 # What to write instead of words of other programs, and of what mechkin leaves out.

@@ -1,32 +1,22 @@
 """What all sections share: frozen, no unknown keys; and how a rule of ours refuses a value.
 
-A section is declared by its annotations; `compiled` turns them into a validator of pydantic's core
-when the first value of that section is met, so that a run pays only for what its file uses.
+A section is declared by its annotations; `reader` turns them into functions when the first value
+of that section is met, so that a run pays only for what its file uses, and `validator` tells what
+is wrong with a value.
 """
 
 from __future__ import annotations
 
-import ast
-import inspect
 from collections.abc import Callable
-from functools import cache, partial
+from functools import cache
 from inspect import get_annotations
 from itertools import pairwise
-from textwrap import dedent
-from types import NoneType, UnionType
-from typing import (
-    Annotated,
-    Any,
-    ClassVar,
-    Literal,
-    NamedTuple,
-    TypeVar,
-    Union,
-    get_args,
-    get_origin,
-)
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from pydantic_core import PydanticCustomError, SchemaValidator, core_schema as core
+from mechkin_cli.record import NamedTuple
+
+if TYPE_CHECKING:
+    from pydantic_core import PydanticCustomError
 
 NOTHING: Any = {}
 """Default of a mapping that may be left out; sections are read, never changed."""
@@ -84,8 +74,13 @@ class FieldOfSection(NamedTuple):
     default: Any
 
 
+_FIELDS: dict[type[Section], dict[str, FieldOfSection]] = {}
+
+
 def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
     """The fields of a section by key, those of its base classes first."""
+    if section in _FIELDS:
+        return _FIELDS[section]
     found: dict[str, FieldOfSection] = {}
     for model in reversed(section.__mro__):
         for name, annotation in get_annotations(model).items():
@@ -95,6 +90,7 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
             key = next((item.key for item in metadata if isinstance(item, Key)), name)
             default = getattr(section, name, _REQUIRED)
             found[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
+    _FIELDS[section] = found
     return found
 
 
@@ -106,6 +102,8 @@ def refuse(code: str, message: str, hint: str | None = None, *at: str | int) -> 
 
     `at` leads from the validated value to the key or item in it that is wrong.
     """
+    from pydantic_core import PydanticCustomError  # its import takes longer than reading a file
+
     context: dict[str, Any] = {"text": message, "hint": hint, "at": at}
     return PydanticCustomError(code, "{text}", context)
 
@@ -155,8 +153,8 @@ def _as_mapping(value: Any) -> dict[str, Any]:
 
 # What an annotation may say of a value beside its Python type: `Annotated[str, Before(...), ...]`.
 #
-# The validator (`compiled`) obeys `Limits`, `Before`, `After` and the discriminators of
-# `alternatives`; the JSON Schema shows them, and `Named` and `Shown`, too.
+# Reader and validator obey `Limits`, `BeforeRule`, `After` and `FormChoice`; the JSON Schema shows
+# them, and `SchemaName` and `Shown`, too.
 
 
 class SchemaName(NamedTuple):
@@ -216,119 +214,6 @@ class Barred(NamedTuple):
     pattern: str
 
 
-# Annotations to validators of pydantic's core, each built when its first value is met.
-#
-# `pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
-# compiles every class when it is defined: for the sections of format 1 that took longer than the
-# analysis of a mechanism. Here a section of which a file has none costs its class body alone.
-
-_VALIDATORS: dict[type[Section], SchemaValidator] = {}
-
-
-def validated(section: type[AnySection], data: object) -> AnySection:
-    """The section that plain data describes; raises pydantic's ValidationError.
-
-    The places of its errors go on from that of the section in which it stands.
-    """
-    validator = _VALIDATORS.get(section)
-    if validator is None:
-        validator = _VALIDATORS[section] = _built(section)
-    found: AnySection = validator.validate_python(data)
-    return found
-
-
-def _built(section: type[Section]) -> SchemaValidator:
-    fields = {
-        field.name: core.model_field(
-            _with_default(_schema(field.annotation), field.required, field.default),
-            validation_alias=key,
-        )
-        for key, field in fields_of(section).items()
-    }
-    keys = core.model_fields_schema(fields, extra_behavior="forbid")
-    schema: core.CoreSchema = core.model_schema(section, keys)
-    if section.check is not Section.check:
-        schema = core.no_info_after_validator_function(_checked, schema)
-    return SchemaValidator(schema)
-
-
-def _checked(section: Section) -> Section:
-    section.check()
-    return section
-
-
-def _with_default(schema: core.CoreSchema, required: bool, default: Any) -> core.CoreSchema:
-    return schema if required else core.with_default_schema(schema, default=default)
-
-
-@cache
-def _schema(annotation: Any) -> core.CoreSchema:
-    """The schema of a value; equal annotations share one."""
-    if isinstance(annotation, type) and issubclass(annotation, Section):
-        return core.no_info_plain_validator_function(partial(validated, annotation))
-    origin, arguments = get_origin(annotation), get_args(annotation)
-    if origin is Annotated:
-        return _with_rules(arguments[0], arguments[1:])
-    if origin in (Union, UnionType):
-        (inner,) = (member for member in arguments if member is not NoneType)
-        return core.nullable_schema(_schema(inner))
-    return _plain(annotation, Limits())
-
-
-def _with_rules(inner: Any, rules: tuple[Any, ...]) -> core.CoreSchema:
-    choice = next((rule for rule in rules if isinstance(rule, FormChoice)), None)
-    limits = next((rule for rule in rules if isinstance(rule, Limits)), None)
-    if choice is not None:
-        schema: core.CoreSchema = _one_of(inner, choice)
-    else:
-        schema = _schema(inner) if limits is None else _plain(inner, limits)
-    for rule in rules:
-        if isinstance(rule, BeforeRule):
-            schema = core.no_info_before_validator_function(rule.function, schema)
-        elif isinstance(rule, After):
-            schema = core.no_info_after_validator_function(rule.function, schema)
-    return schema
-
-
-def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
-    """A scalar, a fixed word, a list or a mapping of values of one kind."""
-    origin, arguments = get_origin(annotation), get_args(annotation)
-    least, most = limits.min_length, limits.max_length
-    if annotation is str:
-        return core.str_schema(pattern=limits.pattern)
-    if annotation is int:
-        return core.int_schema(ge=limits.ge, le=limits.le)
-    if origin is Literal:
-        return core.literal_schema(list(arguments))
-    if origin is tuple:
-        return core.tuple_schema(
-            [_schema(arguments[0])], variadic_item_index=0, min_length=least, max_length=most
-        )
-    if origin is dict:
-        return core.dict_schema(
-            _schema(arguments[0]), _schema(arguments[1]), min_length=least, max_length=most
-        )
-    raise TypeError(f"no validator for {annotation}")
-
-
-def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
-    """A union whose members each carry their tag."""
-    choices: dict[Any, core.CoreSchema] = {}
-    for member in get_args(union):
-        form, *rules = get_args(member)
-        tag = next(rule.tag for rule in rules if isinstance(rule, Tag))
-        choices[tag] = _with_rules(form, tuple(rules))
-    if choice.words is None:
-        return core.tagged_union_schema(choices, choice.choose)
-    return core.tagged_union_schema(
-        choices,
-        choice.choose,
-        custom_error_type="unknown-word",
-        custom_error_message=f"expected one of {choice.words}",
-        custom_error_context={"key": str(choice.key), "words": choice.words},
-    )
-
-
 # The help text of each key: the string that stands below the field in the model's source.
 #
 # Read only for messages and for the JSON Schema; reading the sources costs more than a validation.
@@ -345,6 +230,10 @@ def field_descriptions(section: type[Section]) -> dict[str, str]:
 
 @cache
 def _below_fields(model: type) -> dict[str, str]:
+    import ast
+    import inspect
+    from textwrap import dedent
+
     definition = ast.parse(dedent(inspect.getsource(model))).body[0]
     body = definition.body if isinstance(definition, ast.ClassDef) else []
     found = {}

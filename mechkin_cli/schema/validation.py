@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
-from pydantic_core import ValidationError
-
-from mechkin_cli.schema.base import Section, validated
+from mechkin_cli.schema.base import Section
 from mechkin_cli.schema.file import AnyFile, MechanismFile
+from mechkin_cli.schema.reader import validated
 from mechkin_cli.schema.scalars import FORMS
 
 if TYPE_CHECKING:
@@ -114,7 +113,7 @@ def validate(data: object) -> AnyFile:
     form = _form(data)
     try:
         file = validated(form, data)
-    except ValidationError as failure:
+    except ValueError as failure:
         errors = _told(failure, data, form) + errors
     if errors:
         raise InvalidDataError(errors)
@@ -127,12 +126,16 @@ def validate_study(data: object) -> StudyFile:
 
     try:
         return validated(StudyFile, data)
-    except ValidationError as failure:
+    except ValueError as failure:
         raise InvalidDataError(_told(failure, data, StudyFile)) from None
 
 
-def _told(failure: ValidationError, data: object, form: type[Section]) -> list[dict[str, Any]]:
+def _told(failure: ValueError, data: object, form: type[Section]) -> list[dict[str, Any]]:
     """The errors of a validation as records."""
+    from pydantic_core import ValidationError  # only where there are some
+
+    if not isinstance(failure, ValidationError):
+        raise failure
     found = failure.errors(include_url=False, include_input=False)
     return [_completed(dict(error), data, form) for error in found]
 

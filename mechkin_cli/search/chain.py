@@ -9,11 +9,12 @@ what is drawn on the first.
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import GROUND, Frame, Vector, add, cross, dot, scale
 from mechkin_cli.plan import Carrier, Layout
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import Block, SolverGraph
 
 if TYPE_CHECKING:

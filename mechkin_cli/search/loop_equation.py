@@ -15,13 +15,14 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import Vector, add, cross, dot, norm, scale, subtract, unit
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import (
     WITH_SPHERE,
     Chain,

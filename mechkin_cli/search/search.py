@@ -7,7 +7,7 @@ loops hang from, and blocks that do not depend on each other multiply their asse
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, Layout, home_state
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import Clusters, first_of_each, pose_keys
 from mechkin_cli.search.starts import (

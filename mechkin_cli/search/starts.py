@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from math import isfinite, pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 
 if TYPE_CHECKING:

@@ -8,10 +8,9 @@ curvature 2 (d+ - d-)/(a + b); all in double-double.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.errors import KernelRows, NotRepeated, Repeated, repetition, true_values
 from mechkin_cli.exact import PI
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import DoubleDoubles, NotEnclosed, TraceLost
 from mechkin_cli.units import ANGLE, LENGTH
 from mechkin_cli.variants import with_parameters

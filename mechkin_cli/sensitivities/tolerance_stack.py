@@ -11,13 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from math import sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.arguments import a_setting, a_whole_number, refusal, shown
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ from mechkin_cli.mechanism import (
     subtract,
 )
 from mechkin_cli.plan import Layout, home_inputs, home_state
+from mechkin_cli.record import replace
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 from mechkin_cli.session.structure import Coordinate, Structure
 from mechkin_cli.structure import (

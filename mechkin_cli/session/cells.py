@@ -10,16 +10,15 @@ the parameter tells their direction no longer, and the order in which they leave
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from math import frexp, sqrt
-from typing import NamedTuple
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import CellKind
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import CONDITIONS, Operation, Tape, compiled
 from mechkin_cli.tolerances import (

@@ -9,15 +9,15 @@ size in whose parts residuals are told. They are conventions, not measures.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from mechkin_cli.exact import nearest
 from mechkin_cli.mechanism import ORDERS, ExactMotion, dimension_of
 from mechkin_cli.plan import Layout, OutputPlan, flatten, plan_records
+from mechkin_cli.record import NamedTuple, fields, is_dataclass, replace
 from mechkin_cli.session.inputs import held_values, turn_of
 from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import ExactRows, NotEnclosed, TraceLost, double_doubles, enclosures, register

@@ -6,8 +6,9 @@ Tree, states and columns are those of the session that it was made of.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session.session import Session
 from mechkin_cli.structure import exchanged
 

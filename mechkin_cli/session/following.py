@@ -6,7 +6,7 @@ The kernel does the work in one call (kernel/core/stepping/polyline.cpp), linear
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel._kernel import StepLimits
 from mechkin_cli.plan import Layout, PassageEnd, TrackEnd
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session.inputs import turn_count
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cache
 from math import pi, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mechkin_cli.diagnostics import Number
 from mechkin_cli.exact import PI
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session.kernel_run import RowInputs
 from mechkin_cli.units import ANGLE
 

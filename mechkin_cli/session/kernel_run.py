@@ -8,13 +8,14 @@ they are: arrays are (numbers, 2, rows), or (2, rows) for one number a row.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.plan import Demand, RowFlag
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

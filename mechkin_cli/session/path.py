@@ -4,15 +4,15 @@ where the motion turns or bends, and their course in kernel units.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import CellKind, Course, Parameter
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session.cells import Cells, Formula
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import compiled

@@ -16,7 +16,7 @@ loop and O the centre of a spherical one,
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.mechanism import (
     Frame,
@@ -27,6 +27,7 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import Identities, as_recorded, register
 
 if TYPE_CHECKING:

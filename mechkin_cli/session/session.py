@@ -10,14 +10,14 @@ knows nothing of rows or of the first assembly.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Demand, Layout, Readout
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.session.assembled_places import solver_graph
 from mechkin_cli.session.following import (
     Followed,
@@ -111,7 +111,7 @@ class Session:
         *,
         driven: Sequence[Coordinate] | None = None,
         closed_at: Sequence[str] | None = None,
-        packing: Packing = Packing(),
+        packing: Packing = Packing(),  # noqa: B008 - frozen
     ) -> Session:
         """The session of a problem.
 

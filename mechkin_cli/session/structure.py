@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Layout, OutputPlan, Readout, build_plan
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.session.inputs import TurnSlots
 
 if TYPE_CHECKING:

@@ -17,9 +17,10 @@ Where there are more equations than freedoms, all this only proposes groups: ran
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.matching import Matching, Row
 from mechkin_cli.structure.network import (
     Connection,
@@ -30,7 +31,9 @@ from mechkin_cli.structure.network import (
     incidence,
     order_of,
 )
-from mechkin_cli.structure.rank import DeterminedSets, Rates, determined_sets
+
+if TYPE_CHECKING:
+    from mechkin_cli.structure.rank import DeterminedSets, Rates
 
 
 class AssurGroup(NamedTuple):
@@ -78,6 +81,8 @@ def _determined(
     component: GraphComponent, proposed: Sequence[AssurGroup], places: Iterable[Rates]
 ) -> list[AssurGroup]:
     """The groups as ranks say; what they leave open is solved together."""
+    from mechkin_cli.structure.rank import determined_sets
+
     best: DeterminedSets | None = None
     for rates in places:
         found = determined_sets(component, [group.links for group in proposed], rates)

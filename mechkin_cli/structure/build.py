@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from itertools import combinations, groupby, product
 from math import comb, prod
+from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
@@ -23,8 +24,10 @@ from mechkin_cli.structure.network import (
     order_of,
     reduce,
 )
-from mechkin_cli.structure.rank import Rates, unit_of
 from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
+
+if TYPE_CHECKING:
+    from mechkin_cli.structure.rank import Rates
 
 # Blocks: groups with their closings, each after the groups that place the links it hangs on.
 
@@ -430,6 +433,8 @@ class _AssembledRates:
         inputs: Sequence[tuple[str, str]],
         assembled_places: AssembledPlaces,
     ) -> Iterator[Rates]:
+        from mechkin_cli.structure.rank import Rates, unit_of
+
         def coarse() -> SolverGraph:
             return _built(mechanism, inputs, None, ())
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, MechkinError
 from mechkin_cli.mechanism import Constraint, Joint, Mechanism
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.assur import Undriven
 from mechkin_cli.structure.network import Connection
 

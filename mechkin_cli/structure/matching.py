@@ -16,7 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from heapq import heapify, heappop, heappush
-from typing import NamedTuple
+
+from mechkin_cli.record import NamedTuple
 
 
 class Row(NamedTuple):

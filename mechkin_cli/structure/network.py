@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
 
 from mechkin_cli.exact import part
 from mechkin_cli.mechanism import (
@@ -31,6 +30,7 @@ from mechkin_cli.mechanism import (
     scale,
     upright,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tolerances import LOOP_RANK
 
 # What the spanning tree is laid through: a mechanism of joints alone, every body within reach.

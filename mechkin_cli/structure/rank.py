@@ -10,7 +10,7 @@ rank is decided by complete pivoting, far above rounding and far below what a re
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import SPACE, Connection, GraphComponent, incidence
 from mechkin_cli.tolerances import LOOP_RANK, MOST_SPLIT_LINKS, RANK_WORK

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.studies.formats import Heading, Records, empty_values
 from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.tolerances import LAST_ROW

@@ -17,11 +17,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, BinaryIO
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
-from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.studies import FORMATS
+from mechkin_cli.studies.formats import Format, Heading, Records
 from mechkin_cli.tables import Claim
 
 MANIFEST = "study.json"

@@ -11,11 +11,13 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TypeAlias
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.studies import FORMATS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -101,9 +103,6 @@ def format_of(name: str) -> Format:
     if name == "parquet":
         return Parquet()
     raise UsageError(f"there is no format {name[:60]} of studies; they are {', '.join(FORMATS)}")
-
-
-FORMATS = ("csv", "parquet")
 
 
 class Csv:

@@ -5,10 +5,9 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from functools import partial
 from math import log2, prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from mechkin_cli.building import BadTable, by_count, by_step, table_path, table_
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Vector
 from mechkin_cli.mechanism import response_problem
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.schema import study as written
 from mechkin_cli.studies.chunk import (
     DEAD_CENTRE,

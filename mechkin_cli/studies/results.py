@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS
 from mechkin_cli.studies.folder import ROWS, VARIANTS

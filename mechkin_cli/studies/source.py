@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import Document, in_order, read_document
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import InvalidDataError, validate_study
 from mechkin_cli.variants import one_value, with_parameters
 

@@ -13,13 +13,14 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.arguments import a_path, a_text, a_whole_number
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import check_threads
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
 from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
 from mechkin_cli.studies.formats import Records, format_of, joined

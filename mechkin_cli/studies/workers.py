@@ -26,9 +26,10 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import resource_tracker
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, TypeVar
 
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
+from mechkin_cli.record import NamedTuple
 
 Found = TypeVar("Found")
 

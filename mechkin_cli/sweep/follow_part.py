@@ -8,13 +8,13 @@ no quantity asked for depends on, and that no joint listed lies in, are left out
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import needs_all_links
+from mechkin_cli.record import replace
 from mechkin_cli.structure import SolverGraph
 
 if TYPE_CHECKING:

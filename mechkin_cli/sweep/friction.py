@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import FORCE, MOMENT
 from mechkin_cli.verdict import Status, has_rates
 

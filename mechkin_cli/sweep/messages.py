@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT

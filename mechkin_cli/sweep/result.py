@@ -20,7 +20,6 @@ from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of, forces_demand
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held
-from mechkin_cli.sweep.rounding import error_bound
 from mechkin_cli.sweep.rows import Columns, make_continuous
 from mechkin_cli.sweep.uniqueness import (
     DISTURBANCES,
@@ -289,7 +288,11 @@ class Result(Proven):
         if name == "power_error" and self._power_error is None:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
             self._store_verdicts(self.run(Ask(demand, iterations=0)))
-        found: Floats = error_bound(self) if name == "error_bound" else getattr(self, name)
+        if name == "error_bound":
+            from mechkin_cli.sweep.rounding import error_bound
+
+            return error_bound(self)
+        found: Floats = getattr(self, name)
         return found
 
     @property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from math import pi
 from typing import TYPE_CHECKING, Protocol
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.session import continuous_angle
 from mechkin_cli.verdict import Status
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +21,8 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.session import Ask, assembly_size, moves_freely, places_at
+from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows
 from mechkin_cli.sweep.friction import judged_by
 from mechkin_cli.sweep.messages import (
@@ -290,6 +290,7 @@ def _judge_inputs(session: Session, rows: SweepRows) -> None:
     equations than unknowns leave a least square, whose condition tells nothing."""
     if not session.is_redundant or not session.driven or not rows.reached.any():
         return
+    from mechkin_cli.session import moves_freely
     from mechkin_cli.sweep.branch_end import input_faults
 
     row = int(np.argmax(rows.reached))
@@ -378,6 +379,7 @@ class Between(NamedTuple):
     def at(self, written: Floats) -> Result:
         """The sweep at rising moments within its own, in the file's unit, and at that of its first
         assembly, which may be none of them: rows (moments,) or one more."""
+        from mechkin_cli.session import places_at
 
         session, problem, start = self.result.session, self.result.problem, self.result.start
         time, course = problem.motion.time, problem.motion.course

@@ -7,13 +7,14 @@ only inputs, `row.mode`, `row.status` and `row.proof` keep their cells.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from functools import cache
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout
 from mechkin_cli.tolerances import UNIQUE_CELL
 from mechkin_cli.units import DIMENSIONLESS
@@ -291,7 +292,14 @@ def row_words(name: str, source: TableSource) -> Words:
 
 def solved_rows(source: TableSource) -> NDArray[np.bool_]:
     """Which rows have a solution, shape (rows,)."""
-    return has_solution(source.status)
+    solved: NDArray[np.bool_] = _solved_codes()[source.status]
+    return solved
+
+
+@cache
+def _solved_codes() -> NDArray[np.bool_]:
+    """Which verdicts have a solution, by their codes; every column asks."""
+    return has_solution(np.arange(1 + max(Status), dtype=np.int8))
 
 
 def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:

@@ -12,13 +12,13 @@ import textwrap
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 from typing import Literal
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.record import dataclass
 from mechkin_cli.tables.errata import HEAD, HEADER, NAME, PAGE
 from mechkin_cli.tables.print import TableText, read_table_text
 

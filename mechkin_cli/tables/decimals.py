@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import posixpath
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError, whole
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tables.columns import TableColumn, words_of
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.layout import (

@@ -6,12 +6,12 @@ Both say, in the column `why`, what of a table was not repeated, or why a cell h
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.record import dataclass
 from mechkin_cli.tables.columns import TableColumn, Words, words_of
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.tape import DoubleDoubles, difference

@@ -7,7 +7,7 @@ import errno
 import os
 import re
 import stat
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 
@@ -138,39 +138,36 @@ def _make(folder: Path, made: list[Path]) -> None:
 replacing: set[Path] = set()
 """The attempts of this process that are under way: an interrupt must let them be taken back."""
 
-Refuse = Callable[[Path], contextlib.AbstractContextManager[None]]
-"""Words for the errors of one target."""
-
 _ATTEMPT = re.compile(r"\.mechkin-[0-9a-f]{16}(\.tmp)?")
 _UP = f"..{os.sep}..{os.sep}"
 """From `old/` to the folder in which the set stands."""
 
 
-def replace_files(
-    folder: Path, files: Mapping[str, bytes], refuse: Refuse, removed: Sequence[str] = ()
-) -> None:
+def replace_files(folder: Path, files: Mapping[str, bytes], removed: Sequence[str] = ()) -> None:
     """Put files (name -> content) into the folder, replacing those of the same names; those of the
     names `removed` go at the same moment.
 
     Whatever fails, a keyboard interrupt included, the old files stay.
+
+    Raises:
+        UsageError: a file cannot be written.
     """
     names = [*files, *removed]
     attempt = folder / f".mechkin-{os.urandom(8).hex()}"
     try:
         replacing.add(attempt)
-        _prepare(attempt, folder, files, names, refuse)
+        _prepare(attempt, folder, files, names)
         if len(names) == len(files) == 1:
             (name,) = files
-            with refuse(folder / name):
-                (attempt / "new" / name).replace(folder / name)
+            with _refusal(folder / name):
+                os.replace(attempt / "new" / name, folder / name)
         elif _link(attempt / "set", "old"):
-            for name in names:
-                with refuse(folder / name):
-                    _put_link(f"{attempt.name}/set/{name}", folder / name, attempt)
-            with refuse(folder):
-                _put_link("new", attempt / "set", attempt)
+            _each(folder, names, lambda name: _put_link(name, folder, attempt))
+            with _refusal(folder):
+                os.symlink("new", attempt / "spare")
+                os.replace(attempt / "spare", attempt / "set")
         else:
-            _replace_one_by_one(attempt, folder, names, refuse)
+            _replace_one_by_one(attempt, folder, names)
     finally:
         _without_interrupts(lambda: settle(attempt))
         replacing.discard(attempt)
@@ -180,14 +177,16 @@ def settle(attempt: Path) -> None:
     """Let the side that `set` leads to stand in the folder, and remove the attempt; may be repeated
     after an interrupt. What cannot be settled now stays as it is, readable, for the next time."""
     with contextlib.suppress(OSError):
-        for name in _links(attempt):
-            with contextlib.suppress(OSError):
-                side = attempt / os.readlink(attempt / "set")
-                _put_file(side / name, attempt.parent / name, attempt)
-        if not _links(attempt):
-            from shutil import rmtree
-
-            rmtree(attempt, ignore_errors=True)
+        if links := _links(attempt):
+            side = attempt / os.readlink(attempt / "set")
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(attempt / "spare")
+            for name in links:
+                with contextlib.suppress(OSError):
+                    _put_file(f"{side}{os.sep}{name}", f"{attempt.parent}{os.sep}{name}", attempt)
+            if _links(attempt):
+                return
+        _remove(attempt)
 
 
 def settle_all(folder: Path) -> None:
@@ -202,91 +201,130 @@ def settle_all(folder: Path) -> None:
                     path.unlink()
 
 
-def _prepare(
-    attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str], refuse: Refuse
-) -> None:
+def _each(folder: Path, names: Iterable[str], work: Callable[[str], object]) -> None:
+    """Does the work for each name; an error is told of the file of that name in the folder."""
+    name = ""
+    try:
+        for name in names:
+            work(name)
+    except OSError as error:
+        raise _refused(folder / name, error) from error
+
+
+def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str]) -> None:
     """The attempt's folder with both sides."""
-    for name in names[:1]:
-        with refuse(folder / name):
-            attempt.mkdir()
-            (attempt / "new").mkdir()
-            (attempt / "old").mkdir()
-    for name, content in files.items():
-        with refuse(folder / name):
-            _write(attempt / "new" / name, content)
-    for name in names:
-        with refuse(folder / name):
-            _keep(folder / name, attempt / "old" / name)
+    if names:
+        with _refusal(folder / names[0]):
+            for path in (attempt, attempt / "new", attempt / "old"):
+                os.mkdir(path)
+    new, old = (f"{attempt}{os.sep}{side}{os.sep}" for side in ("new", "old"))
+    _each(folder, files, lambda name: _write(new + name, files[name]))
+    _each(folder, names, lambda name: _keep(f"{folder}{os.sep}{name}", old + name))
 
 
-def _write(path: Path, content: bytes) -> None:
-    with path.open("xb") as stream:
+def _write(path: str, content: bytes) -> None:
+    with open(path, "xb") as stream:
         stream.write(content)
 
 
-def _keep(target: Path, second: Path) -> None:
+def _keep(target: str, second: str) -> None:
     """Give what stands at the target a second name."""
-    if target.is_symlink():
+    try:
+        mode = os.lstat(target).st_mode
+    except FileNotFoundError:
+        return
+    if stat.S_ISLNK(mode):
         text = os.readlink(target)
-        second.symlink_to(text if os.path.isabs(text) else _UP + text)
-    elif target.exists():
-        try:
-            os.link(target, second)
-        except OSError:  # a file system without hard links
-            from shutil import copy2
+        os.symlink(text if os.path.isabs(text) else _UP + text, second)
+        return
+    try:
+        os.link(target, second)
+    except OSError:  # a file system without hard links
+        from shutil import copy2
 
-            copy2(target, second)
+        copy2(target, second)
 
 
 def _link(path: Path, text: str) -> bool:
     """Whether the symbolic link could be made: some file systems have none."""
     try:
-        path.symlink_to(text)
+        os.symlink(text, path)
     except OSError:
         return False
     return True
 
 
-def _put_link(text: str, target: Path, attempt: Path) -> None:
-    spare = attempt / "spare"
-    spare.symlink_to(text)
-    spare.replace(target)
+def _put_link(name: str, folder: Path, attempt: Path) -> None:
+    """Put a link through `set` in the place of a file, or where there is none."""
+    text, target = f"{attempt.name}/set/{name}", f"{folder}{os.sep}{name}"
+    try:
+        os.symlink(text, target)
+    except FileExistsError:
+        spare = f"{attempt}{os.sep}spare"
+        os.symlink(text, spare)
+        os.replace(spare, target)
 
 
 def _links(attempt: Path) -> list[str]:
     """Names in the attempt's folder that are links through `set`."""
     with os.scandir(attempt.parent) as entries:
         links = [entry.name for entry in entries if entry.is_symlink()]
-    ends = {name: os.readlink(attempt.parent / name) for name in links}
+    ends = {name: os.readlink(f"{attempt.parent}{os.sep}{name}") for name in links}
     return [name for name, end in ends.items() if end == f"{attempt.name}/set/{name}"]
 
 
-def _put_file(source: Path, target: Path, attempt: Path) -> None:
+def _put_file(source: str, target: str, attempt: Path) -> None:
     """Put the file at `source`, or nothing where there is none, in the place of the target."""
-    if not os.path.lexists(source):
-        target.unlink()
-        return
-    spare = attempt / "spare"
-    spare.unlink(missing_ok=True)
-    if source.is_symlink():
-        spare.symlink_to(os.readlink(source).removeprefix(_UP))
-    else:
-        try:
-            os.link(source, spare)
-        except OSError:  # a file system without hard links
-            spare = source
-    spare.replace(target)
-
-
-def _replace_one_by_one(attempt: Path, folder: Path, names: list[str], refuse: Refuse) -> None:
-    """Without symbolic links there is no one moment; but what fails is taken back."""
+    spare = f"{attempt}{os.sep}spare"
     try:
-        for name in names:
-            with refuse(folder / name):
-                if (attempt / "new" / name).exists():
-                    (attempt / "new" / name).replace(folder / name)
-                else:
-                    (folder / name).unlink()
+        # a second name, for readers that still come by the link
+        os.link(source, spare, follow_symlinks=False)
+    except FileNotFoundError:
+        os.unlink(target)
+        return
+    except FileExistsError:
+        os.unlink(spare)
+        _put_file(source, target, attempt)
+        return
+    except OSError:  # a file system without hard links
+        spare = source
+        if not os.path.lexists(source):
+            os.unlink(target)
+            return
+    if os.path.islink(spare):
+        text = os.readlink(source).removeprefix(_UP)
+        spare = f"{attempt}{os.sep}spare"
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(spare)
+        os.symlink(text, spare)
+    os.replace(spare, target)
+
+
+def _remove(folder: str | Path) -> None:
+    """Removes a folder with all in it; what cannot be removed stays."""
+    with contextlib.suppress(OSError):
+        with os.scandir(folder) as entries:
+            inside = [(entry.path, entry.is_dir(follow_symlinks=False)) for entry in entries]
+        for path, is_folder in inside:
+            if is_folder:
+                _remove(path)
+                continue
+            with contextlib.suppress(OSError):
+                os.unlink(path)
+        os.rmdir(folder)
+
+
+def _replace_one_by_one(attempt: Path, folder: Path, names: list[str]) -> None:
+    """Without symbolic links there is no one moment; but what fails is taken back."""
+
+    def put(name: str) -> None:
+        if (attempt / "new" / name).exists():
+            os.replace(attempt / "new" / name, folder / name)
+        else:
+            os.unlink(folder / name)
+
+    try:
+        _each(folder, names, put)
     except BaseException:
         done = [name for name in names if not (attempt / "new" / name).exists()]
         _without_interrupts(lambda: _take_back(attempt, folder, done))
@@ -296,7 +334,7 @@ def _replace_one_by_one(attempt: Path, folder: Path, names: list[str], refuse: R
 def _take_back(attempt: Path, folder: Path, names: list[str]) -> None:
     for name in names:
         with contextlib.suppress(OSError):
-            _put_file(attempt / "old" / name, folder / name, attempt)
+            _put_file(str(attempt / "old" / name), str(folder / name), attempt)
 
 
 def _without_interrupts(work: Callable[[], None]) -> None:
@@ -370,10 +408,8 @@ class OutputFolder:
         if self._claim is None and targets:
             with _refusal(targets[0]):
                 self._enter()
-        for target in targets:
-            with _refusal(target):
-                _refuse_special(target)
-        replace_files(self.folder, files, _refusal, removed)
+        _each(self.folder, files, lambda name: _refuse_special(self.folder / name))
+        replace_files(self.folder, files, removed)
         return targets
 
     def _enter(self) -> None:
@@ -392,7 +428,7 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
 def _refuse_special(target: Path) -> None:
     """Only files and what leads nowhere are replaced: never a device, a pipe or a folder."""
     try:
-        mode = target.stat().st_mode
+        mode = os.stat(target).st_mode
     except FileNotFoundError:
         return
     except OSError as error:
@@ -413,6 +449,10 @@ def _refusal(target: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        reason = error.strerror or str(error)
-        cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
-        raise UsageError(f"cannot write {target}: {cure}") from error
+        raise _refused(target, error) from error
+
+
+def _refused(target: Path, error: OSError) -> UsageError:
+    reason = error.strerror or str(error)
+    cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
+    return UsageError(f"cannot write {target}: {cure}")

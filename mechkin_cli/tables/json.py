@@ -9,11 +9,11 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import SURROGATES, Diagnostic, escape
+from mechkin_cli.record import dataclass
 from mechkin_cli.tables.columns import FloatArray, TableSource, Words
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.decimals import number_column

@@ -13,14 +13,13 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from decimal import Context, Decimal
 from itertools import groupby
 from pathlib import Path
-from typing import NamedTuple
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
 from mechkin_cli.reading import read_regular
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS
 from mechkin_cli.tables.layout import ROW_NUMBER

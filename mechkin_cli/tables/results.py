@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import TableSource
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP

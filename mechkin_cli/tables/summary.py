@@ -10,10 +10,11 @@ numbers of rows.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import (
     AT,
     FloatArray,

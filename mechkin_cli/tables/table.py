@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechkin_cli.record import dataclass
 from mechkin_cli.tables.columns import TableSource, Words
 from mechkin_cli.tables.decimals import column_texts
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.summary import Summary
 
-
-from dataclasses import dataclass
 
 import numpy as np
 

@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from mechkin_cli.tables.results import Results
-
 if TYPE_CHECKING:
-    pass
+    from mechkin_cli.tables.results import Results
 
 
 File = tuple[str, bytes]

@@ -12,11 +12,12 @@ from collections.abc import Callable, Iterable, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, Inexact, getcontext, localcontext
 from fractions import Fraction
 from math import inf, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.exact import PI
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape.tape import ARITY, Operation
 
 if TYPE_CHECKING:

@@ -14,11 +14,12 @@ from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
 from math import nan
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.exact import double_double, fraction_of
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape.decimals import Approximation, of_fraction, parts, replay, run
 from mechkin_cli.tape.recorder import Recorder, Traced, register, renumbered
 from mechkin_cli.tape.row_programs import RowNumber, RowRecorder

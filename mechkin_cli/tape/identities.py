@@ -13,9 +13,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from math import isqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from mechkin_cli.exact import PI
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Operation
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import fields, is_dataclass, replace
 from functools import partial
 from typing import Any, NoReturn
 
 import numpy as np
 
+from mechkin_cli.record import fields, is_dataclass, replace
 from mechkin_cli.show import Floats
 from mechkin_cli.tape.scalars import Recorded, Undecided
 from mechkin_cli.tape.tape import ARITY, Operation, Tape, meaning

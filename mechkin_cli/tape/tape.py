@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import width
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape.scalars import next_power_of_two, sign
 
 if TYPE_CHECKING:

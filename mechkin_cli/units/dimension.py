@@ -9,8 +9,9 @@ not where they are multiplied, so `(theta*r)/r` is an angle again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
+
+from mechkin_cli.record import dataclass
 
 Exponent = int | Fraction
 

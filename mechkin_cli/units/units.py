@@ -9,15 +9,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.exact import PI, Exact
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tolerances import LARGEST_CONVERSION, LARGEST_FACTOR
 from mechkin_cli.units.dimension import (
     ACCELERATION,
@@ -413,6 +413,9 @@ class UnitSystem:
     _conversions: dict[Dimension, Conversion] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    _units: dict[Dimension, CompoundUnit] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def from_mapping(cls, texts: Mapping[str, str | None]) -> UnitSystem:
@@ -426,6 +429,12 @@ class UnitSystem:
 
     def unit(self, dimension: Dimension) -> CompoundUnit:
         """The unit of a dimension, composed by the rules above."""
+        known = self._units.get(dimension)
+        if known is None:
+            known = self._units[dimension] = self._composed(dimension)
+        return known
+
+    def _composed(self, dimension: Dimension) -> CompoundUnit:
         reduced = dimension.reduced()
         time, length = reduced.time, reduced.length
         product = CompoundUnit()

@@ -8,7 +8,6 @@ answers and the same errors, only slower.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +20,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, Usage
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.memo import remembered
+from mechkin_cli.record import replace
 from mechkin_cli.session import Continued, Session
 from mechkin_cli.structure import SolverGraph, structure_of
 from mechkin_cli.sweep import first_assembly

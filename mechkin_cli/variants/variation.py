@@ -8,9 +8,8 @@ the straight line in the parameters (kernel/core/stepping/variants.hpp).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.functions import width
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, Slot, flatten, plan_records
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import (
     Continued,
     KernelInputs,

@@ -9,11 +9,12 @@ which nothing is known in any row is not there.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
 from mechkin_cli.view.joints import drawn_joints

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.session import input_text
 from mechkin_cli.tables import Columns, Words, csv_bytes, read_table_text, rows_table
 from mechkin_cli.units import ANGLE

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, Joint, diagonal, is_written
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.joints import (
     HOME,
     carried,

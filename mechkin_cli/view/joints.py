@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from mechkin_cli.mechanism import (
     reference_point,
     scale,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.page import FLATNESS, POINTS_APART
 
 if TYPE_CHECKING:

@@ -7,12 +7,13 @@ from base64 import b64encode
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.mechanism import GROUND_NAME, is_written
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import SWEEP
 

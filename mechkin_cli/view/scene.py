@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ import numpy as np
 
 from mechkin_cli.building import ViewSettings
 from mechkin_cli.mechanism import GROUND_NAME, diagonal, is_written
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
 from mechkin_cli.view.branch import BranchScene, table_record
 from mechkin_cli.view.joints import (

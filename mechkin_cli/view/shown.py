@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.sweep import Readable
 
 if TYPE_CHECKING:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from functools import cache
@@ -11,6 +12,8 @@ from pathlib import Path
 
 import pytest
 from references import RCSR
+
+from mechkin_cli.cli.commands import COMMANDS as PARSED
 
 ANALYSIS = """
 import json, sys
@@ -38,6 +41,31 @@ print(json.dumps(sorted(sys.modules)))
 """
 
 
+LINE = """
+import io, json, sys
+from mechkin_cli.cli.main import main
+place = {"FILE": sys.argv[1], "DIR": sys.argv[2]}
+sys.argv = ["mechkin", *(place.get(word, word) for word in sys.argv[3:])]
+stdout, sys.stdout = sys.stdout, io.StringIO()
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code
+print(json.dumps(sorted(sys.modules)), file=stdout)
+"""
+COMMANDS = [
+    ["check", "FILE"],
+    ["mobility", "FILE"],
+    ["modes", "FILE"],
+    ["ranges", "FILE"],
+    ["tables", "FILE", "--check"],
+    ["view", "FILE", "--out", "DIR/view.html"],
+    ["analyze", "FILE", "--out", "DIR"],
+    ["analyze", "FILE", "--out", "DIR", "--quiet"],
+]
+HEAVY = {"typer", "click", "rich", "pydantic", "pydantic_core", "scipy"}
+
+
 @cache
 def modules_of(script: str, *arguments: str) -> frozenset[str]:
     command = [sys.executable, "-P", "-c", script, str(RCSR), *arguments]
@@ -50,7 +78,7 @@ def loaded_by(script: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "library", ["scipy", "rich", "typer", "mpmath", "matplotlib", "pandas", "pydantic"]
+    "library", ["scipy", "rich", "typer", "mpmath", "matplotlib", "pandas", "pydantic_core"]
 )
 def test_an_analysis_does_without(library: str) -> None:
     assert library not in loaded_by(ANALYSIS)
@@ -61,7 +89,7 @@ def test_the_package_itself_loads_nothing(library: str) -> None:
     assert library not in loaded_by(PACKAGE)
 
 
-@pytest.mark.parametrize("library", ["numpy", "pydantic_core", "yaml"])
+@pytest.mark.parametrize("library", ["numpy", "yaml"])
 def test_what_an_analysis_needs_is_seen_by_this_test(library: str) -> None:
     assert library in loaded_by(ANALYSIS)
 
@@ -93,3 +121,52 @@ def test_a_sweep_leaves_out_what_its_file_does_not_ask_for(
 
 def test_what_writes_tables_is_seen_by_this_test(written: Path) -> None:
     assert "mechkin_cli.tables.csv" in modules_of(COMMAND, str(written))
+
+
+def loaded_by_line(folder: Path, *words: str, **environment: str) -> set[str]:
+    command = [sys.executable, "-P", "-c", LINE, str(RCSR), str(folder)]
+    done = subprocess.run(
+        [*command, *(word.replace("DIR/", f"{folder}/") for word in words)],
+        check=True,
+        capture_output=True,
+        text=True,
+        env=os.environ | environment,
+    )
+    names = {name.split(".")[0] for name in json.loads(done.stdout)}
+    assert "mechkin_cli" in names
+    return names
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_commands_load_neither_typer_nor_pydantic(words: list[str], tmp_path: Path) -> None:
+    assert not HEAVY & loaded_by_line(tmp_path, *words)
+
+
+def test_the_version_loads_no_library(tmp_path: Path) -> None:
+    assert not (HEAVY | {"numpy", "yaml"}) & loaded_by_line(tmp_path, "--version")
+
+
+@pytest.mark.parametrize("words", [[], *([name] for name in sorted(PARSED))], ids=str)
+def test_help_loads_no_numpy(words: list[str], tmp_path: Path) -> None:
+    assert "numpy" not in loaded_by_line(tmp_path, *words, "--help")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "mechkin an",
+        "mechkin analyze a",
+        "mechkin analyze FILE --table ",
+        "mechkin analyze FILE --set ",
+        "mechkin analyze FILE --format ",
+        "mechkin ranges FILE --input ",
+        "mechkin view FILE --run ",
+        "mechkin study a.yaml --format ",
+    ],
+)
+def test_completion_loads_no_numpy(line: str, tmp_path: Path) -> None:
+    line = line.replace("FILE", str(RCSR))
+    words = {"COMP_WORDS": line, "COMP_CWORD": str(len(line.split(" ")) - 1)}
+    loaded = loaded_by_line(tmp_path, _MECHKIN_COMPLETE="complete_bash", **words)
+    assert "typer" in loaded
+    assert "numpy" not in loaded

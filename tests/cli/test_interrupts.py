@@ -35,7 +35,6 @@ LOADED = [
     "mechkin_cli.tables.csv",
     "numpy",
     "numpy.linalg",
-    "pydantic_core",
     "yaml",
 ]
 
@@ -56,7 +55,8 @@ def interrupted(module: str, folder: Path, *arguments: str) -> subprocess.Comple
     ("module", "arguments"),
     [
         *((module, ["analyze", "crank.yaml"]) for module in LOADED),
-        ("typer", ["check", "crank.yaml"]),
+        ("yaml", ["check", "crank.yaml"]),
+        ("typer", ["check", "--help"]),
         ("typer", ["--help"]),
         ("mechkin_cli.schema.json_schema", ["schema"]),
         ("mechkin_cli.modes.modes", ["modes", "crank.yaml"]),

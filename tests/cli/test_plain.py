@@ -5,30 +5,32 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
+from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import pytest
-import typer
 from references import RCSR
 
-from mechkin_cli.cli import analyze_command
+from mechkin_cli.cli.analyze import AnalyzeCommand
 from mechkin_cli.cli.app import app
-from mechkin_cli.cli.run import OPTIONS, plain_analysis
+from mechkin_cli.cli.commands import COMMANDS, Command
+from mechkin_cli.cli.run import plain_line
 
-WORDS = [
-    *OPTIONS,
-    *("a.yaml", "b.yaml", "-", "--", "-x", "--help", "--out=d", "--lan", "2", "02", "x", "csv"),
-    *("P1=3", "P1=-3", "", " ", "-1", "1.0", "--no-json", "²", "٣"),
-]
+
+def words_of(command: Command) -> list[str]:
+    return [
+        *(name for word in command.words for name in word.names),
+        *("a.yaml", "b.yaml", "-", "--", "-x", "--help", "--out=d", "--lan", "2", "02", "x", "csv"),
+        *("P1=3", "P1=-3", "", " ", "-1", "1.0", "--no-json", "²", "٣"),
+    ]
 
 
 def by_typer(words: list[str], monkeypatch: pytest.MonkeyPatch) -> dict[str, Any] | None:
-    """The fields of `AnalyzeCommand`; None where typer refuses or only helps."""
+    """The values of the parameters; None where typer refuses or only helps."""
     seen: list[dict[str, Any]] = []
-    monkeypatch.setattr(
-        analyze_command, "analyze_files", lambda command: seen.append(command._asdict())
-    )
+    monkeypatch.setattr(Command, "call", lambda self, given: seen.append(given) or 0)
     try:
         app(words, standalone_mode=False)
     except Exception:
@@ -36,43 +38,71 @@ def by_typer(words: list[str], monkeypatch: pytest.MonkeyPatch) -> dict[str, Any
     return seen[0] if seen else None
 
 
-def test_the_options_are_those_declared() -> None:
-    command = typer.main.get_command(app).commands["analyze"]  # type: ignore[attr-defined]
-    declared = {
-        option.opts[0]: (option.name, option.is_flag, option.multiple)
-        for option in command.params
-        if option.opts[0].startswith("--") and option.opts[0] != "--help"
-    }
-    assert declared == {
-        name: (option.argument, option.value is None, option.repeated)
-        for name, option in OPTIONS.items()
-    }
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_functions_have_the_parameters(name: str) -> None:
+    """And the defaults of those that may be left out."""
+    module, function = COMMANDS[name].home.split(":")
+    work = getattr(import_module(f"mechkin_cli.cli.{module}"), function)
+    taken = signature(AnalyzeCommand if name == "analyze" else work).parameters
+    if name == "analyze":
+        assert [word.parameter for word in COMMANDS[name].words] == list(AnalyzeCommand._fields)
+        defaults = AnalyzeCommand._field_defaults
+    else:
+        assert [word.parameter for word in COMMANDS[name].words] == list(taken)
+        defaults = {one.name: one.default for one in taken.values() if one.default is not one.empty}
+    assert {word.parameter for word in COMMANDS[name].words if not word.required} == set(defaults)
+    for word in COMMANDS[name].words:
+        if not word.required:
+            default = False if word.kind == "flag" else word.default
+            found = defaults[word.parameter]
+            assert found == default or str(found) == default
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_what_is_plain_means_the_same_to_typer(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_plain_means_the_same_to_typer(
+    name: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     dice = random.Random(seed)
-    for _ in range(10):
-        words = ["analyze", *dice.choices(WORDS, k=dice.randint(1, 6))]
-        plain = plain_analysis(words)
+    for _ in range(12):
+        words = [name, *dice.choices(words_of(COMMANDS[name]), k=dice.randint(0, 6))]
+        plain = plain_line(words)
         if plain is None:
             continue
+        given = plain[1]
         whole = by_typer(words, monkeypatch)
         assert whole is not None, words
-        left_out = {name: value for name, value in whole.items() if name not in plain}
-        assert {name: whole[name] for name in plain} == plain, words
-        assert not any(left_out.values()), words
+        defaults = {word.parameter: word.default for word in COMMANDS[name].words}
+        left_out = {one: value for one, value in whole.items() if one not in given}
+        assert {one: whole[one] for one in given} == given, words
+        assert not any(
+            value and str(value) != str(defaults[one]) for one, value in left_out.items()
+        ), words
 
 
-def test_some_lines_are_plain() -> None:
+@pytest.mark.parametrize("name", COMMANDS)
+def test_some_lines_of_every_command_are_plain(name: str) -> None:
+    dice = random.Random(1)
+    words = words_of(COMMANDS[name])
+    lines = [[name, *dice.choices(words, k=dice.randint(1, 4))] for _ in range(400)]
+    assert sum(plain_line(line) is not None for line in lines) > 5
+
+
+def test_values_of_a_plain_line() -> None:
     words = ["analyze", "a.yaml", "--set", "P1=-3", "--out", "d", "--set", "q=1", "--lanes", "4"]
-    assert plain_analysis(words) == {
+    command, given = plain_line(words) or (None, None)
+    assert command == COMMANDS["analyze"]
+    assert given == {
         "files": [Path("a.yaml")],
         "set_": ["P1=-3", "q=1"],
         "out": Path("d"),
         "lanes": 4,
     }
-    assert plain_analysis([*words, "--quiet", "b.yaml"]) is not None
+    assert plain_line([*words, "--quiet", "b.yaml"]) is not None
+    assert plain_line(["view", "a.yaml", "-o", "x"]) == (
+        COMMANDS["view"],
+        {"file": Path("a.yaml"), "out": Path("x")},
+    )
 
 
 @pytest.mark.parametrize(
@@ -80,7 +110,7 @@ def test_some_lines_are_plain() -> None:
     [
         [],
         ["analyze"],
-        ["check", "a.yaml"],
+        ["analyse", "a.yaml"],
         ["analyze", "--json"],
         ["analyze", "a.yaml", "--out"],
         ["analyze", "a.yaml", "--out", "-d"],
@@ -91,18 +121,21 @@ def test_some_lines_are_plain() -> None:
         ["analyze", "a.yaml", "--lanes", "-1"],
         ["analyze", "a.yaml", "--help"],
         ["analyze", "--", "a.yaml"],
+        ["modes", "a.yaml", "b.yaml"],
+        ["modes"],
+        ["schema", "a"],
         ["--version"],
     ],
 )
 def test_all_else_is_left_to_typer(words: list[str]) -> None:
-    assert plain_analysis(words) is None
+    assert plain_line(words) is None
 
 
 def test_a_plain_line_loads_no_typer(tmp_path: Path) -> None:
     script = (
         "import atexit, sys\n"
         "from mechkin_cli.cli.main import main\n"
-        "heavy = ('typer', 'click', 'rich', 'pydantic', 'scipy')\n"
+        "heavy = ('typer', 'click', 'rich', 'pydantic_core', 'scipy')\n"
         "atexit.register(lambda: print([m for m in heavy if m in sys.modules], file=sys.stderr))\n"
         f"sys.argv[1:] = ['analyze', {str(RCSR)!r}, '--out', {str(tmp_path)!r}, '--quiet']\n"
         "main()\n"

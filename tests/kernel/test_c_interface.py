@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from kernel.compiler import COMPILER, SOURCES
+from mechkin_cli.variants.model import Base
 from references import FILE_OF
 
 from mechkin_cli import load
@@ -29,7 +30,6 @@ from mechkin_cli.session.kernel_run import POSITIONS, RESIDUAL_TESTS, Ask, Batch
 from mechkin_cli.session.session import Session
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Verdict
-from mechkin_cli.variants.model import Base
 
 C_COMPILER = shutil.which(os.environ.get("CC", "cc"))
 CMAKE = shutil.which("cmake")

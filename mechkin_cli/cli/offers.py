@@ -1,4 +1,8 @@
-"""Options that several commands share."""
+"""What shells offer while a command line is typed: files, and the names that the file holds.
+
+A file is only read, and one that cannot be read offers nothing. Assembly modes alone are searched
+for, in a process that is given two seconds.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +10,11 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
-from mechkin_cli.cli.messages import FORMS
 from mechkin_cli.diagnostics import UsageError
-
-# What shells offer while a command line is typed: files, and the names that the file holds.
-#
-# A file is only read, and one that cannot be read offers nothing. Assembly modes alone are searched
-# for, in a process that is given two seconds.
 
 Offers = list[str]
 
@@ -196,45 +194,3 @@ def folder(text: str) -> Path:
     if not text:
         raise UsageError("--out has no name; write a folder behind it, as --out results")
     return Path(text)
-
-
-Files = Annotated[
-    list[Path],
-    typer.Argument(
-        help="Mechanism files (YAML, format 1); - reads stdin.",
-        metavar="FILE",
-        autocompletion=mechanism_files,
-    ),
-]
-File = Annotated[
-    Path,
-    typer.Argument(
-        help="Mechanism file (YAML, format 1); - reads stdin.",
-        metavar="FILE",
-        autocompletion=mechanism_files,
-    ),
-]
-Set = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        metavar="NAME=VALUE",
-        help="Set a parameter, as P1=0.6in; repeatable.",
-        autocompletion=parameter_names,
-    ),
-]
-Json = Annotated[bool, typer.Option("--json", help="One JSON object on stdout and nothing else.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Only warnings and errors.")]
-MESSAGES_HELP = f"Form of the messages: {' or '.join(FORMS)} (annotations for CI)."
-Messages = Annotated[
-    str | None,
-    typer.Option(
-        "--messages",
-        metavar="FORM",
-        help=MESSAGES_HELP,
-        autocompletion=message_forms,
-    ),
-]
-
-
-# `--set NAME=VALUE` as a mapping.

@@ -1,0 +1,488 @@
+"""The commands: their words, as the plain parser reads them and typer's help tells them.
+
+Nothing is imported here that a command needs: a command names the function that does it, which is
+loaded when it is called.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Mapping
+from importlib import import_module
+
+from mechkin_cli.cli.messages import FORMS
+from mechkin_cli.record import NamedTuple
+
+TYPE_CHECKING = False  # typing is not loaded for its flag alone
+if TYPE_CHECKING:
+    from typing import Any, Literal
+
+    Kind = Literal["flag", "text", "whole", "path", "folder"]
+
+
+class Word(NamedTuple):
+    """An option or, without `names`, an argument: the parameter of the command's function that it
+    gives, and how help tells it.
+
+    `offers` is the function of `offers.py` that a shell is offered values by.
+    """
+
+    parameter: str
+    help: str
+    names: tuple[str, ...] = ()
+    kind: Kind = "flag"
+    metavar: str | None = None
+    repeated: bool = False
+    required: bool = False
+    default: str | int | None = None
+    offers: str | None = None
+
+
+class Command(NamedTuple):
+    """A command; `home` is the module and the function that do it."""
+
+    name: str
+    home: str
+    help: str
+    words: tuple[Word, ...]
+    has_model: bool = True
+
+    def call(self, given: Mapping[str, Any]) -> int:
+        """Does it, and gives the exit code.
+
+        Args:
+            given: the values of parameters; those left out have their defaults.
+        """
+        # no command multiplies large matrices: one thread of BLAS per core would only be started
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        module, function = self.home.split(":")
+        known = "mechkin_cli.model.model" in sys.modules
+        if self.has_model:
+            from mechkin_cli.model import Model  # noqa: F401
+        work = getattr(import_module(f"mechkin_cli.cli.{module}"), function)
+        if not known:
+            # modules live as long as the process: looking for garbage among them takes long
+            gc.freeze()
+        gc.enable()
+        return int(work(**given) or 0)
+
+
+def all_formats() -> str:
+    """The formats of results in words."""
+    from mechkin_cli.tables import WRITERS
+
+    *names, last = WRITERS
+    return f"{', '.join(names)} or {last}"
+
+
+FILES = Word(
+    "files",
+    "Mechanism files (YAML, format 1); - reads stdin.",
+    kind="path",
+    metavar="FILE",
+    repeated=True,
+    required=True,
+    offers="mechanism_files",
+)
+FILE = FILES._replace(
+    parameter="file", help="Mechanism file (YAML, format 1); - reads stdin.", repeated=False
+)
+SET = Word(
+    "set_",
+    "Set a parameter, as P1=0.6in; repeatable.",
+    ("--set",),
+    "text",
+    "NAME=VALUE",
+    repeated=True,
+    offers="parameter_names",
+)
+MODE = Word(
+    "mode",
+    "Assembly mode at the first row.",
+    ("--mode",),
+    "text",
+    "NAME",
+    offers="mode_names",
+)
+TABLE = Word(
+    "table",
+    "Only this table; may be repeated.",
+    ("--table",),
+    "text",
+    "NAME",
+    repeated=True,
+    offers="table_names",
+)
+MESSAGES = Word(
+    "messages",
+    f"Form of the messages: {' or '.join(FORMS)} (annotations for CI).",
+    ("--messages",),
+    "text",
+    "FORM",
+    offers="message_forms",
+)
+JSON = Word("json", "One JSON object on stdout and nothing else.", ("--json",))
+QUIET = Word("quiet", "Only warnings and errors.", ("--quiet",))
+
+NEW = Command(
+    "new",
+    "new:new",
+    """Write a commented mechanism file that runs, to start from.
+
+    An existing file is never written over.
+    """,
+    (
+        Word("name", "The file to write; .yaml is added.", kind="text", metavar="NAME"),
+        Word(
+            "template",
+            "Template to start from; --list names them.",
+            ("--template",),
+            "text",
+            "TEMPLATE",
+            default="four-bar",
+        ),
+        Word("list_", "List the templates.", ("--list",)),
+    ),
+    has_model=False,
+)
+ANALYZE = Command(
+    "analyze",
+    "analyze:analyze",
+    """Run sweeps and responses; show and write their tables.
+
+    Tables go to stdout and to files in out/STEM, messages to stderr. With --json no files are
+    written, unless --out or --format asks for them. The exit code is 4 if rows are missing.
+    """,
+    (
+        FILES,
+        Word("out", "Folder to write to (default: out/STEM).", ("--out",), "folder", "DIR"),
+        Word(
+            "format",
+            "{formats}; may be repeated.",
+            ("--format",),
+            "text",
+            "FORMAT",
+            repeated=True,
+            offers="format_names",
+        ),
+        Word("units", "Write units into CSV headers: theta [deg].", ("--units",)),
+        SET,
+        MODE,
+        TABLE,
+        Word(
+            "lanes",
+            "Rows computed at a time: 2, 4 or 8; 0: the most the machine can.",
+            ("--lanes",),
+            "whole",
+            "N",
+            default=0,
+        ),
+        Word(
+            "threads",
+            "Threads that split the rows; 0: all cores.",
+            ("--threads",),
+            "whole",
+            "N",
+            default=0,
+        ),
+        Word(
+            "certify",
+            "Prove a sweep's positions, and that they lie on one branch.",
+            ("--certify",),
+        ),
+        Word(
+            "strict",
+            "Exit with 4 also if a row is near-singular, rank-unclear or at a dead centre.",
+            ("--strict",),
+        ),
+        Word("errors", "Measure the true error of every cell; write errors.csv.", ("--errors",)),
+        Word("view", "Also write view.html, a page that shows all runs in motion.", ("--view",)),
+        Word("explain", "Show how the loops are solved, what is skipped and why.", ("--explain",)),
+        MESSAGES,
+        JSON,
+        QUIET,
+    ),
+)
+VIEW = Command(
+    "view",
+    "view:view",
+    """Write a page that shows a mechanism in motion.
+
+    One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
+    responses, in all assembly modes, with curves, tables, verdicts and notes.
+    """,
+    (
+        FILE,
+        Word(
+            "out", "File to write (default: out/STEM/view.html).", ("-o", "--out"), "path", "PAGE"
+        ),
+        SET,
+        MODE,
+        Word(
+            "run",
+            "Show only this run: sweep, or the name of a response.",
+            ("--run",),
+            "text",
+            "NAME",
+            offers="run_names",
+        ),
+        Word("no_modes", "Leave out the other assembly modes.", ("--no-modes",)),
+        Word("open_", "Also open the page in the browser.", ("--open",)),
+        MESSAGES,
+        QUIET,
+    ),
+)
+CHECK = Command(
+    "check",
+    "check:check",
+    """Validate mechanism files; every error with its line and column.""",
+    (FILES, SET, MESSAGES._replace(names=("--messages", "--format")), JSON, QUIET),
+)
+MODES = Command(
+    "modes",
+    "answer:modes",
+    """List the assembly modes: the ways to put a mechanism together.""",
+    (
+        FILE,
+        Word(
+            "at",
+            "Value of the input instead of the first row's; of several as O1.theta=VALUE, "
+            "repeatable.",
+            ("--at",),
+            "text",
+            "VALUE",
+            repeated=True,
+        ),
+        Word(
+            "run",
+            "Take the modes at the start of this response.",
+            ("--run",),
+            "text",
+            "NAME",
+            offers="response_names",
+        ),
+        Word("certify", "Prove that each exists, and that no two are the same.", ("--certify",)),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
+RANGES = Command(
+    "ranges",
+    "ranges:ranges",
+    """Find the range of an input in each assembly mode.
+
+    Lists dead centres, branch points and full turns, and the circuits that the modes form.
+    """,
+    (
+        FILE,
+        Word(
+            "input",
+            "Input that moves (default: the first one swept).",
+            ("--input",),
+            "text",
+            "NAME",
+            offers="input_names",
+        ),
+        Word(
+            "output",
+            "Output whose own dead centres are located, too; repeatable.",
+            ("--output",),
+            "text",
+            "NAME",
+            repeated=True,
+        ),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
+MOBILITY = Command(
+    "mobility",
+    "answer:mobility",
+    """Find the mobility, idle freedoms and redundant constraints.
+
+    Compares Kutzbach's count with the true mobility. Inputs need not be declared.
+    """,
+    (FILE, SET, JSON, QUIET),
+)
+PLOT = Command(
+    "plot",
+    "plot:plot",
+    """Draw curves, coupler curves and polar diagrams of a file.
+
+    Without --y, one picture for each table, as its `plot:` says, in out/STEM/TABLE.svg. --y takes
+    labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
+    as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
+    """,
+    (
+        FILE,
+        Word(
+            "x",
+            "What the horizontal axis shows (default: the input or time).",
+            ("--x",),
+            "text",
+            "NAME",
+        ),
+        Word(
+            "y",
+            "What is drawn, separated by commas; repeatable.",
+            ("--y",),
+            "text",
+            "NAMES",
+            repeated=True,
+        ),
+        TABLE,
+        Word(
+            "run",
+            "Run to draw: sweep, or a response (default: the first).",
+            ("--run",),
+            "text",
+            "NAME",
+            offers="run_names",
+        ),
+        Word("out", "File to write: .svg, .png or .pdf.", ("-o", "--out"), "path", "PICTURE"),
+        MODE,
+        SET,
+        QUIET,
+    ),
+)
+STUDY = Command(
+    "study",
+    "study:study",
+    """Run many variants of a mechanism and keep a few numbers of each.
+
+    Writes variants.csv, with a line for each variant, into a folder. A study that was stopped is
+    continued by the same command.
+    """,
+    (
+        Word(
+            "file",
+            "Study file (YAML).",
+            kind="path",
+            metavar="STUDY",
+            required=True,
+            offers="study_files",
+        ),
+        Word(
+            "out", "Folder to write to (default: out/STUDY).", ("-o", "--out"), "folder", "FOLDER"
+        ),
+        SET,
+        Word(
+            "format_",
+            "csv or parquet.",
+            ("--format",),
+            "text",
+            "FORMAT",
+            default="csv",
+            offers="study_format_names",
+        ),
+        Word("again", "Discard the results in the folder and begin anew.", ("--again",)),
+        Word(
+            "threads",
+            "Threads of each process (0: as many as pay).",
+            ("--threads",),
+            "whole",
+            default=0,
+        ),
+        Word(
+            "processes",
+            "Number of new processes (0: compute in this one).",
+            ("--processes",),
+            "whole",
+            default=0,
+        ),
+        Word(
+            "scheduler",
+            "Compute on a Dask cluster at this address, as tcp://host:8786.",
+            ("--scheduler",),
+            "text",
+            "ADDRESS",
+        ),
+        Word("explain", "Estimate time and size from a trial; write nothing.", ("--explain",)),
+        Word("dry_run", "Check the study and show variants; compute nothing.", ("--dry-run",)),
+        JSON,
+        MESSAGES,
+        QUIET,
+    ),
+)
+TABLES = Command(
+    "tables",
+    "tables:tables",
+    """Regenerate the tables kept beside mechanism files.
+
+    Writes the tables of FOLDER/STEM.yaml to FOLDER/STEM/TABLE.csv and .md, and a small picture to
+    FOLDER/STEM/picture.svg. If tables name printed values, FOLDER/STEM/errata.md compares them and
+    disagreements.csv lists every printed cell that does not agree. What mechkin wrote for a table
+    that the file no longer has is removed; other files stay. A folder without mechanism files of
+    its own stands for those of the folders in it. FOLDER/README.md is an overview of its
+    mechanisms; a README.md of your own is left alone.
+    """,
+    (
+        Word(
+            "path",
+            "A mechanism file, or a folder of them or of such folders.",
+            kind="path",
+            metavar="PATH",
+            default="mechanisms",
+            offers="mechanism_files",
+        ),
+        Word("check", "Compare with the tables on disk; write nothing.", ("--check",)),
+        Word("against", "List printed cells that do not agree; write nothing.", ("--against",)),
+        MESSAGES,
+        JSON,
+        QUIET,
+    ),
+)
+SCHEMA = Command(
+    "schema",
+    "new:schema",
+    """Print the JSON Schema of mechanism files.""",
+    (
+        Word("out", "Write to a file instead of stdout.", ("--out",), "path", "FILE"),
+        Word("check", "Compare with the files in schemas/ (or --out) instead.", ("--check",)),
+        Word("study", "Print the schema of study files instead.", ("--study",)),
+    ),
+    has_model=False,
+)
+BENCH = Command(
+    "bench",
+    "bench:bench",
+    """Measure run time against error.
+
+    Beside mechkin's own settings it measures scipy (pip install 'mechkin[bench]'), the dense
+    systems of the sources, and explicit stepping. Without files it measures some of the templates.
+    With --stress it runs a small set of hard mechanisms instead, whose rows are known, and judges
+    every row.
+    """,
+    (
+        Word(
+            "files",
+            "Mechanism files to measure instead of some templates.",
+            kind="path",
+            metavar="FILE",
+            repeated=True,
+        ),
+        Word("quick", "Few rounds: takes seconds, and measures less well.", ("--quick",)),
+        Word(
+            "out",
+            "Also write bench.json, bench.csv, bench.md, bench.svg.",
+            ("--out",),
+            "folder",
+            "DIR",
+        ),
+        JSON,
+        Word("stress", "Hard mechanisms of known rows instead of run times.", ("--stress",)),
+    ),
+)
+
+COMMANDS = {
+    command.name: command
+    for command in (
+        *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY),
+        *(PLOT, STUDY, TABLES, SCHEMA, BENCH),
+    )
+}
+"""The commands by name, in the order of help."""
