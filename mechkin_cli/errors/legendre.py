@@ -68,9 +68,9 @@ def integrals_to(places: DoubleDoubles, count: int) -> DoubleDoubles:
     """From `count` coefficients to the integrals from 0 to some places (places, count), which may
     lie outside [0, 1]."""
     p = _polynomials(places, count + 1)
-    found = [places + 0.0]
-    found += [(p[k + 1] - p[k - 1]) / (2.0 * (2.0 * k + 1.0)) for k in range(1, count)]
-    return stacked(found, axis=1)
+    integrals = [places + 0.0]
+    integrals += [(p[k + 1] - p[k - 1]) / (2.0 * (2.0 * k + 1.0)) for k in range(1, count)]
+    return stacked(integrals, axis=1)
 
 
 def values_at(places: DoubleDoubles, coefficients: DoubleDoubles) -> DoubleDoubles:
@@ -125,10 +125,9 @@ def _integral(degree: int, p: Sequence[Decimal]) -> Decimal:
 
 
 def _double_doubles(numbers: Sequence[Sequence[Decimal]] | Sequence[Decimal]) -> DoubleDoubles:
-    given = np.array(numbers, dtype=object)
-    high = given.astype(np.float64)
+    decimals = np.array(numbers, dtype=object)
+    high = decimals.astype(np.float64)
     with localcontext() as context:
         context.prec = DIGITS
         rest = np.vectorize(lambda x, h: float(x - Decimal(h)), otypes=[np.float64])
-        low = rest(given, high)
-    return DoubleDoubles(high, low)
+        return DoubleDoubles(high, rest(decimals, high))
