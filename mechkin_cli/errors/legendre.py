@@ -10,7 +10,7 @@ from __future__ import annotations
 from decimal import Decimal, localcontext
 from functools import cache
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,24 +25,11 @@ DIGITS = 50
 """Of the decimals that nodes are computed in; double-double has 32."""
 
 
-class Collocation(NamedTuple):
-    """Of one number of nodes.
-
-    Attributes:
-        nodes: (nodes,) in (0, 1).
-        coefficients: (nodes, nodes) from values at the nodes to Legendre coefficients.
-        integrals: (nodes + 1, nodes) from coefficients to the integrals from 0 to each node and to
-            1.
-    """
-
-    nodes: DoubleDoubles
-    coefficients: DoubleDoubles
-    integrals: DoubleDoubles
-
-
 @cache
-def collocation(count: int) -> Collocation:
-    """The collocation of a number of nodes."""
+def collocation(count: int) -> tuple[DoubleDoubles, DoubleDoubles, DoubleDoubles]:
+    """Of a number of nodes: these (nodes,) in (0, 1); the matrix (nodes, nodes) from values there
+    to Legendre coefficients; that (nodes + 1, nodes) from coefficients to the integrals from 0 to
+    each node and to 1."""
     with localcontext() as context:
         context.prec = DIGITS
         roots = [_root(count, k) for k in range(count)]
@@ -59,9 +46,7 @@ def collocation(count: int) -> Collocation:
         ends = [*values, [Decimal(1)] * (count + 2)]
         integrals = [[_integral(k, v) for k in range(count)] for v in ends]
         nodes = [(x + 1) / 2 for x in roots]
-    return Collocation(
-        _double_doubles(nodes), _double_doubles(coefficients), _double_doubles(integrals)
-    )
+    return _double_doubles(nodes), _double_doubles(coefficients), _double_doubles(integrals)
 
 
 def integrals_to(places: DoubleDoubles, count: int) -> DoubleDoubles:

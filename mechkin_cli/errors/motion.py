@@ -263,8 +263,8 @@ class Marching:
     ) -> None:
         self.motion, self.layout, self.turned_at = motion, layout, turned_at
         self.nodes, self.tolerance = fineness
-        self.gauss = collocation(self.nodes)
-        self.sums = sum_of_products(self.gauss.integrals, self.gauss.coefficients.T)
+        self.gauss, self.to_coefficients, integrals = collocation(self.nodes)
+        self.sums = sum_of_products(integrals, self.to_coefficients.T)
         # what a load gives counts as work where it has no potential and is no damper
         self.working = (
             motion.without(lambda load: not isinstance(load, Damper | Spring)),
@@ -318,7 +318,7 @@ class Marching:
     ) -> tuple[LegendreStep | None, float]:
         """A step, None where it is refused, and how much longer the next one may be."""
         count, h = self.nodes, float(size.high[0])
-        times = here.time + size * self.gauss.nodes
+        times = here.time + size * self.gauss
         turned = self.turned_at(times.high)
         start = joined([here.states, here.rates])
         states = len(here.states)
@@ -345,7 +345,7 @@ class Marching:
                 break
         else:
             return None, 0.5
-        coefficients = sum_of_products(self.gauss.coefficients, rates).T
+        coefficients = sum_of_products(self.to_coefficients, rates).T
         sizes = np.abs(coefficients.high)
         tail = (sizes[:, -1] + sizes[:, -2])[:, None]
         missed = self._measured(tail, rates.high, states, h)
@@ -355,7 +355,7 @@ class Marching:
             ratio = min(LONGER, float(power(self.tolerance / missed, 1.0 / count)))
         if missed > self.tolerance:
             return None, min(0.9 * ratio, 0.7)
-        powers = sum_of_products(self.gauss.coefficients, self._powers(places, directions)).T
+        powers = sum_of_products(self.to_coefficients, self._powers(places, directions)).T
         step = LegendreStep(here, size, coefficients, powers)
         if self._off_between(step, directions, response) > self.tolerance:
             return None, 0.5
@@ -366,7 +366,7 @@ class Marching:
     def _off_between(self, step: LegendreStep, directions: Floats, response: UnitResponse) -> float:
         """By how much the forces between the nodes and at both ends need other accelerations, in
         parts of the rates so far: a kink that no node sees."""
-        nodes = self.gauss.nodes.high
+        nodes = self.gauss.high
         between = np.concatenate([[0.0], 0.5 * (nodes[1:] + nodes[:-1]), [1.0]])
         times = step.begin.time + step.length * between
         places, _ = step.at(times, self.turned_at(times.high))
