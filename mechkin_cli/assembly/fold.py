@@ -1,5 +1,11 @@
-"""A first row on a fold has two branches; which is meant is judged at the next row that is clear of
-it, unless `near` tells them apart at the first.
+"""A first row on a fold: places on the two branches that meet there, and which of them is meant.
+
+Near the fold a state is x0 + v h for inputs u0 + a h^2/2, v of length one. So derivatives by the
+input at a distance h that rounding has left are x' = v/(a h) and x'' = -v/(a^2 h^3), and
+a = |x''|/|x'|^3 is known although neither of them is (`left_for`).
+
+The branch is judged at the next row that is clear of the fold, unless `near` decides at the first
+(`judged_off_fold`).
 """
 
 from __future__ import annotations
@@ -20,7 +26,7 @@ from mechkin_cli.assembly.distances import (
 from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.search import pose_number
 from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.tolerances import BEFORE_DEAD_CENTRE, OFF_FOLD
 
@@ -28,13 +34,6 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly.distances import AssemblyStart
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Floats
-
-
-# Places on the branches that meet in a fold, left for from a state there.
-#
-# Near the fold a state is x0 + v h for inputs u0 + a h^2/2, v of length one. So derivatives by the
-# input at a distance h that rounding has left are x' = v/(a h) and x'' = -v/(a^2 h^3), and
-# a = |x''|/|x'|^3 is known although neither of them is.
 
 
 class PlacesBefore(NamedTuple):
@@ -74,17 +73,16 @@ def left_for(session: Session, row: int, state: Floats) -> list[PlacesBefore]:
     state = np.ascontiguousarray(state[:, None])
     reduced = np.ascontiguousarray(session.inputs.reduced[:, [row]])
     inputs = range(reduced.shape[0])
-    found = [at_unit_rate(session, reduced, state, number) for number in inputs]
-    sizes = [float(np.abs(batch.first).max()) for batch in found if batch.first is not None]
+    runs = [at_unit_rate(session, reduced, state, number) for number in inputs]
+    sizes = [float(np.abs(batch.first).max()) for batch in runs if batch.first is not None]
     number = int(np.argmax(np.nan_to_num(sizes, nan=-1.0)))
-    first, second = found[number].first, found[number].second
+    first, second, size = runs[number].first, runs[number].second, sizes[number]
     assert first is not None
     assert second is not None
     with np.errstate(all="ignore"):
-        way = first / sizes[number]
-        size = sizes[number]
+        tangent = first / size
         bend = float(np.abs(second).max()) / (size * size * size)
-    if not (np.isfinite(way).all() and 0.0 < bend < np.inf):
+    if not (np.isfinite(tangent).all() and 0.0 < bend < np.inf):
         return []
     before = np.array(BEFORE_DEAD_CENTRE)
     heights = np.sqrt(2.0 * before / bend)
@@ -92,23 +90,21 @@ def left_for(session: Session, row: int, state: Floats) -> list[PlacesBefore]:
     for side in (1.0, -1.0):
         values = np.repeat(session.inputs.values[:, [row]], 2, axis=1)
         values[number] += side * before
-        both = [PlacesBefore(row, values, state + sign * way * heights) for sign in (1.0, -1.0)]
-        places.append([closed for one in both if (closed := _closed(session, one, heights))])
-    there = [side for side in places if side]
-    return there[0] if len(there) == 1 and len(there[0]) == 2 else []
-
-
-def _closed(session: Session, guessed: PlacesBefore, heights: Floats) -> PlacesBefore | None:
-    """The places closed near their guesses."""
-    batch = session.close(guessed.inputs, np.ascontiguousarray(guessed.states))
-    off = np.abs(batch.states - guessed.states).max(axis=0)
-    near = batch.good & (off <= OFF_FOLD * heights)
-    return guessed._replace(states=batch.states) if near.all() else None
+        closed = []
+        for sign in (1.0, -1.0):
+            guess = state + sign * tangent * heights
+            batch = session.close(values, np.ascontiguousarray(guess))
+            off = np.abs(batch.states - guess).max(axis=0)
+            if (batch.good & (off <= OFF_FOLD * heights)).all():
+                closed.append(PlacesBefore(row, values, batch.states))
+        if closed:
+            places.append(closed)
+    return places[0] if len(places) == 1 and len(places[0]) == 2 else []
 
 
 def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
-    """The same start, or where it is singular the assembly at the next row clear of that which the
-    file means among those that come back to it; of a row alone that on the branch which `near`
+    """The same start unless it is singular: then, of the assemblies at the next clear row that come
+    back to it, the one that the file means; with one row alone, the one on the branch that `near`
     means."""
     if start.state is None or start.row or not session.graph.blocks:
         return start
@@ -122,19 +118,19 @@ def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
 
 
 def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> AssemblyStart:
-    ways = left_for(session, 0, state) if session.problem.assembly.near else []
-    if len(ways) < 2:
+    branches = left_for(session, 0, state) if session.problem.assembly.near else []
+    if len(branches) < 2:
         return start
-    off_fold = np.stack([way.states[:, 0] for way in ways], axis=1)
-    distances, _ = distances_of(session, ways[0].inputs[:, 0], off_fold)
+    off_fold = np.stack([branch.states[:, 0] for branch in branches], axis=1)
+    distances, _ = distances_of(session, branches[0].inputs[:, 0], off_fold)
     if is_unclear(*sorted(distances)):
         return start
-    way = ways[int(np.argmin(distances))]
-    path = np.concatenate([way.inputs, session.inputs.values[:, :1]], axis=1)
-    found = session.follow(path, way.states[:, 0], every_row=True)
-    if found.end != TrackEnd.FINISHED:
+    branch = branches[int(np.argmin(distances))]
+    path = np.concatenate([branch.inputs, session.inputs.values[:, :1]], axis=1)
+    followed = session.follow(path, branch.states[:, 0], every_row=True)
+    if followed.end != TrackEnd.FINISHED:
         return start
-    state = np.ascontiguousarray(found.guess[:, -1])
+    state = np.ascontiguousarray(followed.guess[:, -1])
     condition = _condition(session, session.inputs.reduced[:, 0], state)
     if condition is None or condition > tolerances.CONDITION_RANK_UNCLEAR:
         return start  # on the fold itself, where the branches are one
@@ -153,14 +149,20 @@ def _judged_at(session: Session, start: AssemblyStart, row: int) -> AssemblyStar
     back = {
         i: _followed_back(session, modes.found.states[:, i], row) for i in in_order(distances, home)
     }
-    order = [i for i, state in back.items() if _is_same(session, state, start.state)]
+    first = start.state[:, None]
+    order = [
+        i
+        for i, state in back.items()
+        if state is not None
+        and pose_number(session.layout, first, state, tolerances.SAME_FOLD) is not None
+    ]
     if not order:
         return start
     notes = list(start.diagnostics)
     chosen, how = order[0], f"the first row lies on a fold, row {row + 1} decides"
-    told = _told_apart(session, [back[i] for i in order])
-    if told is not None:
-        chosen, how = order[told], "next to a fold, where near tells its branches apart"
+    nearest = _nearest_of(session, [back[i] for i in order])
+    if nearest is not None:
+        chosen, how = order[nearest], "next to a fold, where near tells its branches apart"
     elif len(order) > 1 and is_unclear(distances[order[0]], distances[order[1]]):
         pair = (distances[order[0]], distances[order[1]])
         notes.append(unclear(f"two assemblies of row {row + 1}", pair))
@@ -169,7 +171,7 @@ def _judged_at(session: Session, start: AssemblyStart, row: int) -> AssemblyStar
 
 
 def _next_clear(session: Session) -> int:
-    """The first row whose inputs are clear of the first one's as folds go, or the farthest one; 0
+    """The first row whose inputs are clear of a fold at the first row's, or the farthest one; 0
     where none differs."""
     values = session.inputs.values
     distance = np.abs(values - values[:, :1]).max(axis=0, initial=0.0)
@@ -193,15 +195,7 @@ def _followed_back(session: Session, state: Floats, row: int) -> Floats | None:
     return ending.state if ending and ending.kind == PassageEnd.DEAD_CENTRE else None
 
 
-def _is_same(session: Session, state: Floats | None, first: Floats) -> bool:
-    """Whether a state at the first row is its assembly, or the other one on the same fold."""
-    if state is None:
-        return False
-    keys = [pose_keys(session.layout, s[:, None]) for s in (first, state)]
-    return bool(same_poses(keys[0], keys[1], tolerances.SAME_FOLD)[0, 0])
-
-
-def _told_apart(session: Session, states: list[Floats | None]) -> int | None:
+def _nearest_of(session: Session, states: list[Floats | None]) -> int | None:
     """Which of several assemblies at the first row `near` clearly means; None where it names none,
     or they are too near to each other for that."""
     if len(states) < 2 or not session.problem.assembly.near:

@@ -1,4 +1,14 @@
-"""The home drawing as an assembly: whether it closes, and its branch up to given inputs."""
+"""The home drawing as an assembly; the modes at the first row and their letters; the paths from
+the drawing to the rows.
+
+Letters follow the order of the wrapped coordinates, in joint order, then of the joints' places. An
+assembled drawing's own branch is among the modes even where the random starts miss it.
+
+The drawing stands where all inputs are zero, and whole turns away from there. Rows in its own turn
+come first, or in the turn next to it that has any; and of each kind the nearest row before the
+nearest on the other side of the drawing: its branch may end in one direction and reach the rows in
+the other.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +22,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, home_inputs, home_state
-from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.record import dataclass
 from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
 from mechkin_cli.session import Ask, RowInputs
 
@@ -33,7 +43,7 @@ def is_home_assembled(session: Session) -> bool:
     return bool(batch.good[0])
 
 
-def from_home(session: Session, path: Floats) -> Floats:
+def _from_home(session: Session, path: Floats) -> Floats:
     """How far inputs (inputs, rows) are from those of the drawing."""
     away: Floats = path - home_inputs(session.layout)[:, None]
     return away
@@ -41,16 +51,13 @@ def from_home(session: Session, path: Floats) -> Floats:
 
 def nearest_to_home(session: Session, path: Floats) -> int:
     """The row whose inputs (inputs, rows) are nearest to the drawing's."""
-    return int(np.argmin(np.max(np.abs(from_home(session, path)), axis=0))) if path.size else 0
+    return int(np.argmin(np.max(np.abs(_from_home(session, path)), axis=0))) if path.size else 0
 
 
 def follow_from_home(session: Session, inputs: Floats) -> Followed:
     """The branch of an assembled drawing, straight to `inputs` (inputs,)."""
     path = np.stack([home_inputs(session.layout), inputs], axis=1)
     return session.follow(path, home_state(session.layout))
-
-
-# What assemblies look like: joint coordinates, joint points and size.
 
 
 class Probe:
@@ -91,12 +98,6 @@ def probe_of(session: Session) -> Probe:
     return Probe(session)
 
 
-# The assembly modes at the first row with their letters.
-#
-# Letters follow the order of the wrapped coordinates, in joint order, then of the joints' places.
-# An assembled drawing's own branch is among the modes even where the random starts miss it.
-
-
 @dataclass(frozen=True)
 class NamedModes:
     """Assemblies as `found`, their coordinates (SI), joint points and letters (by number, in the
@@ -109,7 +110,7 @@ class NamedModes:
 
     @property
     def number(self) -> int:
-        """Number of assemblies."""
+        """Of assemblies."""
         return self.found.number
 
 
@@ -126,20 +127,25 @@ def name_modes(session: Session, inputs: Floats, *, thorough: bool = True) -> Na
             )
     coordinates, points = probe_of(session).read(inputs, found.states)
     known = thorough or found.complete
-    names = letters(session.problem.mechanism, coordinates, points) if known else {}
+    names = _letters(session.problem.mechanism, coordinates, points) if known else {}
     return NamedModes(found, coordinates, points, names)
 
 
-def letters(mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats) -> dict[int, str]:
+def _letters(
+    mechanism: Mechanism, coordinates: dict[str, Floats], points: Floats
+) -> dict[int, str]:
     """The name of each assembly, by its number, in the order of the names.
 
-    Assemblies that no coordinate tells apart, as of a platform on rods, follow their joint points
-    (points, 3, assemblies).
+    Assemblies with the same coordinates, as of a body on legs, follow their joint points (points,
+    3, assemblies).
     """
-    order = sorted(
-        range(points.shape[2]),
-        key=lambda i: (_key(mechanism, coordinates, i), _places(mechanism, points[:, :, i])),
-    )
+    grid = mechanism.box_diagonal() * tolerances.MODE_ORDER
+
+    def key(i: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        places = tuple(round(float(part)) for part in points[:, :, i].reshape(-1) / grid)
+        return _key(mechanism, coordinates, i), places
+
+    order = sorted(range(points.shape[2]), key=key)
     return {i: mode_name(rank) for rank, i in enumerate(order)}
 
 
@@ -154,11 +160,6 @@ def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> t
         part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
         key.append(half_turn if angle and part == -half_turn else part)
     return tuple(key)
-
-
-def _places(mechanism: Mechanism, points: Floats) -> tuple[int, ...]:
-    parts = points.reshape(-1) / (mechanism.box_diagonal() * tolerances.MODE_ORDER)
-    return tuple(round(float(part)) for part in parts)
 
 
 def mode_name(rank: int) -> str:
@@ -183,64 +184,35 @@ def wrapped(angle: float) -> float:
     return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
 
 
-# The ways from an assembled drawing to the rows: which row it is followed to.
-#
-# The drawing stands where all inputs are zero, and whole turns away from there. Rows in its own
-# turn come first, or in the turn next to it that has any; and of each kind the nearest row before
-# the nearest on the other side of the drawing: its branch may end in one direction and reach the
-# rows in the other.
-
-
-class WayFromHome(NamedTuple):
-    """What came of following the drawing to a row; `turned`: to whole turns of the inputs away."""
-
-    row: int
-    followed: Followed
-    turned: bool = False
-
-
-def ways_from_home(session: Session) -> list[WayFromHome]:
-    """The ways that were tried, at least one; only the last may come to its row."""
-    ways: list[WayFromHome] = []
-    for row, inputs, turned in _ways_from_home_places(session):
-        ways.append(WayFromHome(row, follow_from_home(session, inputs), turned))
-        if ways[-1].followed.end == TrackEnd.FINISHED:
-            break
-    return ways
-
-
-def _ways_from_home_places(session: Session) -> Iterator[tuple[int, Floats, bool]]:
-    """Rows to try, their inputs (inputs,), and whether these leave whole turns out."""
-    leading, tried = _leading(session), set()
+def rows_from_home(session: Session) -> Iterator[tuple[int, Followed, bool]]:
+    """Rows to try, at least one, with the drawing's branch followed there, and whether whole turns
+    of the inputs were left out."""
+    # inputs that place a row in a turn: those that follow no other
+    inputs = session.problem.motion.inputs
+    leading = np.zeros(session.inputs.values.shape[0], dtype=bool)
+    leading[: len(inputs)] = [not item.follows for item in inputs]
+    tried = set()
     for path, rows, turned in _paths(session, leading):
-        for row in _two_sides(from_home(session, path)[leading], rows):
-            inputs = np.ascontiguousarray(path[:, row])
-            if (row, inputs.tobytes()) not in tried:
-                tried.add((row, inputs.tobytes()))
-                yield row, inputs, turned
+        for row in _two_sides(_from_home(session, path)[leading], rows):
+            target = np.ascontiguousarray(path[:, row])
+            if (row, target.tobytes()) not in tried:
+                tried.add((row, target.tobytes()))
+                yield row, follow_from_home(session, target), turned
 
 
 def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[np.intp], bool]]:
-    """The inputs of all rows (inputs, rows) and which rows of them are meant: those in the first
-    turn that has any, all rows, and all without whole turns; one after the other is asked for."""
+    """The inputs of all rows (inputs, rows) and which of them to try: those in the first turn that
+    has any, all rows, and all without whole turns."""
     inputs = session.inputs
     turns = np.max(np.abs(inputs.whole[leading]), axis=0, initial=0.0)
     every = np.arange(turns.size)
-    # an assembly is the same whole turns of an input away; in the drawing's own turn what follows
-    # others goes all its way
+    # an assembly is the same whole turns of an input away; in the drawing's own turn inputs that
+    # follow others keep their whole turns
     if turns.size:
         least = float(turns.min())
         yield (inputs.reduced if least else inputs.values), np.flatnonzero(turns == least), False
     yield inputs.reduced, every, False
-    yield without_turns(session, inputs.reduced), every, True
-
-
-def _leading(session: Session) -> Bools:
-    """Which inputs (inputs,) place a row in a turn: those that follow no other."""
-    inputs = session.problem.motion.inputs
-    leading = np.zeros(session.inputs.values.shape[0], dtype=bool)
-    leading[: len(inputs)] = [not item.follows for item in inputs]
-    return leading
+    yield _without_turns(session, inputs.reduced), every, True
 
 
 def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
@@ -255,7 +227,7 @@ def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
     return [first, int(other[np.argmin(distance[other])])] if other.size else [first]
 
 
-def without_turns(session: Session, path: Floats) -> Floats:
+def _without_turns(session: Session, path: Floats) -> Floats:
     """Inputs (inputs, rows) without the whole turns after which the mechanism stands as drawn; as
     they are where a thread counts turns."""
     joints = session.problem.mechanism.joints

@@ -1,4 +1,4 @@
-"""The assembly nearest to given coordinates by Newton's method, where it is proven to be that.
+"""The assembly nearest to the coordinates that `near` names, and what to say where none is found.
 
 If all unknowns are named, Newton's method from them ends at an assembly x at a distance d. With
 the closing equations f, the Jacobian J there and a bound L of their second derivatives, two
@@ -62,28 +62,19 @@ def named_by(session: Session) -> NamedAssembly:
     left = {freedom for block in session.graph.blocks for freedom in block.unknowns}
     complete = True
     for name, value in session.problem.assembly.near.items():
-        place = _unknown(session, name)
-        if place is None:
+        joint_name, _, coordinate = name.rpartition(".")
+        joint = session.problem.mechanism.joints[joint_name]
+        edge = layout.edge_number.get(joint_name)
+        if edge is None:
             complete = False
             continue
-        freedom, unit = place
+        freedom = edge, joint.type.freedom_of[coordinate]
         number = layout.state(*freedom)
-        state[number] = value / unit
+        state[number] = value / joint.unit_of(coordinate, layout.length)
         if freedom in left:
             named.add(number)
             left.discard(freedom)
     return NamedAssembly(state, frozenset(named), complete and not left)
-
-
-def _unknown(session: Session, name: str) -> tuple[tuple[int, int], float] | None:
-    """The freedom (edge, freedom) of a coordinate in the tree and the SI value of its unit."""
-    joint_name, _, coordinate = name.rpartition(".")
-    joint = session.problem.mechanism.joints[joint_name]
-    edge = session.layout.edge_number.get(joint_name)
-    if edge is None:
-        return None
-    unit = joint.unit_of(coordinate, session.layout.length)
-    return (edge, joint.type.freedom_of[coordinate]), unit
 
 
 def newton_from(session: Session, inputs: Floats, named: NamedAssembly) -> NearestAssembly | None:
@@ -95,11 +86,11 @@ def newton_from(session: Session, inputs: Floats, named: NamedAssembly) -> Neare
     batch = session.close(inputs[:, None], start[:, None], Demand.CONDITION)
     if not batch.good[0] or batch.condition is None:
         return None
-    found, condition = batch.states[:, 0], float(batch.condition[0])
+    state, condition = batch.states[:, 0], float(batch.condition[0])
     if not condition < tolerances.SEARCH_CONDITION:
         return None
-    unique = _unique(session, found, condition) if named.complete else 0.0
-    return NearestAssembly(found, unique, condition)
+    unique = _unique(session, state, condition) if named.complete else 0.0
+    return NearestAssembly(state, unique, condition)
 
 
 def box_about(session: Session, named: NamedAssembly, radius: float) -> Within:
@@ -107,21 +98,14 @@ def box_about(session: Session, named: NamedAssembly, radius: float) -> Within:
     layout = session.layout
     size = layout.mechanism.box_diagonal() / layout.length
     radii = np.full(named.state.size, inf)
-    for number, slide in _unknown_states(layout):
-        if number in named.unknowns:
-            radii[number] = radius * size if slide else radius
-    return Within(named.state, radii)
-
-
-def _unknown_states(layout: Layout) -> list[tuple[int, bool]]:
-    """State and whether it is a length, of every unknown."""
-    found = []
     for block in layout.graph.blocks:
         for edge, freedom in block.unknowns:
             k, local = layout.carrier_of(edge, freedom)
             carrier = layout.carriers[k]
-            found.append((carrier.state + local, carrier.part.type.slides[local]))
-    return found
+            if carrier.state + local in named.unknowns:
+                slide = carrier.part.type.slides[local]
+                radii[carrier.state + local] = radius * size if slide else radius
+    return Within(named.state, radii)
 
 
 def _unique(session: Session, state: Floats, condition: float) -> float:
@@ -144,7 +128,7 @@ def _radius(unknowns: int, condition: float, reaches: list[float]) -> float:
 
 
 def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
-    """The way round a loop through its joints' points and along its slides, in parts of the size,
+    """The path round a loop through its joints' points and along its slides, in parts of the size,
     and by how much it grows at most for a ball of radius 1: no point of the loop is farther from
     any of its axes."""
     closing = layout.graph.closings[number]
@@ -170,8 +154,6 @@ def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
     return total / size, slides
 
 
-# What to say where a mechanism cannot be assembled: which loop does not close.
-
 LOOP_SHOWN = 12
 """Joints of a loop that are named one by one."""
 
@@ -179,7 +161,7 @@ LOOP_SHOWN = 12
 def nothing_found(
     session: Session, found: Assemblies, place: str = "at the first row"
 ) -> Diagnostic:
-    """What to say where no start closed: which loop it is."""
+    """Why a mechanism cannot be assembled: which loop does not close."""
     loop, name = _failed_loop(session, found), session.problem.mechanism.name
     hint = "check the dimensions, or start the sweep at another input"
     if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
@@ -223,9 +205,9 @@ def _failed_loop(session: Session, found: Assemblies) -> str:
     closings = graph.blocks[found.failed].closings
     for closing in (graph.closings[c] for c in closings):
         joints = closing.constraint.joints
-        ways = {sign: [e for e, s in closing.loop if e >= 0 and s == sign] for sign in (1, -1)}
-        # outward to the closing joint's first link, and back
-        there, back = ([graph.edges[e].joint.name for e in sorted(ways[s])] for s in (-1, 1))
+        # outward to the cut joint's first link, and back
+        paths = ([e for e, s in closing.loop if e >= 0 and s == sign] for sign in (-1, 1))
+        there, back = ([graph.edges[e].joint.name for e in sorted(path)] for path in paths)
         names.update(dict.fromkeys((*there, *joints, *reversed(back))))
     shown = [name for name in names if name in session.problem.mechanism.joints]
     more = f" and {len(shown) - LOOP_SHOWN} more" if len(shown) > LOOP_SHOWN else ""

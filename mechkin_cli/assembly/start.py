@@ -1,5 +1,5 @@
-"""The assembly at the first row: near given coordinates, a named mode, the home drawing, or
-nearest to it.
+"""The assembly at the first row: continued from another model's, near some coordinates, a named
+mode, the home drawing, or the nearest to it.
 """
 
 from __future__ import annotations
@@ -20,12 +20,8 @@ from mechkin_cli.assembly.distances import (
     is_unclear,
     unclear,
 )
-from mechkin_cli.assembly.home import (
-    NamedModes,
-    is_home_assembled,
-    name_modes,
-    ways_from_home,
-)
+from mechkin_cli.assembly.fold import judged_off_fold
+from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
 from mechkin_cli.assembly.near import (
     NearestAssembly,
     box_about,
@@ -42,13 +38,14 @@ from mechkin_cli.search import (
     Assemblies,
     all_assemblies,
     is_in_reach,
-    pose_keys,
-    same_poses,
+    pose_number,
     with_assemblies,
 )
 from mechkin_cli.session import (
+    BranchFold,
     Continued,
     ContinuedFrom,
+    find_limit,
     input_numbers,
     input_text,
     step_limits,
@@ -62,14 +59,11 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# How far assemblies are from what `near` names and from the drawing, and what to say of it.
-
-
 NEAR = "near"
-"""Stands for the letter of an assembly that was found without all others."""
+"""In place of the letter of an assembly that was found without all others."""
 
 HOME = "home"
-"""The same for an assembled drawing."""
+"""In place of the letter of an assembled drawing."""
 
 MAY_BE_RIGID = (
     "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
@@ -83,7 +77,9 @@ def choose_start(session: Session) -> AssemblyStart:
     continued = continued_start(session)
     if continued is not None:
         return _continued(continued)
-    return _judged(session, _choose_start(session))
+    start = _choose_start(session)
+    by_mode = start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None
+    return start if by_mode else judged_off_fold(session, start)
 
 
 @remembered
@@ -91,33 +87,33 @@ def continued_start(session: Session) -> Continued | None:
     """The first assembly of a session that continues another's; None where it is to be chosen:
     nothing is continued, the base has no first assembly, or another structure."""
     first = session.first
-    return brought(session, first) if isinstance(first, ContinuedFrom) else first
+    return _brought(session, first) if isinstance(first, ContinuedFrom) else first
 
 
-def brought(session: Session, way: ContinuedFrom) -> Continued | None:
-    """The first assembly of the base brought to a session that was built anew, along the straight
-    line in the parameters: the sessions between are built one by one, and the steps are those of
-    every continuation (docs/numerics.md, Variants)."""
-    base = way.base
+def _brought(session: Session, line: ContinuedFrom) -> Continued | None:
+    """The first assembly of the base brought to a session with a plan of its own, along the
+    straight line in the parameters: the sessions between are built one by one, and the steps are
+    those of every continuation (docs/numerics.md, Variants)."""
+    base = line.base
     start = choose_start(base)
     if start.state is None or structure_of(session.graph) != structure_of(base.graph):
         return None
     rows = session.problem.motion.rows
     row = start.row if rows == base.problem.motion.rows else 0
     first, last = base.inputs.values[:, start.row], session.inputs.values[:, row]
-    return Continued(_end_of_line(session, way, start.state, first, last), row)
+    return Continued(_end_of_line(session, line, start.state, first, last), row)
 
 
 def _end_of_line(
-    session: Session, way: ContinuedFrom, state: Floats, first: Floats, last: Floats
+    session: Session, line: ContinuedFrom, state: Floats, first: Floats, last: Floats
 ) -> Floats | None:
     """States at the end of the line from inputs to inputs; None where the branch ends before."""
-    plans = {0.0: way.base.plan, 1.0: session.plan}
+    plans = {0.0: line.base.plan, 1.0: session.plan}
     structure, unit = structure_of(session.graph), session.layout.length
 
     def plan(place: float) -> Plan:
         if place not in plans:
-            between = way.between(place)
+            between = line.between(place)
             if structure_of(between.graph) != structure:
                 raise MechkinError("another structure on the way")
             problem = between.problem
@@ -135,14 +131,6 @@ def _end_of_line(
     except MechkinError:
         return None  # what the file says does not hold somewhere on the way
     return None if node is None else np.array(node.state)
-
-
-def _judged(session: Session, start: AssemblyStart) -> AssemblyStart:
-    if start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None:
-        return start
-    from mechkin_cli.assembly.fold import judged_off_fold
-
-    return judged_off_fold(session, start)
 
 
 def _continued(continued: Continued) -> AssemblyStart:
@@ -168,7 +156,7 @@ def _choose_start(session: Session) -> AssemblyStart:
     if wanted.near and wanted.mode is None:
         start = _from_near(session, path[:, 0])
         if start is not None:
-            return _told_if_far(session, path[:, 0], start)
+            return _noted_if_far(session, path[:, 0], start)
     modes = name_modes(session, path[:, 0], thorough=wanted.mode is not None)
     if modes.number == 0:
         return AssemblyStart(None, "", "", [nothing_found(session, modes.found)])
@@ -178,12 +166,12 @@ def _choose_start(session: Session) -> AssemblyStart:
     if not wanted.near:
         return _nearest(modes, home, home, "nearest to home")
     start = _nearest(modes, distances_near(session.problem, modes.coordinates), home, "near")
-    return _told_if_far(session, path[:, 0], start)
+    return _noted_if_far(session, path[:, 0], start)
 
 
 def mode_letter(session: Session, start: AssemblyStart, *, thorough: bool = True) -> str:
-    """The letter of an assembly at the first row, by a search if it is not known yet; its own name
-    where no letter's branch has it, or where only a `thorough` search tells all modes."""
+    """The letter of an assembly at the first row, by a search if it is not known yet; `near` or
+    `home` where it is on no letter's branch, or where only a `thorough` search finds all modes."""
     if start.mode not in (NEAR, HOME) or start.state is None:
         return start.mode
     first = session.inputs.reduced[:, 0]
@@ -193,9 +181,8 @@ def mode_letter(session: Session, start: AssemblyStart, *, thorough: bool = True
     modes = name_modes(session, first, thorough=thorough)
     if not modes.letters:
         return start.mode
-    keys = pose_keys(session.layout, modes.found.states)
-    same = same_poses(keys, pose_keys(session.layout, state[:, None]))[:, 0]
-    return modes.letters[int(np.argmax(same))] if same.any() else start.mode
+    number = pose_number(session.layout, modes.found.states, state)
+    return start.mode if number is None else modes.letters[number]
 
 
 def state_at_first_row(session: Session, start: AssemblyStart) -> Floats | None:
@@ -223,15 +210,15 @@ def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
             f"within {newton.unique:.2g}"
         )
         return AssemblyStart(newton.state, NEAR, how, off=distance, condition=newton.condition)
-    # what is named exactly is named to rounding
+    # coordinates that are exact are so but for rounding
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
-    found = all_assemblies(session, inputs, box_about(session, named, radius), thorough=False)
-    return _nearest_about(session, inputs, newton, found, radius)
+    inside = all_assemblies(session, inputs, box_about(session, named, radius), thorough=False)
+    return _nearest_about(session, inputs, newton, inside, radius)
 
 
-def _told_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> AssemblyStart:
+def _noted_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> AssemblyStart:
     if start.state is None or start.off <= tolerances.NEAR_FAR:
         # no coordinate is off by more than all together
         return start
@@ -262,16 +249,18 @@ def _nearest_about(
 
 def _from_home(session: Session) -> AssemblyStart:
     """Followed from the drawing to the row whose inputs are nearest to it, or on its other side."""
-    ways = ways_from_home(session)
-    for way in ways:
-        if way.followed.end == TrackEnd.FINISHED:
-            words = "followed from the home drawing" + (", whole turns away" if way.turned else "")
-            return AssemblyStart(way.followed.state, HOME, words, row=way.row)
-    return _ends_before_rows(session, ways[0].followed)
+    first = None
+    for row, followed, turned in rows_from_home(session):
+        if followed.end == TrackEnd.FINISHED:
+            how = "followed from the home drawing" + (", whole turns away" if turned else "")
+            return AssemblyStart(followed.state, HOME, how, row=row)
+        first = first or followed
+    assert first is not None
+    return _ends_before_rows(session, first)
 
 
 def _ends_before_rows(session: Session, followed: Followed) -> AssemblyStart:
-    """Why no row has the assembly of the drawing: how the way to the nearest one ended."""
+    """Why no row has the assembly of the drawing: how the path to the nearest one ended."""
     places = input_numbers(session.problem, session.layout, followed.inputs)
     rigid = f"; {MAY_BE_RIGID}" if session.is_redundant else ""
     diagnostic = Diagnostic(
@@ -282,10 +271,7 @@ def _ends_before_rows(session: Session, followed: Followed) -> AssemblyStart:
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
         numbers=places,
     )
-    from mechkin_cli.session import BranchFold, find_limit
-
-    limit = find_limit(session, followed)
-    folds = isinstance(limit, BranchFold)
+    folds = isinstance(find_limit(session, followed), BranchFold)
     status = Status.beyond_dead_centre if folds else Status.branch_lost
     stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
     return AssemblyStart(None, HOME, "", [diagnostic], status, stuck=stuck)
@@ -309,15 +295,13 @@ def _nearest(
     modes: NamedModes, distances: list[float], home: list[float], how: str
 ) -> AssemblyStart:
     order = in_order(distances, home)
-    best = order[0]
+    best, second = order[0], order[1] if len(order) > 1 else None
     notes = []
-    if len(order) > 1:
-        second = order[1]
-        if is_unclear(distances[best], distances[second]):
-            both = "two assemblies"
-            if modes.letters:
-                both = f"modes {modes.letters[best]} and {modes.letters[second]}"
-            notes.append(unclear(both, (distances[best], distances[second])))
-    words = f"{how}, 1 of {modes.number} found"
+    if second is not None and is_unclear(distances[best], distances[second]):
+        both = "two assemblies"
+        if modes.letters:
+            both = f"modes {modes.letters[best]} and {modes.letters[second]}"
+        notes.append(unclear(both, (distances[best], distances[second])))
+    how = f"{how}, 1 of {modes.number} found"
     state, condition = modes.found.states[:, best], float(modes.found.condition[best])
-    return AssemblyStart(state, modes.letters.get(best, NEAR), words, notes, condition=condition)
+    return AssemblyStart(state, modes.letters.get(best, NEAR), how, notes, condition=condition)

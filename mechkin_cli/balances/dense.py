@@ -1,12 +1,13 @@
-"""What acts on the links at one row beside their pairs: loads, gravity and inertia.
+"""What acts on the links at one row beside their pairs, and how the links move there, in SI.
 
-Wrenches are (force, moment about the ground origin), in N and N m. Newton and Euler: the inertia
-force -m a through the mass centre and the couple -(I alpha + omega x I omega).
+Loads, gravity and inertia (`borne_wrenches`): wrenches are (force, moment about the ground origin),
+in N and N m. Newton and Euler: the inertia force -m a through the mass centre and the couple
+-(I alpha + omega x I omega). Poses, velocities and accelerations are those of `row_motion`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,16 +15,17 @@ import numpy as np
 from mechkin_cli.derived import AXES, directions
 from mechkin_cli.mechanism import (
     ELEMENTARY,
+    GROUND,
     GROUND_NAME,
     ZERO,
     Amount,
     Attached,
     Damper,
+    Frame,
     Joint,
     JointLoad,
     LinkLoad,
     Load,
-    Mechanism,
     RigidLink,
     Spring,
     Tensor,
@@ -81,8 +83,9 @@ def coordinate_wrench(joint: Joint, coordinate: str, motion: RowMotion) -> Wrenc
 
 
 def _axes(joint: Joint, motion: RowMotion) -> list[Vector]:
-    """The direction of every freedom of a pair, as it is now."""
-    found: list[Vector | None] = []
+    """The direction of every freedom of a pair, as it is now; a turn that rides on neither link is
+    square to those before and behind it."""
+    known: list[Vector | None] = []
     for step, part in zip(joint.type.steps, joint.parts, strict=True):
         count = len(ELEMENTARY[step.letter].freedoms)
         if step.between:
@@ -91,16 +94,17 @@ def _axes(joint: Joint, motion: RowMotion) -> list[Vector]:
             axis = motion.direction(Attached(joint.first, part.before.z))
         else:
             axis = motion.direction(joint.drawn(step.along))
-        found += [axis] * count
-    return [_square(found[k - 1], found[k + 1]) if a is None else a for k, a in enumerate(found)]
-
-
-def _square(before: Vector | None, behind: Vector | None) -> Vector:
-    """The axis of a turn that rides on neither link."""
-    assert before is not None
-    assert behind is not None
-    axis = cross(before, behind)
-    return scale(1.0 / norm(axis), axis)
+        known += [axis] * count
+    axes = []
+    for k, axis in enumerate(known):
+        if axis is None:
+            before, behind = known[k - 1], known[k + 1]
+            assert before is not None
+            assert behind is not None
+            square = cross(before, behind)
+            axis = scale(1.0 / norm(square), square)
+        axes.append(axis)
+    return axes
 
 
 def _working_on(axis: Vector, others: Sequence[Vector]) -> Vector:
@@ -115,24 +119,23 @@ def _working_on(axis: Vector, others: Sequence[Vector]) -> Vector:
 def borne_wrenches(result: Result, motion: RowMotion, row: int) -> dict[str, Wrench]:
     """The sum of loads, gravity and inertia on every moving link at a row (from 0), in SI."""
     mechanism = result.problem.mechanism
-    found = {name: Wrench() for name in (GROUND_NAME, *mechanism.links)}
+    wrenches = {name: Wrench() for name in (GROUND_NAME, *mechanism.links)}
     for name, link in mechanism.links.items():
         if name != GROUND_NAME:
-            found[name] = _own(link, motion.links[name], mechanism.gravity)
+            wrenches[name] = _gravity_and_inertia(link, motion[name], mechanism.gravity)
     acting = _Acting(result, motion, row)
     for load in mechanism.loads:
         for name, wrench in acting.on_links(load):
-            found[name] = found[name].plus(wrench)
-    return found
+            wrenches[name] = wrenches[name].plus(wrench)
+    return wrenches
 
 
-def _own(link: RigidLink, motion: RowLinkMotion, gravity: Vector) -> Wrench:
-    """Gravity and inertia of a link."""
+def _gravity_and_inertia(link: RigidLink, motion: RowLinkMotion, gravity: Vector) -> Wrench:
     centre = motion.point(link.center_of_mass)
     felt = subtract(gravity, motion.acceleration_of(link.center_of_mass))
-    omega, alpha = motion.drawn(motion.omega), motion.drawn(motion.alpha)
+    omega, alpha = (motion.frame.components(a) for a in (motion.omega, motion.alpha))
     gyroscopic = cross(omega, _times(link.inertia, omega))
-    couple = motion.direction(add(_times(link.inertia, alpha), gyroscopic))
+    couple = motion.frame.vector(add(_times(link.inertia, alpha), gyroscopic))
     return force_at(centre, scale(link.mass, felt)).plus(Wrench(ZERO, scale(-1.0, couple)))
 
 
@@ -146,16 +149,14 @@ class _Acting:
 
     def __init__(self, result: Result, motion: RowMotion, row: int) -> None:
         self.joints = result.problem.mechanism.joints
-        self.motion = motion
-        self.result = result
-        self.row = row
+        self.result, self.motion, self.row = result, motion, row
         laws = result.problem.load_laws
         self.laws: Sequence[float] = [
             float(law_value(law, result.quantity, result.rows)[row]) for law in laws
         ]
 
     def on_links(self, load: Load) -> Iterator[tuple[str, Wrench]]:
-        """What a load exerts, link by link."""
+        """The wrenches of a load, link by link."""
         if isinstance(load, LinkLoad):
             yield load.link, self._on_link(load)
         elif isinstance(load, JointLoad):
@@ -165,7 +166,9 @@ class _Acting:
         else:
             assert load.joint is not None
             assert load.coordinate is not None
-            resisting = -self._resistance(load, *self._coordinate(load))
+            name = f"{load.joint}.{load.coordinate}"
+            rate = self._number(f"{name}_dot") if isinstance(load, Damper) else 0.0
+            resisting = -self._resistance(load, self._number(name), rate)
             yield from self._on_joint(load.joint, load.coordinate, resisting)
 
     def _number(self, name: str) -> float:
@@ -177,9 +180,9 @@ class _Acting:
         return self.laws[amount.number] if isinstance(amount, Varying) else amount
 
     def _on_link(self, load: LinkLoad) -> Wrench:
-        link = self.motion.links[load.link]
+        link = self.motion[load.link]
         x, y, z = (self._amount(amount) for amount in load.value)
-        value = link.direction((x, y, z)) if load.axes == "link" else (x, y, z)
+        value = link.frame.vector((x, y, z)) if load.axes == "link" else (x, y, z)
         if load.kind == "torque":
             return Wrench(ZERO, value)
         return force_at(link.point(load.point), value)
@@ -189,12 +192,6 @@ class _Acting:
         wrench = coordinate_wrench(joint, coordinate, self.motion).times(value)
         yield joint.second, wrench
         yield joint.first, wrench.times(-1.0)
-
-    def _coordinate(self, load: Spring | Damper) -> tuple[float, float]:
-        """Value and rate of the coordinate on which a spring or damper acts."""
-        name = f"{load.joint}.{load.coordinate}"
-        rate = self._number(f"{name}_dot") if isinstance(load, Damper) else 0.0
-        return self._number(name), rate
 
     @staticmethod
     def _resistance(load: Spring | Damper, stretch: float, rate: float) -> float:
@@ -211,14 +208,12 @@ class _Acting:
         line = subtract(second, first)
         length = norm(line)
         along = scale(1.0 / length, line)
-        speeds = [self.motion.links[end.link].velocity_of(end.vector) for end in ends]
+        speeds = [self.motion[end.link].velocity_of(end.vector) for end in ends]
         rate = dot(along, subtract(speeds[1], speeds[0]))
         pull = scale(self._resistance(load, length, rate), along)
         yield ends[0].link, force_at(first, pull)
         yield ends[1].link, force_at(second, scale(-1.0, pull))
 
-
-# Where the links are at one row, and how they move: poses, velocities and accelerations in SI.
 
 _ORDERS = (("place", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERATION))
 
@@ -226,34 +221,20 @@ _ORDERS = (("place", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERAT
 class RowLinkMotion(NamedTuple):
     """A link at one row, in ground axes (m, rad, s).
 
-    `axes` are the ground axes as drawn on it; `reference` is a point of it as drawn, which is now
-    at `place` and has `velocity` and `acceleration`.
+    `reference` is a point of it as drawn, which is now at the origin of `frame`, whose axes are the
+    ground axes as drawn on the link, and has `velocity` and `acceleration`.
     """
 
-    axes: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    frame: Frame = GROUND
     reference: Vector = ZERO
-    place: Vector = ZERO
     velocity: Vector = ZERO
     acceleration: Vector = ZERO
     omega: Vector = ZERO
     alpha: Vector = ZERO
 
-    def direction(self, drawn: Vector) -> Vector:
-        """Where a direction drawn on the link points now."""
-        x, y, z = self.axes
-        return add(add(scale(drawn[0], x), scale(drawn[1], y)), scale(drawn[2], z))
-
-    def drawn(self, direction: Vector) -> Vector:
-        """A direction of now as drawn on the link."""
-        return (
-            dot(self.axes[0], direction),
-            dot(self.axes[1], direction),
-            dot(self.axes[2], direction),
-        )
-
     def point(self, drawn: Vector) -> Vector:
         """Where a point drawn on the link is now."""
-        return add(self.place, self._arm(drawn))
+        return add(self.frame.o, self._arm(drawn))
 
     def velocity_of(self, drawn: Vector) -> Vector:
         """Velocity of a point drawn on the link."""
@@ -266,21 +247,19 @@ class RowLinkMotion(NamedTuple):
         return add(self.acceleration, turning)
 
     def _arm(self, drawn: Vector) -> Vector:
-        return self.direction(subtract(drawn, self.reference))
+        return self.frame.vector(subtract(drawn, self.reference))
 
 
-class RowMotion(NamedTuple):
-    """All links at one row."""
-
-    links: Mapping[str, RowLinkMotion]
+class RowMotion(dict[str, RowLinkMotion]):
+    """All links at one row, by name."""
 
     def point(self, at: Attached) -> Vector:
         """Where a point of a link is."""
-        return self.links[at.link].point(at.vector)
+        return self[at.link].point(at.vector)
 
     def direction(self, at: Attached) -> Vector:
         """Where a direction of a link points."""
-        return self.links[at.link].direction(at.vector)
+        return self[at.link].frame.vector(at.vector)
 
 
 def row_motion(result: Result, row: int) -> RowMotion:
@@ -288,22 +267,21 @@ def row_motion(result: Result, row: int) -> RowMotion:
     mechanism = result.problem.mechanism
     moving = [name for name in mechanism.links if name != GROUND_NAME]
     wanted = [quantity for name in moving for quantity in _read(name)]
-    found = result.evaluated(wanted)
+    columns = result.evaluated(wanted)
 
     def vector(name: str) -> Vector:
-        x, y, z = (float(component[row]) for component in found[name])
+        x, y, z = (float(component[row]) for component in columns[name])
         return (x, y, z)
 
-    motions = {name: _motion(mechanism, name, vector) for name in moving}
-    return RowMotion({GROUND_NAME: RowLinkMotion(), **motions})
-
-
-def _motion(mechanism: Mechanism, name: str, vector: Callable[[str], Vector]) -> RowLinkMotion:
-    x, y, z = (vector(f"{name} {axis}") for axis in AXES)
-    at = [vector(f"{name} {word}") for word, _ in _ORDERS]
-    reference = reference_point(mechanism, name).vector
-    turning = (vector(f"{name}.omega"), vector(f"{name}.alpha"))
-    return RowLinkMotion((x, y, z), reference, at[0], at[1], at[2], *turning)
+    motion = RowMotion({GROUND_NAME: RowLinkMotion()})
+    for name in moving:
+        x, y, z = (vector(f"{name} {axis}") for axis in AXES)
+        place, velocity, acceleration = (vector(f"{name} {word}") for word, _ in _ORDERS)
+        turning = (vector(f"{name}.omega"), vector(f"{name}.alpha"))
+        reference = reference_point(mechanism, name).vector
+        frame = Frame(x, y, z, place)
+        motion[name] = RowLinkMotion(frame, reference, velocity, acceleration, *turning)
+    return motion
 
 
 def _read(name: str) -> Iterator[Wanted]:

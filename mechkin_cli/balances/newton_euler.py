@@ -1,8 +1,19 @@
-"""Coefficients and right side of the dense system, and its solution.
+"""The dense system of reactions: unknowns and conditions of each pair, coefficients and right side,
+its solution, and two tables of it.
 
-Rows: force and moment of every moving link, then the pairs' conditions. Columns: all components of
-all reactions, then the efforts. Rows by columns times unknowns equal the right side: what pairs and
-drives exert on a link is the opposite of loads, gravity and inertia.
+Pairs, as the dissertation on successive screws writes them (sections 3.4 to 3.14): a pair on one
+axis A has a force F and a moment M about the origin with F.A = 0 and (M - O x F).A = 0; what it can
+take along the axis, FA, or about it, MA, stands apart; a screw takes FA with MA = -p FA. A ball has
+three forces through its centre. Any other pair has six components, and a condition for each of its
+freedoms.
+
+System: rows are force and moment of every moving link, then the pairs' conditions; columns all
+components of all reactions, then the efforts. Rows by columns times unknowns equal the right side:
+what pairs and drives exert on a link is the opposite of loads, gravity and inertia.
+
+Tables: numbers are in the file's units, so that an unknown in its unit times a coefficient has the
+unit of its equation; moments are about the ground origin. The system's own solution stands beside
+the unknowns where it is square: the reactions of the other tables by another method.
 """
 
 from __future__ import annotations
@@ -32,15 +43,6 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep import Result
     from mechkin_cli.tables import CoefficientsLayout
     from mechkin_cli.units import UnitSystem
-
-
-# The unknowns and conditions with which each pair enters the dense system.
-#
-# As the dissertation on successive screws writes them (sections 3.4 to 3.14): a pair on one axis A
-# has a force F and a moment M about the origin with F.A = 0 and (M - O x F).A = 0; what it can take
-# along the axis, FA, or about it, MA, stands apart; a screw takes FA with MA = -p FA. A ball has
-# three forces through its centre. Any other pair has six components, and a condition for each of
-# its freedoms.
 
 UNIT_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _XYZ = "xyz"
@@ -77,28 +79,30 @@ class ForceCondition(NamedTuple):
         return total
 
 
-class Pair(NamedTuple):
-    """What one pair brings."""
-
-    unknowns: tuple[Unknown, ...]
-    conditions: tuple[ForceCondition, ...]
-
+PairTerms = tuple[list[Unknown], list[ForceCondition]]
+"""The unknowns and the conditions of one pair."""
 
 Along = tuple[tuple[str, Attached], tuple[str, Attached]]
 """Two named directions of the forces of a ball; the third is their cross product."""
 
 
-def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> Pair:
+def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> PairTerms:
     """Unknowns and conditions of a pair; `along` by the names of balls."""
     if joint.type.is_free:
-        return Pair((), ())
+        return [], []
     if joint.type.is_guide:
         return _guide(joint, motion)
+    slides = [
+        _no_force(joint, motion.direction(at), f"along slide{number}")
+        for number, at in _numbered(joint.free_slides)
+    ]
     if joint.type.is_oriented:
-        return _ball(joint, motion, along.get(joint.name))
-    slides = [_no_force(joint, motion.direction(at), n) for n, at in _named(joint.free_slides)]
-    turns = [_no_moment(joint, motion, at, n) for n, at in _named(joint.free_turns or ())]
-    return Pair((*_components(joint),), (*slides, *turns))
+        return _ball(joint, motion, along.get(joint.name)), slides
+    turns = [
+        _no_moment(joint, motion, motion.direction(at), f"about turn{number}")
+        for number, at in _numbered(joint.free_turns or ())
+    ]
+    return _components(joint), [*slides, *turns]
 
 
 def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> Unknown:
@@ -109,18 +113,12 @@ def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> Unkno
     return Unknown(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
 
 
-def _guide(joint: Joint, motion: RowMotion) -> Pair:
+def _guide(joint: Joint, motion: RowMotion) -> PairTerms:
     axis, point = motion.direction(joint.axis), motion.point(joint.point)
-    conditions = (
-        _no_force(joint, axis, ""),
-        ForceCondition(
-            f"{joint.name}: no moment in M about the axis",
-            joint.name,
-            MOMENT,
-            scale(-1.0, cross(axis, point)),
-            axis,
-        ),
-    )
+    conditions = [
+        _no_force(joint, axis, "along the axis"),
+        _no_moment(joint, motion, axis, "about the axis"),
+    ]
     free = joint.type.free
     apart = []
     if joint.type.is_threaded:
@@ -132,10 +130,10 @@ def _guide(joint: Joint, motion: RowMotion) -> Pair:
             apart.append(Unknown(f"{joint.name}.FA", joint.name, FORCE, force, 2))
         if not free["turn"]:
             apart.append(Unknown(f"{joint.name}.MA", joint.name, MOMENT, Wrench(ZERO, axis), 2))
-    return Pair((*_components(joint), *apart), conditions)
+    return [*_components(joint), *apart], conditions
 
 
-def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> Pair:
+def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> list[Unknown]:
     point = motion.point(joint.point)
     directions: Sequence[Vector] = UNIT_AXES
     names: Sequence[str] = _XYZ
@@ -144,52 +142,45 @@ def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> Pair:
         directions = (one, two, cross(one, two))
         first, second = (name for name, _ in along)
         names = (f" {first}", f" {second}", f" {first} x {second}")
-    forces = tuple(
+    return [
         Unknown(f"{joint.name}.F{name}", joint.name, FORCE, force_at(point, direction), 3)
         for name, direction in zip(names, directions, strict=True)
-    )
-    slides = [_no_force(joint, motion.direction(at), n) for n, at in _named(joint.free_slides)]
-    return Pair(forces, (*slides,))
+    ]
 
 
-def _components(joint: Joint) -> Iterator[Unknown]:
-    for letter, axis in zip(_XYZ, UNIT_AXES, strict=True):
-        yield Unknown(f"{joint.name}.F{letter}", joint.name, FORCE, Wrench(axis, ZERO), 0)
-    for letter, axis in zip(_XYZ, UNIT_AXES, strict=True):
-        yield Unknown(f"{joint.name}.M{letter}", joint.name, MOMENT, Wrench(ZERO, axis), 1)
+def _components(joint: Joint) -> list[Unknown]:
+    name, named = joint.name, list(zip(_XYZ, UNIT_AXES, strict=True))
+    forces = [Unknown(f"{name}.F{xyz}", name, FORCE, Wrench(axis, ZERO), 0) for xyz, axis in named]
+    moments = [
+        Unknown(f"{name}.M{xyz}", name, MOMENT, Wrench(ZERO, axis), 1) for xyz, axis in named
+    ]
+    return [*forces, *moments]
 
 
-def _named(free: Sequence[Attached]) -> Iterator[tuple[str, Attached]]:
+def _numbered(free: Sequence[Attached]) -> Iterator[tuple[str, Attached]]:
     """Directions with a number where there are several."""
     for number, at in enumerate(free, start=1):
         yield (f" {number}" if len(free) > 1 else ""), at
 
 
-def _no_force(joint: Joint, axis: Vector, number: str) -> ForceCondition:
-    where = "along the axis" if joint.type.is_guide else f"along slide{number}"
+def _no_force(joint: Joint, axis: Vector, where: str) -> ForceCondition:
     return ForceCondition(f"{joint.name}: no force in F {where}", joint.name, FORCE, axis, ZERO)
 
 
-def _no_moment(joint: Joint, motion: RowMotion, at: Attached, number: str) -> ForceCondition:
-    axis, point = motion.direction(at), motion.point(joint.point)
-    name = f"{joint.name}: no moment in M about turn{number}"
-    return ForceCondition(name, joint.name, MOMENT, scale(-1.0, cross(axis, point)), axis)
+def _no_moment(joint: Joint, motion: RowMotion, axis: Vector, where: str) -> ForceCondition:
+    name = f"{joint.name}: no moment in M {where}"
+    arm = scale(-1.0, cross(axis, motion.point(joint.point)))
+    return ForceCondition(name, joint.name, MOMENT, arm, axis)
 
 
 Matrix = list[list[float]]
 
 
-class Equation(NamedTuple):
-    """One row: its name and dimension."""
-
-    name: str
-    dimension: Dimension
-
-
 class DenseSystem(NamedTuple):
-    """`coefficients` (equations, unknowns) and `right` (equations,), in SI."""
+    """`coefficients` (equations, unknowns) and `right` (equations,), in SI; `equations` by name and
+    dimension."""
 
-    equations: tuple[Equation, ...]
+    equations: tuple[tuple[str, Dimension], ...]
     unknowns: tuple[Unknown, ...]
     coefficients: Matrix
     right: list[float]
@@ -206,12 +197,12 @@ def dense_system(
     # coordinate
     word = "drive" if drives is not None and drives.constraints else "effort"
     inputs = [effort(mechanism.joints[j], c, motion, word) for j, c in result.problem.acting]
-    terms = [*(unknown for pair in pairs for unknown in pair.unknowns), *inputs]
+    terms = [*(unknown for of_pair, _ in pairs for unknown in of_pair), *inputs]
     unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))
-    conditions = [condition for pair in pairs for condition in pair.conditions]
+    conditions = [condition for _, of_pair in pairs for condition in of_pair]
     ends = {joint.name: (joint.first, joint.second) for joint in mechanism.joints.values()}
     borne = borne_wrenches(result, motion, row)
-    equations: list[Equation] = []
+    equations: list[tuple[str, Dimension]] = []
     coefficients: Matrix = []
     right: list[float] = []
     for name in mechanism.links:
@@ -222,27 +213,24 @@ def dense_system(
         ]
         for part, dimension in (("force", FORCE), ("moment", MOMENT)):
             for k, letter in enumerate("xyz"):
-                equations.append(Equation(f"{name}: {part} {letter}", dimension))
-                row_of = [
-                    s * getattr(u.wrench, part)[k] for s, u in zip(signs, unknowns, strict=True)
-                ]
-                coefficients.append(row_of)
+                equations.append((f"{name}: {part} {letter}", dimension))
+                coefficients.append(
+                    [s * getattr(u.wrench, part)[k] for s, u in zip(signs, unknowns, strict=True)]
+                )
                 right.append(-getattr(borne[name], part)[k])
     for condition in conditions:
-        equations.append(Equation(condition.name, condition.dimension))
-        coefficients.append([_in_condition(condition, unknown) for unknown in unknowns])
+        equations.append((condition.name, condition.dimension))
+        # of F and M of its pair, not of what stands apart, nor of its drive
+        coefficients.append(
+            [
+                condition.coefficient(unknown.wrench)
+                if unknown.joint == condition.joint and unknown.rank in (0, 1, 3)
+                else 0.0
+                for unknown in unknowns
+            ]
+        )
         right.append(0.0)
     return DenseSystem(tuple(equations), unknowns, coefficients, right)
-
-
-def _in_condition(condition: ForceCondition, unknown: Unknown) -> float:
-    """Conditions hold for F and M of their pair, not for what stands apart, nor for its drive."""
-    if unknown.joint != condition.joint or unknown.rank not in _OF_CONDITIONS:
-        return 0.0
-    return condition.coefficient(unknown.wrench)
-
-
-_OF_CONDITIONS = (0, 1, 3)
 
 
 def solved(system: DenseSystem) -> list[float] | None:
@@ -251,7 +239,11 @@ def solved(system: DenseSystem) -> list[float] | None:
     size = len(system.unknowns)
     if len(system.equations) != size:
         return None
-    rows = [_scaled([*c, r]) for c, r in zip(system.coefficients, system.right, strict=True)]
+    rows = []
+    for coefficients, right in zip(system.coefficients, system.right, strict=True):
+        # the largest coefficient is 1, so that pivots compare
+        largest = max(abs(value) for value in coefficients) or 1.0
+        rows.append([value / largest for value in (*coefficients, right)])
     for k in range(size):
         pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
         if abs(rows[pivot][k]) <= DENSE_PIVOT:
@@ -268,19 +260,6 @@ def solved(system: DenseSystem) -> list[float] | None:
             rest -= rows[k][j] * values[j]
         values[k] = rest / rows[k][k]
     return values
-
-
-def _scaled(row: list[float]) -> list[float]:
-    """An equation with its largest coefficient 1, so that pivots compare."""
-    largest = max(abs(value) for value in row[:-1]) or 1.0
-    return [value / largest for value in row]
-
-
-# The dense system of reactions as two tables: coefficients and right side, unknowns and values.
-#
-# Numbers are in the file's units, so that an unknown in its unit times a coefficient has the unit
-# of its equation; moments are about the ground origin. What the system's own solution gives stands
-# beside the unknowns where it is square: the reactions of the other tables, found another way.
 
 
 def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Columns, Columns]:
@@ -301,21 +280,16 @@ def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Colu
     }
     system = dense_system(result, row, along)
     name, of_unknowns = layout.names
-    title = f"{layout.title}; {_counts(layout, system, result)}"
+    size = f"{len(system.equations)} equations in {len(system.unknowns)} unknowns"
+    if layout.counted is not None:
+        size += f" (the source counts {layout.counted})"
+    sizes = " and ".join(str(len(block.unknowns)) for block in result.graph.blocks)
+    solved_with = f"with {sizes} unknowns" if sizes else "link by link"
+    title = f"{layout.title}; row {layout.row}: {size}, solved here {solved_with}"
     coefficients = Columns(name, title, _coefficients(system, result.units), of_rows=False)
     title = f"{layout.title}; unknowns at row {layout.row}"
     unknowns = Columns(of_unknowns, title, _unknowns(system, result.units), of_rows=False)
     return coefficients, unknowns
-
-
-def _counts(layout: CoefficientsLayout, system: DenseSystem, result: Result) -> str:
-    """Row, size, the source's count and the sizes really solved."""
-    text = f"{len(system.equations)} equations in {len(system.unknowns)} unknowns"
-    if layout.counted is not None:
-        text += f" (the source counts {layout.counted})"
-    sizes = " and ".join(str(len(block.unknowns)) for block in result.graph.blocks)
-    solved_in = f", solved here with {sizes} unknowns" if sizes else ", solved here link by link"
-    return f"row {layout.row}: {text}{solved_in}"
 
 
 def _coefficients(system: DenseSystem, units: UnitSystem) -> tuple[TableColumn, ...]:
@@ -323,22 +297,20 @@ def _coefficients(system: DenseSystem, units: UnitSystem) -> tuple[TableColumn, 
     matrix = np.array(system.coefficients)
     columns = [
         _numbers("i", range(1, len(system.equations) + 1)),
-        _words("equation", [equation.name for equation in system.equations]),
+        _words("equation", [name for name, _ in system.equations]),
     ]
-    dimensions = [equation.dimension for equation in system.equations]
+    dimensions = [dimension for _, dimension in system.equations]
     for unknown, values in zip(system.unknowns, matrix.T, strict=True):
-        told = [
-            units.from_si(float(value), _per(dimension, unknown.dimension))
-            for value, dimension in zip(values, dimensions, strict=True)
+        per_unknown = [
+            LENGTH if (dimension, unknown.dimension) == (MOMENT, FORCE) else DIMENSIONLESS
+            for dimension in dimensions
         ]
-        columns.append(_numbers(unknown.name, told))
+        in_file = [
+            units.from_si(float(value), per) for value, per in zip(values, per_unknown, strict=True)
+        ]
+        columns.append(_numbers(unknown.name, in_file))
     right = [units.from_si(v, d) for v, d in zip(system.right, dimensions, strict=True)]
     return (*columns, _numbers("right side", right))
-
-
-def _per(equation: Dimension, unknown: Dimension) -> Dimension:
-    """The dimension of a coefficient."""
-    return LENGTH if (equation, unknown) == (MOMENT, FORCE) else DIMENSIONLESS
 
 
 def _unknowns(system: DenseSystem, units: UnitSystem) -> tuple[TableColumn, ...]:

@@ -1,4 +1,26 @@
-"""Balances as small tables in the file's units."""
+"""Balances over a closed cycle of rows, as small tables in the file's units.
+
+Flywheel: the one that keeps a machine's rate within bounds, under a drive of constant effort. With
+the work W(x) of drive and loads from the first row on and the reduced inertia J(x), the energy
+T0 + W = (J + J_F) omega^2 / 2 has to keep omega between the bounds everywhere:
+
+    T0 - w_min^2/2 J_F  >=  A = max(w_min^2/2 J - W)
+    T0 - w_max^2/2 J_F  <=  B = min(w_max^2/2 J - W)
+
+The least flywheel meets both: J_F = (A - B) / (unevenness mean^2). These are the tangents to
+Wittenbauer's diagram of energy over inertia (Wittenbauer, Graphische Dynamik, 1923), without the
+usual approximation, which takes one rate for both bounds. Loads are those of the rows: a load that
+reads rates does not follow the fluctuation.
+
+Harmonics: Fourier coefficients over a cycle of rows at equal distances,
+
+    f = mean + sum over n of (c_n cos(n x) + s_n sin(n x)),     x the input's angle, or 2 pi t / T
+
+Of N rows these are the coefficients of the trigonometric polynomial through them; what orders above
+N/2 of the function leave in them (aliasing) falls as its harmonics do.
+
+Work: that of every effort and load over the cycle.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +46,9 @@ from mechkin_cli.derived import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import atan2, cos, sin
 from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, LoadWork
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import input_path
 from mechkin_cli.sweep import stands_elsewhere
-from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, Words, column_of
+from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, column_of, words_of
 from mechkin_cli.tolerances import REACTION_ROUNDING
 from mechkin_cli.units import ANGLE, ANGULAR_RATE, ENERGY, INERTIA, MOMENT
 
@@ -39,9 +60,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
     from mechkin_cli.units import Dimension
-
-
-# The rows along a cycle: the inputs' rates along it, and whether it is closed.
 
 
 def rates_along(result: Result, cycle: Cycle) -> KernelInputs:
@@ -100,7 +118,7 @@ def sample_fault(balance: AnyBalance, what: str, values: Floats) -> Diagnostic:
     lost = np.flatnonzero(~np.isfinite(values))
     if lost.size:
         text = f"{balance.name}: {what} has no value in row {lost[0] + 1}"
-        return _fault("balance-undefined", balance, text, "see what is said of that row, and of it")
+        return _fault("balance-undefined", balance, text, "see the notes on that row, and on it")
     text = f"{balance.name}: {what} is not at the last row what it was at the first"
     hint = "what depends on time, or on an angle with its turns, does not repeat; use wrap(angle)"
     measured = f"{values[-1]:.6g} for {values[0]:.6g}"
@@ -113,43 +131,13 @@ def _fault(
     return Diagnostic(code, "error", text, balance.place, measured=measured, hint=hint)
 
 
-# The flywheel that keeps a machine's rate within bounds, under a drive of constant effort.
-#
-# With the work W(x) of drive and loads from the first row on and the reduced inertia J(x), the
-# energy T0 + W = (J + J_F) omega^2 / 2 has to keep omega between the bounds everywhere:
-#
-#     T0 - w_min^2/2 J_F  >=  A = max(w_min^2/2 J - W)
-#     T0 - w_max^2/2 J_F  <=  B = min(w_max^2/2 J - W)
-#
-# The least flywheel meets both: J_F = (A - B) / (unevenness mean^2). These are the tangents to
-# Wittenbauer's diagram of energy over inertia (Wittenbauer, Graphische Dynamik, 1923), without the
-# usual approximation, which takes one rate for both bounds. Loads are those of the rows: what reads
-# rates does not follow the fluctuation.
-
-
-class Sized(NamedTuple):
-    """What a flywheel is sized by, SI.
-
-    Attributes:
-        flywheel: its inertia; 0 where none is needed.
-        estimate: the same with the mean rate at both bounds.
-        drive: the constant effort that balances the loads' work.
-        fluctuation: largest less least work of drive and loads.
-        least, most: reduced inertia of the mechanism.
-        without: the unevenness without a flywheel; nan where it would not go round.
-    """
-
-    flywheel: float
-    estimate: float
-    drive: float
-    fluctuation: float
-    least: float
-    most: float
-    without: float
-
-
-def sized(loads: Floats, inertia: Floats, step: float, unevenness: float, rate: float) -> Sized:
-    """The flywheel of a machine.
+def sized(
+    loads: Floats, inertia: Floats, step: float, unevenness: float, rate: float
+) -> tuple[float, ...]:
+    """The flywheel of a machine, SI: its inertia, 0 where none is needed; the same with the mean
+    rate at both bounds; the constant effort that balances the loads' work; largest less least work
+    of drive and loads; least and largest reduced inertia of the mechanism; and the unevenness
+    without a flywheel, nan where it would not go round.
 
     Args:
         loads: of all loads along the angle, over a cycle (rows - 1,), N m.
@@ -168,14 +156,14 @@ def sized(loads: Floats, inertia: Floats, step: float, unevenness: float, rate: 
         lower = -largest_between(work - high * high / 2.0 * inertia)
         return (upper - lower) / (share * rate * rate)
 
-    return Sized(
-        flywheel=max(needed(unevenness, unevenness), 0.0),
-        estimate=max(needed(unevenness, 0.0), 0.0),
-        drive=drive,
-        fluctuation=largest_between(work) + largest_between(-work),
-        least=-largest_between(-inertia),
-        most=largest_between(inertia),
-        without=_root(lambda share: needed(share, share)),
+    return (
+        max(needed(unevenness, unevenness), 0.0),
+        max(needed(unevenness, 0.0), 0.0),
+        drive,
+        largest_between(work) + largest_between(-work),
+        -largest_between(-inertia),
+        largest_between(inertia),
+        _root(lambda share: needed(share, share)),
     )
 
 
@@ -195,28 +183,11 @@ def _root(needed: Callable[[float], float]) -> float:
     return high
 
 
-# Fourier coefficients over a cycle of rows at equal distances.
-#
-#     f = mean + sum over n of (c_n cos(n x) + s_n sin(n x)),     x the input's angle, or 2 pi t / T
-#
-# Of N rows these are the coefficients of the trigonometric polynomial through them; what orders
-# above N/2 of the function leave in them (aliasing) falls as its harmonics do.
-
-
-class HarmonicOrder(NamedTuple):
-    """One order: coefficients, amplitude and phase (rad) of amplitude cos(n x - phase), and how far
-    the coefficients may be off."""
-
-    order: float
-    cosine: float
-    sine: float
-    amplitude: float
-    phase: float
-    error: float
-
-
-def harmonic(values: Floats, cycle: Cycle, order: float) -> HarmonicOrder:
-    """The harmonic of an order of samples over the cycle (rows - 1,)."""
+def harmonic(
+    values: Floats, cycle: Cycle, order: float
+) -> tuple[float, float, float, float, float]:
+    """An order of samples over the cycle (rows - 1,): both coefficients, amplitude and phase (rad)
+    of amplitude cos(n x - phase), and how far the coefficients may be off."""
     cosine, sine = _coefficients(values, cycle, order)
     error = float("nan")
     if values.size % 2 == 0 and 4 * round(order * cycle.turns) < values.size:
@@ -224,7 +195,7 @@ def harmonic(values: Floats, cycle: Cycle, order: float) -> HarmonicOrder:
         error = max(abs(cosine - coarse[0]), abs(sine - coarse[1]))
     amplitude = float(np.sqrt(cosine * cosine + sine * sine))
     phase = float(atan2(np.array([sine]), np.array([cosine]))[0])
-    return HarmonicOrder(order, cosine, sine, amplitude, phase, error)
+    return cosine, sine, amplitude, phase, error
 
 
 def _coefficients(values: Floats, cycle: Cycle, order: float) -> tuple[float, float]:
@@ -240,32 +211,25 @@ def _coefficients(values: Floats, cycle: Cycle, order: float) -> tuple[float, fl
     return cosine, sine
 
 
-# The work of every effort and load over a cycle.
+Work = tuple[str, float, float]
+"""Name, work over the cycle (J), and how far it may be off."""
 
 
-class Item(NamedTuple):
-    """Work over the cycle (J), and how far it may be off."""
-
-    name: str
-    work: float
-    error: float
-
-
-def work_over_cycle(result: Result, balance: LoadWork) -> tuple[list[Item], list[Diagnostic]]:
+def work_over_cycle(result: Result, balance: LoadWork) -> tuple[list[Work], list[Diagnostic]]:
     """Works of efforts, gravity, loads and inertia, and their sum, which is what is missing."""
-    cycle, items, faults = balance.cycle, [], []
+    cycle, works, faults = balance.cycle, list[Work](), []
     parts = powers_along(result, cycle)
     total = np.zeros(result.rows)
     for values in parts.values():
         total = total + values
     for name, values in parts.items():
         if repeated(values):
-            items.append(Item(name, *over_cycle(values[:-1], cycle.step)))
+            works.append((name, *over_cycle(values[:-1], cycle.step)))
         else:
             faults.append(sample_fault(balance, name, values))
-            items.append(Item(name, float("nan"), float("nan")))
-    items.append(Item("sum", *over_cycle(total[:-1], cycle.step)))
-    return items, faults
+            works.append((name, float("nan"), float("nan")))
+    works.append(("sum", *over_cycle(total[:-1], cycle.step)))
+    return works, faults
 
 
 def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
@@ -273,14 +237,14 @@ def powers_along(result: Result, cycle: Cycle) -> dict[str, Floats]:
     efforts, gravity and loads, and of inertia, by which they are in balance."""
     run = BasisQuantities(result, {}, result.session.inputs)
     along = rates_along(result, cycle)
-    found = effort_powers(run, along)
+    powers = effort_powers(run, along)
     for number, (load, power) in enumerate(load_powers_along(run, along)):
-        found[load_name(result, number, load)] = power
+        powers[load_name(result, number, load)] = power
     rubbed = friction_power(run, along)
     if rubbed is not None:
-        found["friction"] = rubbed
+        powers["friction"] = rubbed
     masses = unloaded(result.session, at_inputs=True)
-    return found | {"inertia": power_against(run, along, masses)}
+    return powers | {"inertia": power_against(run, along, masses)}
 
 
 def load_name(result: Result, number: int, load: Load | str) -> str:
@@ -309,20 +273,16 @@ def balance_table(balance: AnyBalance, result: Result) -> Table:
 
 
 def _work(balance: LoadWork, result: Result, fault: Diagnostic | None) -> Table:
-    if fault is not None:
-        return _table(
-            balance, [_words("of", ["sum"]), *_energies(result, [np.nan], [np.nan])], [fault]
-        )
-    items, faults = work_over_cycle(result, balance)
-    energies = _energies(result, [i.work for i in items], [i.error for i in items])
-    return _table(balance, [_words("of", [item.name for item in items]), *energies], faults)
-
-
-def _energies(result: Result, work: Sequence[float], error: Sequence[float]) -> list[TableColumn]:
-    return [
+    works, faults = [("sum", np.nan, np.nan)], [] if fault is None else [fault]
+    if fault is None:
+        works, faults = work_over_cycle(result, balance)
+    names, work, error = zip(*works, strict=True)
+    columns = [
+        TableColumn("of", "", words_of(names)),
         _numbers(result, "work", ENERGY, work),
         _numbers(result, "error", ENERGY, error),
     ]
+    return _table(balance, columns, faults)
 
 
 def _harmonics(balance: Harmonics, result: Result, fault: Diagnostic | None) -> Table:
@@ -337,29 +297,26 @@ def _harmonics(balance: Harmonics, result: Result, fault: Diagnostic | None) -> 
         for order in balance.orders:
             names.append(label)
             orders.append(order)
-            found = harmonic(values[:-1], balance.cycle, order) if good else None
-            if found and found.amplitude <= REACTION_ROUNDING * float(np.max(np.abs(values))):
-                # what rounding leaves has no phase
-                found = found._replace(phase=np.nan)
-            cells.append(found[1:] if found else (np.nan,) * 5)
+            cells.append(harmonic(values[:-1], balance.cycle, order) if good else (np.nan,) * 5)
+            if cells[-1][2] <= REACTION_ROUNDING * float(np.max(np.abs(values))):
+                # an amplitude that is rounding has no phase
+                cells[-1] = (*cells[-1][:3], np.nan, cells[-1][4])
     cosine, sine, amplitude, phase, error = np.array(cells).reshape(-1, 5).T.copy()
-    return _table(
-        balance,
-        [
-            _words("of", names),
-            TableColumn("order", "", np.array(orders)),
-            TableColumn("cosine", unit, cosine),
-            TableColumn("sine", unit, sine),
-            TableColumn("amplitude", unit, amplitude),
-            _numbers(result, "phase", ANGLE, phase),
-            TableColumn("error", unit, error),
-        ],
-        faults,
-    )
+    columns = [
+        TableColumn("of", "", words_of(names)),
+        TableColumn("order", "", np.array(orders)),
+        TableColumn("cosine", unit, cosine),
+        TableColumn("sine", unit, sine),
+        TableColumn("amplitude", unit, amplitude),
+        _numbers(result, "phase", ANGLE, phase),
+        TableColumn("error", unit, error),
+    ]
+    return _table(balance, columns, faults)
 
 
 def _flywheel(balance: Flywheel, result: Result, fault: Diagnostic | None) -> Table:
-    found, faults = Sized(*[float("nan")] * 7), [] if fault is None else [fault]
+    size: tuple[float, ...] = (float("nan"),) * 7
+    faults = [] if fault is None else [fault]
     if fault is None:
         parts = powers_along(result, balance.cycle)
         efforts = {f"{joint}.{coordinate}.effort" for joint, coordinate in result.problem.acting}
@@ -375,29 +332,24 @@ def _flywheel(balance: Flywheel, result: Result, fault: Diagnostic | None) -> Ta
                 faults.append(sample_fault(balance, what, values))
         if not faults:
             step, turning = balance.cycle.step, balance.unevenness
-            found = sized(loads[:-1], inertia[:-1], step, turning, balance.rate)
+            size = sized(loads[:-1], inertia[:-1], step, turning, balance.rate)
+    flywheel, estimate, drive, fluctuation, least, most, without = size
     columns = [
         TableColumn("unevenness", "", np.array([balance.unevenness])),
         _numbers(result, "rate", ANGULAR_RATE, [balance.rate]),
-        _numbers(result, "flywheel", INERTIA, [found.flywheel]),
-        _numbers(result, "estimate", INERTIA, [found.estimate]),
-        _numbers(result, "drive", MOMENT, [found.drive]),
-        _numbers(result, "work_fluctuation", ENERGY, [found.fluctuation]),
-        _numbers(result, "least_inertia", INERTIA, [found.least]),
-        _numbers(result, "largest_inertia", INERTIA, [found.most]),
-        TableColumn("unevenness_without", "", np.array([found.without])),
+        _numbers(result, "flywheel", INERTIA, [flywheel]),
+        _numbers(result, "estimate", INERTIA, [estimate]),
+        _numbers(result, "drive", MOMENT, [drive]),
+        _numbers(result, "work_fluctuation", ENERGY, [fluctuation]),
+        _numbers(result, "least_inertia", INERTIA, [least]),
+        _numbers(result, "largest_inertia", INERTIA, [most]),
+        TableColumn("unevenness_without", "", np.array([without])),
     ]
     return _table(balance, columns, faults)
 
 
 def _table(balance: AnyBalance, columns: list[TableColumn], faults: list[Diagnostic]) -> Table:
     return Columns(balance.name, balance.title, tuple(columns), of_rows=False), faults
-
-
-def _words(label: str, texts: Sequence[str]) -> TableColumn:
-    known = tuple(dict.fromkeys(texts))
-    codes = np.array([known.index(text) for text in texts], dtype=np.int32)
-    return TableColumn(label, "", Words(codes, known))
 
 
 def _numbers(

@@ -1,7 +1,9 @@
 """What derived quantities are computed from: outputs of the kernel, planned with the others.
 
 A link's rotation is read from the ground axes as drawn on it (`link_direction`), its shift from one
-of its joint points (`link_point`). The names have a space, so that no file can ask for them.
+of its joint points (`link_point`). The names have a space, so that no file can name them. What
+depends on the position alone, not on the rates of the file, is evaluated once more at unit rate of
+the leading input with the others held (`at_unit_rate`).
 """
 
 from __future__ import annotations
@@ -55,7 +57,7 @@ class RowStates(Protocol):
 
 
 class Evaluated(Protocol):
-    """A finished run on whose states quantities are evaluated (`analysis.sweep.Result`)."""
+    """A finished run on whose states quantities are evaluated (`sweep.Result`)."""
 
     @property
     def session(self) -> Session:
@@ -81,12 +83,12 @@ class Evaluated(Protocol):
         demand: Demand = Demand.POSITION,
         shift: int = 0,
     ) -> dict[str, Floats]:
-        """Quantities on the states, not kept."""
+        """Quantities on the states."""
         ...
 
 
 class OtherMoments(Protocol):
-    """A sweep in time between its rows (`analysis.sweep.other_moments`)."""
+    """A sweep in time between its rows."""
 
     @property
     def bends(self) -> Floats:
@@ -116,8 +118,8 @@ class BasisQuantities(NamedTuple):
 
     def scalar(self, name: str) -> Floats:
         """A scalar over the rows."""
-        found: Floats = self.columns[name][0]
-        return found
+        values: Floats = self.columns[name][0]
+        return values
 
     def vector(self, name: str) -> RowVector:
         """A vector over the rows."""
@@ -141,11 +143,8 @@ def rotation_of(columns: Mapping[str, Floats], link: str) -> Rotation:
 
 def basis_of(mechanism: Mechanism, derived: Iterable[Wanted]) -> list[Wanted]:
     """The outputs of the run that some derived quantities are computed from."""
-    found: dict[str, Wanted] = {}
-    for quantity in derived:
-        for basis in _basis(mechanism, quantity):
-            found[basis.name] = basis
-    return list(found.values())
+    every = (basis for quantity in derived for basis in _basis(mechanism, quantity))
+    return list({basis.name: basis for basis in every}.values())
 
 
 def _basis(mechanism: Mechanism, quantity: Wanted) -> list[Wanted]:
@@ -177,17 +176,12 @@ def _place(link: str) -> Wanted:
     return Wanted(f"{link} place", "link_point", link, LENGTH, True)
 
 
-# The rows of a run once more, with unit rate of the leading input and the others held: what
-# depends on the position alone does not depend on the rates that a file gives.
-
-
 def at_unit_rate(run: BasisQuantities, wanted: Iterable[Wanted]) -> BasisQuantities:
     """Other quantities of the run (nan in rows without a clear rank); its motion has an input."""
-    session = run.session
-    motion = session.problem.motion
+    motion = run.session.problem.motion
     leading = motion.leading
     assert leading is not None
     number = motion.driven.index((leading.joint, leading.coordinate))
-    inputs = session.inputs.at_unit_rate(number)
+    inputs = run.session.inputs.at_unit_rate(number)
     columns = run.result.evaluated(list(wanted), inputs=inputs, demand=Demand.VELOCITY)
     return BasisQuantities(run.result, columns, inputs)

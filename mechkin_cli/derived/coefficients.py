@@ -1,8 +1,10 @@
-"""Coefficients of the inputs' accelerations in accelerations, reactions and efforts.
+"""Coefficients of the inputs' accelerations in accelerations, reactions and efforts; the powers of
+single loads and efforts, at the rates of the rows or along a virtual motion.
 
-All of these are linear in the inputs' accelerations. A coefficient is what unit acceleration of its
-input gives, from rest and without gravity and loads, so nothing is subtracted; the rest is what the
-rates and loads of the row give with no acceleration. The friction of joints is left out.
+Accelerations, reactions and efforts are linear in the inputs' accelerations. A coefficient is what
+unit acceleration of its input gives, from rest and without gravity and loads, so nothing is
+subtracted; the rest is what the rates and loads of the row give with no acceleration. The friction
+of joints is left out.
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
 
 def coefficients(run: BasisQuantities, wanted: Sequence[Wanted]) -> dict[str, Floats]:
     """Coefficients by name, (1, rows) or (3, rows) in SI; nan where reactions are not unique."""
-    found: dict[str, Floats] = {}
+    columns: dict[str, Floats] = {}
     known = run.session.problem.quantities()
 
     def group(quantity: Wanted) -> tuple[Input | None, bool]:
@@ -50,8 +52,8 @@ def coefficients(run: BasisQuantities, wanted: Sequence[Wanted]) -> dict[str, Fl
     for by, acts in dict.fromkeys(map(group, wanted)):
         own = [quantity for quantity in wanted if group(quantity) == (by, acts)]
         values = _values(run, by, [base_name(quantity) for quantity in own], at_inputs=not acts)
-        found |= {q.name: value for q, value in zip(own, values, strict=True)}
-    return found
+        columns |= {q.name: value for q, value in zip(own, values, strict=True)}
+    return columns
 
 
 def _values(
@@ -67,17 +69,21 @@ def _values(
         number = session.driven.index(by)
         joint = session.problem.mechanism.joints[by[0]]
         unit = joint.unit_of(by[1], session.layout.length)
-        inputs, other = (
-            session.inputs.at_unit_acceleration(number),
-            unloaded(session, at_inputs=at_inputs),
-        )
+        inputs = session.inputs.at_unit_acceleration(number)
+        other = unloaded(session, at_inputs=at_inputs)
     reactions = [base for base in bases if base.kind in WRENCH_KINDS]
     shifts = run.result.shifts if reactions else ()
     bases += [REACTION_LEVEL] if shifts else []
     columns = run.result.evaluated(bases, session=other, inputs=inputs)
     others = [run.result.evaluated(bases, session=other, inputs=inputs, shift=s) for s in shifts]
     if shifts:
-        rounding = _rounding([each[REACTION_LEVEL.name][0] for each in (columns, *others)])
+        # of forces; a row without any has the rounding of the null space
+        level = columns[REACTION_LEVEL.name][0]
+        largest = np.full(level.shape, np.max(level[np.isfinite(level)], initial=0.0))
+        for other_columns in others:
+            at_other = np.fmax(largest, other_columns[REACTION_LEVEL.name][0])
+            largest[level == 0.0] = at_other[level == 0.0]
+        rounding = tolerances.REACTION_ROUNDING * largest
         for base in reactions:
             off = rounding * (1.0 if base.dimension == FORCE else session.layout.length)
             columns[base.name] = _unique(columns, others, base.name, off)
@@ -89,8 +95,7 @@ def unloaded(session: Session, *, at_inputs: bool) -> Session:
     """The mechanism with its masses alone, its efforts where they act or at the inputs."""
     problem = session.problem
     drives = None if at_inputs else problem.mechanism.drives
-    bare = replace(problem.mechanism, loads=(), gravity=ZERO, frictions=())
-    mechanism = replace(bare, drives=drives)
+    mechanism = replace(problem.mechanism, loads=(), gravity=ZERO, frictions=(), drives=drives)
     return session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
 
 
@@ -102,19 +107,8 @@ def without_friction(session: Session, *, at_inputs: bool = False) -> Session | 
     if not mechanism.frictions:
         return None
     drives = None if at_inputs else mechanism.drives
-    bare = replace(mechanism, frictions=(), drives=drives)
-    smooth = replace(session.problem, mechanism=bare)
-    return session.loaded(smooth)
-
-
-def _rounding(levels: Sequence[Floats]) -> Floats:
-    """Rounding of reactions (rows,), of forces; a row without any has that of the null space."""
-    own, *others = levels
-    largest = np.full(own.shape, np.max(own[np.isfinite(own)], initial=0.0))
-    for other in others:
-        largest[own == 0.0] = np.fmax(largest, other)[own == 0.0]
-    rounding: Floats = tolerances.REACTION_ROUNDING * largest
-    return rounding
+    smooth = replace(mechanism, frictions=(), drives=drives)
+    return session.loaded(replace(session.problem, mechanism=smooth))
 
 
 def _unique(
@@ -129,8 +123,6 @@ def _unique(
         value = np.where(np.abs(other[name] - columns[name]) <= limit, value, np.nan)
     return value
 
-
-# The powers of single loads and efforts, at the rates of the rows or along a virtual motion.
 
 GRAVITY = "gravity"
 
@@ -178,30 +170,30 @@ def friction_power(run: BasisQuantities, along: KernelInputs) -> Floats | None:
 
 
 def _power(effort: Floats, rate: Floats) -> Floats:
-    """What stands still takes no part, whatever its effort is."""
+    """Zero of what stands still, whatever its effort is."""
     return np.where(rate == 0.0, 0.0, effort * rate)
 
 
 def load_powers(run: BasisQuantities) -> list[tuple[Load | str, Floats]]:
     """Of gravity and every load (W, rows) at the rates of the rows."""
+    loads = _numbered(run)
     wanted = [
         Wanted(f"power of load {k}", "load_power", GROUND_NAME, POWER, False, str(k))
-        for _, k in _numbered(run)
+        for _, k in loads
     ]
     columns = run.result.evaluated(wanted) if wanted else {}
-    loads = _numbered(run)
     return [(load, columns[own.name][0]) for (load, _), own in zip(loads, wanted, strict=True)]
 
 
 def load_powers_along(run: BasisQuantities, along: KernelInputs) -> list[tuple[Load | str, Floats]]:
     """Of gravity and every load, with the forces of the rows and the rates of `along`: against the
     efforts that hold it alone."""
-    found = []
+    powers = []
     for load, number in _numbered(run):
         session = _with_load(run.session, number)
         still = run.inputs.at_rest() if number < 0 else None
-        found.append((load, power_against(run, along, session, still)))
-    return found
+        powers.append((load, power_against(run, along, session, still)))
+    return powers
 
 
 def _numbered(run: BasisQuantities) -> list[tuple[Load | str, int]]:

@@ -1,4 +1,8 @@
-"""The derived quantities of a run as further columns of its outputs."""
+"""The derived quantities of a run as further columns of its outputs; the mechanical advantage.
+
+Mechanical advantage is the rate of the leading input over the rate of a coordinate. Without losses
+the powers of input and load are equal, so it is the load that a unit of input effort balances.
+"""
 
 from __future__ import annotations
 
@@ -33,12 +37,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# Mechanical advantage: the rate of the leading input over the rate of a coordinate.
-#
-# Without losses the powers of input and load are equal, so it is the load that a unit of input
-# effort balances.
-
-
 def mechanical_advantages(run: BasisQuantities, wanted: Sequence[Wanted]) -> list[Floats]:
     """Each quantity's values (rows,) in SI; nan where the coordinate stands still."""
     problem, layout = run.session.problem, run.session.layout
@@ -46,14 +44,14 @@ def mechanical_advantages(run: BasisQuantities, wanted: Sequence[Wanted]) -> lis
     assert leading is not None
     names = [f"{quantity.owner}.{quantity.coordinate}_dot" for quantity in wanted]
     influence = at_unit_rate(run, [known[name] for name in (f"{leading.name}_dot", *names)])
-    given = influence.scalar(f"{leading.name}_dot")
-    found = []
+    driven = influence.scalar(f"{leading.name}_dot")
+    advantages = []
     for quantity, name in zip(wanted, names, strict=True):
         rate = influence.scalar(name)
         size = 1.0 if is_angle(quantity.coordinate) else layout.length
         moves = np.abs(rate) > tolerances.STANDS_STILL * size
-        found.append(np.where(moves, given / rate, np.nan))
-    return found
+        advantages.append(np.where(moves, driven / rate, np.nan))
+    return advantages
 
 
 def derived_columns(run: BasisQuantities, wanted: Sequence[Wanted]) -> dict[str, Floats]:
@@ -63,25 +61,20 @@ def derived_columns(run: BasisQuantities, wanted: Sequence[Wanted]) -> dict[str,
         return {q.name: np.stack(own) for q, own in zip(wanted, parts, strict=True)}
 
 
-def _moving(run: BasisQuantities, instant: list[Wanted]) -> BasisQuantities:
-    """The run whose rates instant screws have: a file that gives none moves at unit rate."""
-    session = run.session
-    leading = session.problem.motion.leading
-    if not instant or session.inputs.rates.any() or leading is None:
-        return run
-    return at_unit_rate(run, basis_of(session.problem.mechanism, instant))
-
-
 def _computed(run: BasisQuantities, wanted: Sequence[Wanted]) -> list[list[Floats]]:
+    session, moving = run.session, run
+    of_screws = [quantity for quantity in wanted if quantity.kind in INSTANT_KINDS]
+    driven = session.problem.motion.leading is not None
+    if of_screws and driven and not session.inputs.rates.any():
+        # a file without rates has the instant screws of unit rate
+        moving = at_unit_rate(run, basis_of(session.problem.mechanism, of_screws))
     quaternion = cache(lambda owner: continuous_quaternion(run, owner))
-    moving = _moving(run, [quantity for quantity in wanted if quantity.kind in INSTANT_KINDS])
     instant = cache(lambda owner: instant_screw(moving, owner))
     finite = cache(lambda owner: finite_screw(run, owner))
-    asked = [quantity for quantity in wanted if quantity.kind == "mechanical_advantage"]
+    of_advantages = [quantity for quantity in wanted if quantity.kind == "mechanical_advantage"]
+    advantages = iter(mechanical_advantages(run, of_advantages) if of_advantages else ())
     energies = cache(lambda: ledger(run))
-    linear = [quantity for quantity in wanted if quantity.kind in COEFFICIENT_KINDS]
-    found = coefficients(run, linear)
-    advantages = iter(mechanical_advantages(run, asked) if asked else ())
+    linear = coefficients(run, [q for q in wanted if q.kind in COEFFICIENT_KINDS])
 
     def parts(quantity: Wanted) -> list[Floats]:
         owner = quantity.owner
@@ -98,12 +91,12 @@ def _computed(run: BasisQuantities, wanted: Sequence[Wanted]) -> list[list[Float
         if quantity.kind in LEDGER_KINDS:
             return [energies()[quantity.kind.removeprefix("ledger_")]]
         if quantity.kind in COEFFICIENT_KINDS:
-            return [*found[quantity.name]]
+            return [*linear[quantity.name]]
         if quantity.kind in INSTANT_KINDS:
-            value = getattr(instant(owner), quantity.kind.removeprefix("screw_"))
+            part = instant(owner)[quantity.kind.removeprefix("screw_")]
         else:
             assert quantity.kind in FINITE_KINDS
-            value = getattr(finite(owner), quantity.kind.removeprefix("finite_"))
-        return [*value] if quantity.vector else [value]
+            part = finite(owner)[quantity.kind.removeprefix("finite_")]
+        return [*part] if isinstance(part, tuple) else [part]
 
     return [parts(quantity) for quantity in wanted]

@@ -3,15 +3,16 @@
     T + V - (T + V at the first row) = work - dissipated
 
 T and V are those of each row; work and dissipation are integrals of their powers over the rows
-(`quadrature`), so that what is missing tells how well the rows resolve them. Where joints rub that
-tells nothing: their powers jump where a slip turns round and bend where a contact changes sides, in
-work and dissipation alike. There the powers are integrated between the rows (`powers_between`), and
-what these integrals may be off counts as missing, too.
+(`quadrature`), so that what is missing shows how well the rows resolve them. Not so where joints
+rub: their powers jump where a slip turns round and bend where a contact changes sides, in work and
+dissipation alike. There the polynomial through eight rows serves from one row to the next where it
+agrees with that through six and no slip turns round; elsewhere the motion is followed at further
+moments, parted where the laws of the inputs bend (`running_integrals`), and what these integrals
+may be off counts as missing, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +27,6 @@ from mechkin_cli.derived.coefficients import (
 )
 from mechkin_cli.derived.quadrature import (
     POINTS,
-    QuadratureSamples,
     integrals,
     interval_integrals,
     running_integral,
@@ -47,13 +47,12 @@ def ledger(run: BasisQuantities) -> dict[str, Floats]:
     assert time is not None
     known = problem.quantities()
     energies = [known["row.kinetic_energy"], known["row.potential_energy"]]
-    found = run.result.evaluated(energies)
-    kinetic, potential = (found[energy.name][0] for energy in energies)
-    powers = _powers(run)
-    moments = time.values
+    columns = run.result.evaluated(energies)
+    kinetic, potential = (columns[energy.name][0] for energy in energies)
+    powers, moments = _powers(run), time.values
     step = float(moments[-1] - moments[0]) / max(moments.size - 1, 1)
     if problem.mechanism.frictions and moments.size > 1:
-        (work, dissipated), off = running_integrals(run, _powers, powers, step)
+        (work, dissipated), off = running_integrals(run, powers, step)
     else:
         work, dissipated = (running_integral(power, step) for power in powers)
         off = np.zeros(work.size)
@@ -86,25 +85,12 @@ def _missing(
     rest = np.abs((kinetic - kinetic[0]) + potential - (work - dissipated)) + off
     sizes = np.abs(np.stack([kinetic, potential, work, dissipated]))
     size = float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
-    found: Floats = rest / size if size > 0.0 else np.full(rest.size, np.nan)
-    return found
+    return np.asarray(rest / size) if size > 0.0 else np.full(rest.size, np.nan)
 
 
-# Integrals of powers over the rows of a sweep in time, looked at between the rows where needed.
-#
-# From one row to the next the polynomial through eight rows serves (`quadrature`) where it agrees
-# with that through six and no slip turns round; elsewhere the motion is followed at further moments
-# (`adaptive_quadrature`), parted where the laws of the inputs bend.
-
-Powers = Callable[[BasisQuantities], "Floats"]
-"""Powers (integrands, rows) of a reading."""
-
-
-def running_integrals(
-    run: BasisQuantities, powers_of: Powers, powers: Floats, step: float
-) -> tuple[Floats, Floats]:
-    """From the first row to each: integrals (integrands, rows) of the `powers` that `powers_of`
-    gives, and how far the worst may be off (rows,)."""
+def running_integrals(run: BasisQuantities, powers: Floats, step: float) -> tuple[Floats, Floats]:
+    """From the first row to each: integrals (integrands, rows) of the `powers` of the rows, and how
+    far the worst may be off (rows,)."""
     parts, fewer, least = (
         np.stack([interval_integrals(p, points) for p in powers]) * step
         for points in (POINTS, POINTS - 2, POINTS - 4)
@@ -113,12 +99,13 @@ def running_integrals(
     if run.between is not None:
         size = np.max(np.where(np.isfinite(powers), np.abs(powers), 0.0), initial=0.0) * step
         allowed = POWER_INTEGRAL * size
-        open_ = _with_neighbours(~(off <= allowed).all(axis=0) | _turning(run))
+        slips = _slips(run)
+        turns_round = (slips[:, 1:] * slips[:, :-1] <= 0.0).any(axis=0)
+        open_ = _with_neighbours(~(off <= allowed).all(axis=0) | turns_round)
         reached = run.result.row_states.reached
         open_ &= reached[1:] & reached[:-1]
         if open_.any():
-            found = _between(run, powers_of, powers.shape[0], open_, allowed / step)
-            parts[:, open_], off[:, open_] = found
+            parts[:, open_], off[:, open_] = _between(run, powers.shape[0], open_, allowed / step)
     else:
         # at a jump no polynomial is the better one
         off += np.abs(parts - least)
@@ -129,7 +116,7 @@ def running_integrals(
 
 
 def _between(
-    run: BasisQuantities, powers_of: Powers, count: int, open_: Bools, allowed: float
+    run: BasisQuantities, count: int, open_: Bools, allowed: float
 ) -> tuple[Floats, Floats]:
     """`count` integrals and their errors (integrands, open intervals); `allowed` (W) for each."""
     problem, between = run.session.problem, run.between
@@ -139,19 +126,19 @@ def _between(
     second = float(problem.units.to_si(1.0, TIME))
     low, high, own = _parted(written, np.flatnonzero(open_), between.bends)
 
-    def sample(moments: Floats) -> QuadratureSamples:
+    def sample(moments: Floats) -> tuple[Floats, Floats]:
         result = between.at(moments)
         other = BasisQuantities(result, {}, result.session.inputs)
         time = result.session.problem.motion.time
         assert time is not None
-        asked = np.searchsorted(time.written, moments)
-        return QuadratureSamples(powers_of(other)[:, asked], _slips(other)[:, asked])
+        rows = np.searchsorted(time.written, moments)
+        return _powers(other)[:, rows], _slips(other)[:, rows]
 
-    found = integrals(low, high, sample, np.full(count, allowed))
+    of_pieces, errors_of_pieces = integrals(low, high, sample, np.full(count, allowed))
     values, errors = np.zeros((2, count, written.size - 1))
     for piece, interval in enumerate(own):
-        values[:, interval] += found.values[:, piece]
-        errors[:, interval] += found.errors[:, piece]
+        values[:, interval] += of_pieces[:, piece]
+        errors[:, interval] += errors_of_pieces[:, piece]
     return second * values[:, open_], second * errors[:, open_]
 
 
@@ -178,12 +165,6 @@ def _with_neighbours(open_: Bools) -> Bools:
     return near
 
 
-def _turning(run: BasisQuantities) -> Bools:
-    """Intervals in which the slip of a joint turns round (intervals,)."""
-    slips = _slips(run)
-    return np.asarray((slips[:, 1:] * slips[:, :-1] <= 0.0).any(axis=0))
-
-
 def _slips(run: BasisQuantities) -> Floats:
     """The rates of all coordinates of joints that rub (coordinates, rows)."""
     problem = run.session.problem
@@ -193,6 +174,6 @@ def _slips(run: BasisQuantities) -> Floats:
         for rubbing in problem.mechanism.frictions
         for name in joints[rubbing.joint].coordinates
     ]
-    found = run.result.evaluated(rates) if rates else {}
+    columns = run.result.evaluated(rates) if rates else {}
     rows = run.inputs.rates.shape[1]
-    return np.array([found[rate.name][0] for rate in rates]).reshape(len(rates), rows)
+    return np.array([columns[rate.name][0] for rate in rates]).reshape(len(rates), rows)

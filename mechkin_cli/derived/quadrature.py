@@ -1,9 +1,17 @@
-"""Integrals of samples at equal distances, in a fixed order of sums.
+"""Integrals in a fixed order of sums: of samples at equal distances, and of functions that jump.
 
-Between two samples stands the integral of the polynomial through the `POINTS` nearest ones, of
-degree POINTS - 1. Over a whole cycle of a periodic function these add up to the trapezoidal rule,
-whose error falls faster than any power of the distance where the function is smooth (Trefethen and
-Weideman, The exponentially convergent trapezoidal rule, SIAM Review 56, 2014).
+Samples: between two of them stands the integral of the polynomial through the `POINTS` nearest
+ones, of degree POINTS - 1. Over a whole cycle of a periodic function these add up to the
+trapezoidal rule, whose error falls faster than any power of the distance where the function is
+smooth (Trefethen and Weideman, The exponentially convergent trapezoidal rule, SIAM Review 56,
+2014).
+
+Functions that jump and bend (`integrals`): every piece is integrated by the 15 places of Kronrod's
+extension of Gauss' seven (Piessens and others, QUADPACK, 1983, qk15). Its error is the difference
+from the seven alone, without QUADPACK's hope for smoothness, and what lies between the outermost
+places and the ends, where the polynomial through the places is compared with one more sample. A
+piece that is not good enough is split in the middle, and one in which some smooth function, sampled
+beside the integrands, has a zero is split there: what jumps at that zero costs no halving.
 """
 
 from __future__ import annotations
@@ -16,7 +24,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.tolerances import NEXT_TO_END, NEXT_TO_ZERO, TURNS_NOT
 
 if TYPE_CHECKING:
@@ -60,21 +67,21 @@ def _horner(factors: list[Fraction], x: int) -> Fraction:
 
 def total(values: Floats) -> float:
     """The sum in the order of the samples, with what each addition loses (Neumaier, 1974)."""
-    found = lost = 0.0
+    result = lost = 0.0
     for value in values.tolist():
-        after = found + value
-        small, large = (value, found) if abs(found) >= abs(value) else (found, value)
+        after = result + value
+        small, large = (value, result) if abs(result) >= abs(value) else (result, value)
         lost += (large - after) + small
-        found = after
-    return found + lost
+        result = after
+    return result + lost
 
 
 def running_integral(values: Floats, step: float) -> Floats:
     """From the first sample to each (samples,), which is zero at the first; nan from a sample on
     that is nan."""
-    found = np.zeros(values.size)
-    found[1:] = np.cumsum(interval_integrals(values, POINTS)) * step
-    return found
+    integral = np.zeros(values.size)
+    integral[1:] = np.cumsum(interval_integrals(values, POINTS)) * step
+    return integral
 
 
 def interval_integrals(values: Floats, most: int) -> Floats:
@@ -104,9 +111,9 @@ def running_integral_of_cycle(values: Floats, step: float) -> Floats:
 
 
 def over_cycle(values: Floats, step: float) -> tuple[float, float]:
-    """The integral over a cycle whose `values` (samples,) repeat, and how far it may be off: what
-    leaving out every other sample changes; of an odd number what the ends' polynomials change that
-    know of no cycle."""
+    """The integral over a cycle whose `values` (samples,) repeat, and how far it may be off: by
+    what leaving out every other sample changes; of an odd number of samples by what polynomials
+    that do not go round the cycle change."""
     total = mean(values) * values.size * step
     if values.size % 2 == 0:
         half = mean(values[::2]) * values.size * step
@@ -135,14 +142,14 @@ def largest_between(values: Floats) -> float:
     ratio = 0.6180339887498949
     for _ in range(60):
         inner, outer = high - ratio * (high - low), low + ratio * (high - low)
-        if _at(near, inner + reach) < _at(near, outer + reach):
+        if _polynomial(near, inner + reach) < _polynomial(near, outer + reach):
             low = inner
         else:
             high = outer
-    return max(_at(near, (low + high) / 2.0 + reach), near[reach])
+    return max(_polynomial(near, (low + high) / 2.0 + reach), near[reach])
 
 
-def _at(samples: list[float], place: float) -> float:
+def _polynomial(samples: list[float], place: float) -> float:
     """The polynomial through samples at 0, 1, 2 ... (Neville)."""
     column = list(samples)
     for width in range(1, len(column)):
@@ -150,15 +157,6 @@ def _at(samples: list[float], place: float) -> float:
             column[k] = ((place - k) * column[k + 1] + (k + width - place) * column[k]) / width
     return column[0]
 
-
-# Integrals of functions that jump and bend, with an estimate of their error.
-#
-# Every piece is integrated by the 15 places of Kronrod's extension of Gauss' seven (Piessens and
-# others, QUADPACK, 1983, qk15). Its error is what the seven say otherwise, without QUADPACK's hope
-# for smoothness, and what lies between the outermost places and the ends, where the polynomial
-# through the places is compared with one more sample. A piece that is not good enough is split in
-# the middle, and one in which some smooth function, given beside the integrands, has a zero is
-# split there: what jumps at that zero costs no halving.
 
 _HALF = (
     0.991455371120812639206854697526329,
@@ -195,28 +193,19 @@ ROUNDS = 48
 """Halvings after which a jump is as narrow as rounding."""
 
 
-class QuadratureSamples(NamedTuple):
-    """Integrands (integrands, places), and functions whose zeros part them (functions, places)."""
-
-    values: Floats
-    parting: Floats
-
-
-class Integrals(NamedTuple):
-    """Over each piece, and how far each may be off (integrands, pieces)."""
-
-    values: Floats
-    errors: Floats
-
-
 def integrals(
-    low: Floats, high: Floats, sample: Callable[[Floats], QuadratureSamples], allowed: Floats
-) -> Integrals:
-    """Integrals from `low` to `high` (pieces,), rising and apart from each other.
+    low: Floats,
+    high: Floats,
+    sample: Callable[[Floats], tuple[Floats, Floats]],
+    allowed: Floats,
+) -> tuple[Floats, Floats]:
+    """Integrals from `low` to `high` (pieces,), rising and apart from each other, and how far each
+    may be off (integrands, pieces).
 
     Args:
         low, high: the ends; no end is sampled.
-        sample: everything at rising places.
+        sample: at rising places the integrands (integrands, places), and functions whose zeros part
+            them (functions, places).
         allowed: error for each unit of length (integrands,).
     """
     span = float(high[-1] - low[0]) if low.size else 0.0
@@ -227,13 +216,13 @@ def integrals(
             break
         half, middle = 0.5 * (high - low), 0.5 * (low + high)
         places = np.array([-NEXT_TO_END, *PLACES, NEXT_TO_END])
-        found = sample((middle[:, None] + half[:, None] * places).reshape(-1))
-        fine, error = _both_rules(found.values.reshape(allowed.size, -1, places.size), half)
-        parting = found.parting.reshape(-1, low.size, places.size)[:, :, 1:-1]
+        samples, parting = sample((middle[:, None] + half[:, None] * places).reshape(-1))
+        fine, error = _both_rules(samples.reshape(allowed.size, -1, places.size), half)
+        parting = parting.reshape(-1, low.size, places.size)[:, :, 1:-1]
         largest = np.fmax(largest, np.max(np.abs(parting), axis=(1, 2), initial=0.0))
         cuts = _zeros_inside(parting, low, high, NEXT_TO_ZERO * span, TURNS_NOT * largest)
         good = (error <= allowed[:, None] * (high - low)).all(axis=0)
-        # what has no value anywhere near is not found by halving
+        # halving does not help where there is no value anywhere near
         good |= ~np.isfinite(fine).any(axis=0)
         final = (good & np.array([not each for each in cuts], dtype=bool)) | (left == 0)
         for piece in np.flatnonzero(final):
@@ -246,7 +235,7 @@ def integrals(
         ]
         low, high = np.array([e[0] for e in ends]), np.array([e[1] for e in ends])
         own = np.array([e[2] for e in ends], dtype=np.int64)
-    return Integrals(values, errors)
+    return values, errors
 
 
 def _both_rules(every: Floats, half: Floats) -> tuple[Floats, Floats]:
@@ -260,8 +249,8 @@ def _both_rules(every: Floats, half: Floats) -> tuple[Floats, Floats]:
     for k, weight in enumerate(COARSE):
         coarse += weight * f[:, :, 2 * k + 1]
     ends = np.fmax(
-        np.abs(_adaptive_quadrature_at(f, -NEXT_TO_END) - every[:, :, 0]),
-        np.abs(_adaptive_quadrature_at(f, NEXT_TO_END) - every[:, :, -1]),
+        np.abs(_interpolated(f, -NEXT_TO_END) - every[:, :, 0]),
+        np.abs(_interpolated(f, NEXT_TO_END) - every[:, :, -1]),
     )
     error = np.fmax(np.abs(fine - coarse), (1.0 - PLACES[-1]) * ends)
     # rounding of the sums and of the samples
@@ -273,9 +262,7 @@ def _zeros_inside(
     parting: Floats, low: Floats, high: Floats, near: float, still: Floats
 ) -> list[list[float]]:
     """Zeros of the functions (functions, pieces, places) inside each piece, rising."""
-    ends = np.stack(
-        [_adaptive_quadrature_at(parting, -1.0), _adaptive_quadrature_at(parting, 1.0)], axis=-1
-    )
+    ends = np.stack([_interpolated(parting, -1.0), _interpolated(parting, 1.0)], axis=-1)
     every = np.concatenate([ends[:, :, :1], parting, ends[:, :, 1:]], axis=-1)
     turns: Bools = (every[:, :, 1:] > 0.0) != (every[:, :, :-1] > 0.0)
     turns &= (np.max(np.abs(every), axis=-1, initial=0.0) > still[:, None])[:, :, None]
@@ -287,23 +274,20 @@ def _zeros_inside(
         cut = float(middle + half * zero)
         if low[piece] + near < cut < high[piece] - near:
             cuts[piece].append(cut)
-    return [_apart(sorted(each), near) for each in cuts]
-
-
-def _apart(cuts: list[float], near: float) -> list[float]:
-    kept: list[float] = []
-    for cut in cuts:
-        if not kept or cut - kept[-1] > near:
-            kept.append(cut)
-    return kept
+    apart: list[list[float]] = [[] for _ in low]
+    for piece, every_cut in enumerate(cuts):
+        for cut in sorted(every_cut):
+            if not apart[piece] or cut - apart[piece][-1] > near:
+                apart[piece].append(cut)
+    return apart
 
 
 def _zero(f: Floats, low: float, high: float) -> float:
     """A zero of the polynomial through f (places,) between two places of different sign."""
-    below = bool(_adaptive_quadrature_at(f, low) > 0.0)
+    below = bool(_interpolated(f, low) > 0.0)
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if bool(_adaptive_quadrature_at(f, middle) > 0.0) == below:
+        if bool(_interpolated(f, middle) > 0.0) == below:
             low = middle
         else:
             high = middle
@@ -323,7 +307,7 @@ def _barycentric() -> list[float]:
 _WEIGHTS = _barycentric()
 
 
-def _adaptive_quadrature_at(f: Floats, x: float) -> Floats:
+def _interpolated(f: Floats, x: float) -> Floats:
     """The polynomial through f (..., places) at x (Berrut and Trefethen, 2004)."""
     if x in PLACES:
         here: Floats = f[..., PLACES.index(x)]

@@ -1,8 +1,16 @@
-"""Unit quaternions and rotation vectors of rotations over rows.
+"""Vectors, unit quaternions and rotation vectors over rows; the orientation of a joint.
 
-The symmetric matrix 4 q q^T is linear in the entries of a rotation (Shepperd, Quaternion from
-rotation matrix, J. Guidance and Control 1, 1978); its row with the largest diagonal, made a unit
-vector, is q to rounding at every angle. The angle is 2 atan2(|q1 q2 q3|, |q0|).
+Vectors over rows are three arrays of shape (rows,), elementwise in a fixed order.
+
+Quaternions: the symmetric matrix 4 q q^T is linear in the entries of a rotation (Shepperd,
+Quaternion from rotation matrix, J. Guidance and Control 1, 1978); its row with the largest
+diagonal, made a unit vector, is q to rounding at every angle. The angle is 2 atan2(|q1 q2 q3|,
+|q0|).
+
+Orientation of a joint's second link against its first, relative to the drawing: R = R1^T R2, so
+that axes and components are along the ground axes as drawn on the first link. A quaternion and its
+opposite are one rotation; the sign is that of the one carried along in following: the quaternion of
+a cut joint, or the state of one in the tree.
 """
 
 from __future__ import annotations
@@ -22,8 +30,7 @@ if TYPE_CHECKING:
     from mechkin_cli.derived.basis import Rotation, RowVector
     from mechkin_cli.show import Floats
 
-
-# Vectors over rows: three arrays of shape (rows,), elementwise in a fixed order.
+    Quaternion = tuple[Floats, Floats, Floats, Floats]
 
 
 def add(a: RowVector, b: RowVector) -> RowVector:
@@ -71,17 +78,13 @@ def choose(condition: NDArray[np.bool_], a: RowVector, b: RowVector | float) -> 
     )
 
 
-def off(axis: RowVector, a: RowVector) -> RowVector:
+def square_to(axis: RowVector, a: RowVector) -> RowVector:
     """The part of a square to a unit vector."""
     return subtract(a, scale(dot(axis, a), axis))
 
 
-if TYPE_CHECKING:
-    Quaternion = tuple[Floats, Floats, Floats, Floats]
-
-
 def relative(first: Rotation, second: Rotation) -> Rotation:
-    """R1^T R2 of rotations that are given by their columns, again by columns."""
+    """R1^T R2 of rotations by their columns."""
     x, y, z = ((dot(first[0], c), dot(first[1], c), dot(first[2], c)) for c in second)
     return (x, y, z)
 
@@ -122,15 +125,15 @@ def upright(q: Quaternion) -> Quaternion:
     is not zero is positive."""
     sign = np.ones_like(q[0])
     for component in reversed(q):
-        told = np.abs(component) > tolerances.HALF_TURN
-        sign = np.where(told, np.where(component < 0.0, -1.0, 1.0), sign)
+        decides = np.abs(component) > tolerances.HALF_TURN
+        sign = np.where(decides, np.where(component < 0.0, -1.0, 1.0), sign)
     return times(sign, q)
 
 
 def angle(q: Quaternion) -> Floats:
     """Angle in [0, pi]."""
-    found: Floats = 2.0 * of_two("ATAN2", length(q[1:]), np.abs(q[0]))
-    return found
+    half: Floats = of_two("ATAN2", length(q[1:]), np.abs(q[0]))
+    return 2.0 * half
 
 
 def rotation_vector(q: Quaternion) -> RowVector:
@@ -138,13 +141,6 @@ def rotation_vector(q: Quaternion) -> RowVector:
     size = length(q[1:])
     none = size == 0.0
     return scale(np.where(none, 2.0, angle(q) / np.where(none, 1.0, size)), q[1:])
-
-
-# Orientation of a joint's second link against its first, relative to the drawing.
-#
-# R = R1^T R2, so that axes and components are along the ground axes as drawn on the first link. A
-# quaternion and its opposite are one rotation; the sign is that of what following carried along:
-# the quaternion of a closing joint (`solver.closing_turns`), or the state of one in the tree.
 
 
 def turn(run: BasisQuantities, joint: str) -> RowVector:
@@ -160,8 +156,12 @@ def continuous_quaternion(run: BasisQuantities, joint: str) -> Quaternion:
         return q
     part = _part(q, reached)
     followed = _followed(run, joint, reached)
-    # a joint of a hung body turns with its line, less than half a turn from row to row
-    signs = _alike(part) if followed is None else continuous_signs(part, followed, 0)
+    if followed is not None:
+        signs = continuous_signs(part, followed, 0)
+    else:
+        # a joint of a leg turns with the leg's line, less than half a turn from row to row
+        back = inner(_part(part, slice(1, None)), _part(part, slice(None, -1))) < 0.0
+        signs = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
     first = -1.0 if part[0][0] < 0.0 else 1.0
     every = np.ones(run.result.row_states.reached.size)
     every[reached] = signs * first
@@ -192,13 +192,6 @@ def _followed(run: BasisQuantities, name: str, reached: NDArray[np.intp]) -> Qua
             forward = 1.0 if layout.graph.edges[edge].forward else -1.0
             return (w, forward * x, forward * y, forward * z)
     return None
-
-
-def _alike(q: Quaternion) -> Floats:
-    """Signs with which each quaternion is alike to the one before it, +1 at the first."""
-    back = inner(_part(q, slice(1, None)), _part(q, slice(None, -1))) < 0.0
-    signs: Floats = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
-    return signs
 
 
 def _part(q: Quaternion, rows: slice | NDArray[np.intp]) -> Quaternion:

@@ -1,6 +1,7 @@
-"""Transmission angle of a link that is guided on ground by one joint and driven by one other.
+"""Transmission angles; the instant and the finite screw of a link.
 
-A unit load on the coordinate, without masses and other loads, is balanced by the force F of the
+The transmission angle of a link that is guided on ground by one joint and driven by one other: a
+unit load on the coordinate, without masses and other loads, is balanced by the force F of the
 driving joint; v is the velocity of that joint's point on the link when the coordinate alone moves.
 The angle is asin(|F.v|/(|F||v|)), 90 degrees less the angle between their lines: 90 degrees where
 the force does nothing but drive, 0 at the link's dead centre (Sutherland and Roth, A transmission
@@ -8,8 +9,15 @@ index for spatial mechanisms, J. Eng. Industry 95, 1973). In a plane four-bar it
 between coupler and rocker.
 
 With the force that the joint really transmits, masses in motion and all loads, the same angle is
-the dynamic transmission angle: the static one says nothing of forces that arise between input and
+the dynamic transmission angle: the static one ignores forces that arise between input and
 coordinate (Balli and Chand, Transmission angle in mechanisms, Mech. Mach. Theory 37, 2002).
+
+Screws of a link against ground, of its instant motion (Mozzi) and of its whole displacement from
+the drawing (Chasles): instant, with the angular velocity w and the velocity v of a point a, the
+axis through a + w x v/w^2 along w, of pitch w.v/w^2 per radian; finite, with the unit axis u and
+angle phi of the rotation and the shift d of the point from a0 to a, the axis through (a0 + a)/2 +
+cot(phi/2) (u x d)/2, and the slide u.d (Bottema and Roth, Theoretical Kinematics, chapter 3). A
+point of an axis is the one nearest to the ground origin.
 """
 
 from __future__ import annotations
@@ -28,9 +36,9 @@ from mechkin_cli.derived.rotation import (
     divide,
     dot,
     length,
-    off,
     quaternion,
     scale,
+    square_to,
     subtract,
 )
 from mechkin_cli.mechanism import (
@@ -38,13 +46,12 @@ from mechkin_cli.mechanism import (
     ZERO,
     Joint,
     JointLoad,
-    Mechanism,
     RigidLink,
     Wanted,
     driving_joint,
     reference_point,
 )
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.tape import of_two
 from mechkin_cli.verdict import has_rates
 
@@ -58,7 +65,11 @@ def transmission_angle(run: BasisQuantities, quantity: Wanted) -> Floats:
     """The angle (rad, 0 to pi/2) of one coordinate over the rows; nan where the force is not
     unique, or where the driving joint's point does not move with the coordinate."""
     problem = run.session.problem
-    mechanism = _with_unit_load(problem.mechanism, quantity)
+    links = {name: RigidLink(name) for name in problem.mechanism.links}
+    loads = (JointLoad(quantity.owner, quantity.coordinate, 1.0),)
+    mechanism = replace(
+        problem.mechanism, links=links, loads=loads, gravity=ZERO, drives=None, frictions=()
+    )
     session = run.session.loaded(replace(problem, mechanism=mechanism, load_laws=()))
     return _angle(run, quantity, session)
 
@@ -79,28 +90,23 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
     wanted = [*(known[name] for name in (*names, f"{guide.name}.axis")), REACTION_LEVEL]
 
-    def angle(shift: int) -> Floats:
+    def angle_of(shift: int) -> Floats:
         columns = run.result.evaluated(wanted, session=session, shift=shift)
         force, point, centre = (vector_of(columns[name]) for name in names)
         axis = vector_of(columns[f"{guide.name}.axis"])
         pushes = length(force) > tolerances.REACTION_ROUNDING * columns[REACTION_LEVEL.name][0]
         force = choose(pushes, force, 0.0)
         arm = subtract(point, centre)
-        return _between(force, _velocity(guide, quantity.coordinate, axis, arm, unit))
+        velocity = _velocity(guide, quantity.coordinate, axis, arm, unit)
+        # asin of |F.v|/(|F||v|), accurate at both ends
+        along, across = np.abs(dot(force, velocity)), length(cross(force, velocity))
+        return np.where((along > 0.0) | (across > 0.0), of_two("ATAN2", along, across), np.nan)
 
-    found, rows = angle(0), run.result.row_states
+    angles, rows = angle_of(0), run.result.row_states
     lost = ~(rows.reached & has_rates(rows.status))
     for shift in run.result.shifts:
-        lost |= ~(np.abs(angle(shift) - found) <= tolerances.UNIQUE_CELL)
-    return np.where(lost, np.nan, found)
-
-
-def _with_unit_load(mechanism: Mechanism, quantity: Wanted) -> Mechanism:
-    """The mechanism without masses and loads but one on a coordinate."""
-    load = JointLoad(quantity.owner, quantity.coordinate, 1.0)
-    links = {name: RigidLink(name) for name in mechanism.links}
-    bare = replace(mechanism, links=links, loads=(load,), gravity=ZERO)
-    return replace(bare, drives=None, frictions=())
+        lost |= ~(np.abs(angle_of(shift) - angles) <= tolerances.UNIQUE_CELL)
+    return np.where(lost, np.nan, angles)
 
 
 def _velocity(
@@ -116,49 +122,13 @@ def _velocity(
     return choose(length(around) > tolerances.STANDS_STILL * unit, around, 0.0)
 
 
-def _between(force: RowVector, velocity: RowVector) -> Floats:
-    """asin of |F.v|/(|F||v|), accurate at both ends; nan where either is zero."""
-    along, across = np.abs(dot(force, velocity)), length(cross(force, velocity))
-    return np.where((along > 0.0) | (across > 0.0), of_two("ATAN2", along, across), np.nan)
-
-
-# Screws of a link against ground: of its instant motion (Mozzi) and of its whole displacement
-# from the drawing (Chasles).
-#
-# Instant: with the angular velocity w and the velocity v of a point a, the axis through a + w x
-# v/w^2 along w, of pitch w.v/w^2 per radian. Finite: with the unit axis u and angle phi of the
-# rotation and the shift d of the point from a0 to a, the axis through (a0 + a)/2 + cot(phi/2) (u x
-# d)/2, and the slide u.d (Bottema and Roth, Theoretical Kinematics, chapter 3). A point of an axis
-# is the one nearest to the ground origin.
-
-
-class InstantScrew(NamedTuple):
-    """Unit axis along the angular velocity, point (m), pitch (m/rad, right-handed positive).
+def instant_screw(run: BasisQuantities, link: str) -> dict[str, RowVector | Floats]:
+    """The screw of a link's velocity: unit `axis` along the angular velocity, `point` (m), `pitch`
+    (m/rad, right-handed positive).
 
     A link that only shifts has the direction of its velocity, no point and no pitch; one that
     stands still has nothing.
     """
-
-    axis: RowVector
-    point: RowVector
-    pitch: Floats
-
-
-class FiniteScrew(NamedTuple):
-    """Unit axis, point (m), angle (rad, 0 to pi) and slide along the axis (m).
-
-    A link that is only shifted has the direction of the shift, no point, angle 0 and the length of
-    the shift; one that is where it was drawn has no axis, angle 0 and slide 0.
-    """
-
-    axis: RowVector
-    point: RowVector
-    angle: Floats
-    slide: Floats
-
-
-def instant_screw(run: BasisQuantities, link: str) -> InstantScrew:
-    """The screw of a link's velocity."""
     unit = run.session.layout.length
     omega = run.vector(f"{link}.omega")
     place, velocity = run.vector(f"{link} place"), run.vector(f"{link} velocity")
@@ -169,11 +139,17 @@ def instant_screw(run: BasisQuantities, link: str) -> InstantScrew:
     axis = choose(turns, divide(omega, rate), choose(moves, divide(velocity, speed), np.nan))
     centre = add(place, divide(cross(axis, velocity), rate))
     pitch = np.where(turns, dot(axis, velocity) / rate, np.nan)
-    return InstantScrew(axis, choose(turns, off(axis, centre), np.nan), pitch)
+    point = choose(turns, square_to(axis, centre), np.nan)
+    return {"axis": axis, "point": point, "pitch": pitch}
 
 
-def finite_screw(run: BasisQuantities, link: str) -> FiniteScrew:
-    """The screw of a link's displacement from the drawing."""
+def finite_screw(run: BasisQuantities, link: str) -> dict[str, RowVector | Floats]:
+    """The screw of a link's displacement from the drawing: unit `axis`, `point` (m), `angle` (rad,
+    0 to pi) and `slide` along the axis (m).
+
+    A link that is only shifted has the direction of the shift, no point, angle 0 and the length of
+    the shift; one that is where it was drawn has no axis, angle 0 and slide 0.
+    """
     q = quaternion(run.rotation(link))
     size = length(q[1:])
     place = run.vector(f"{link} place")
@@ -188,9 +164,6 @@ def finite_screw(run: BasisQuantities, link: str) -> FiniteScrew:
     centre = scale(0.5, add(add(drawn, place), lever))
     known = np.isfinite(size)
     slide = np.where(turned, dot(axis, shift), np.where(known & moved, distance, 0.0 * distance))
-    return FiniteScrew(
-        axis,
-        choose(turned, off(axis, centre), np.nan),
-        np.where(known & ~turned, 0.0, angle(q)),
-        slide,
-    )
+    point = choose(turned, square_to(axis, centre), np.nan)
+    turn = np.where(known & ~turned, 0.0, angle(q))
+    return {"axis": axis, "point": point, "angle": turn, "slide": slide}

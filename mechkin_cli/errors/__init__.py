@@ -8,7 +8,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.errors.cells import true_values as true_values
     from mechkin_cli.errors.errors import Errors as Errors
-    from mechkin_cli.errors.repeat import repetition as repetition
+    from mechkin_cli.errors.response import repetition as repetition
     from mechkin_cli.errors.rows import (
         WORDS as WORDS,
         KernelRows as KernelRows,
@@ -23,7 +23,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "cells": ["true_values"],
         "errors": ["Errors"],
-        "repeat": ["repetition"],
+        "response": ["repetition"],
         "rows": ["KernelRows", "NotRepeated", "Repeated", "WORDS", "reason_of", "wide_run"],
     },
 )

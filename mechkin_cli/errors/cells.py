@@ -1,4 +1,5 @@
-"""Columns of a table in double-double numbers: what their cells should be.
+"""Columns of a table in double-double numbers: what their cells should be, and how far these true
+values may be off themselves.
 
 A column is evaluated as its cells are, with every number of its text taken exactly, and converted
 by the exact factor of its unit.
@@ -18,11 +19,11 @@ from mechkin_cli.tolerances import NO_DOUBT
 if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression, NumberNode
     from mechkin_cli.tables import FloatArray
-    from mechkin_cli.units import Dimension, UnitSystem
+    from mechkin_cli.units import UnitSystem
 
 
 class TrueSource(Protocol):
-    """The rows of a run in double-double (`analysis.errors.Repeated`)."""
+    """The rows of a run in double-double (`rows.Repeated`)."""
 
     @property
     def rows(self) -> int:
@@ -36,7 +37,7 @@ class TrueSource(Protocol):
 
     @property
     def written(self) -> Mapping[str, DoubleDoubles]:
-        """What the rows were given, in the file's units."""
+        """Time and inputs of the rows, in the file's units."""
         ...
 
     def quantity(self, name: str) -> Quantity:
@@ -46,9 +47,9 @@ class TrueSource(Protocol):
 
 def true_values(expression: Expression, source: TrueSource) -> list[DoubleDoubles]:
     """The true values of an expression in file units, (rows,) each: one, of a vector three."""
-    given = source.written.get(expression.text.strip())
-    if given is not None:
-        return [given]
+    written = source.written.get(expression.text.strip())
+    if written is not None:
+        return [written]
     return _evaluated(expression, source, exact_literal)
 
 
@@ -56,52 +57,54 @@ def doubts(
     expression: Expression, source: TrueSource, true: Sequence[DoubleDoubles]
 ) -> list[FloatArray]:
     """How far true values may be off (rows,): by their own rounding, which is nearly all of them
-    where a sum swallows what counts or a product is too small for a number; and by that of what
-    they are computed of, which is what they change by where every number is `OFF` in parts of the
-    largest of its rows. Where the text divides by zero that is as much as the value itself."""
+    where terms cancel or a product underflows; and by that of what they are computed of, which is
+    what they change by where every number is `OFF` in parts of the largest of its rows. Where the
+    text divides by zero that is as much as the value itself."""
     symbols = {getattr(node, "symbol", "") for node in expression.nodes} - {""}
     if not symbols:
         return [np.zeros(source.rows) for _ in true]
-    found = [_unless_zero(*pair) for pair in zip(true, *_bounds(expression, source), strict=True)]
+    bounds, largest = _bounds(expression, source)
+    nothing = NO_DOUBT * largest
+    for k, (number, bound) in enumerate(zip(true, bounds, strict=True)):
+        # none where a column is zero beside what it is computed of, and so is the bound
+        is_zero = np.abs(number.high[np.isfinite(number.high)]).max(initial=0.0) <= nothing
+        bounds[k] = np.where(is_zero & (bound <= nothing), 0.0, bound)
     if symbols & _WITH_POLES:
         off = _evaluated(expression, _Off(source), _off_literal)
         with np.errstate(invalid="ignore"):
             apart = [np.abs((one - other).high) for one, other in zip(true, off, strict=True)]
-        found = [np.fmax(one, other) for one, other in zip(found, apart, strict=True)]
-    return found
+        bounds = [np.fmax(one, other) for one, other in zip(bounds, apart, strict=True)]
+    return bounds
 
 
-def _bounds(expression: Expression, source: TrueSource) -> tuple[list[FloatArray], list[float]]:
+def _bounds(expression: Expression, source: TrueSource) -> tuple[list[FloatArray], float]:
     """Of the rounding of the operations, in the file's units, infinite where nothing is known; and
-    the largest of what rows have in them, for each."""
+    the largest number that rows have in them."""
     rows = _Bounding(source)
-    found = expression.evaluate(rows.quantity, source.units, _bounded_literal)
-    factor = float(source.units.unit(found.dimension).factor)
-    bounds = [np.broadcast_to(bounded(part).bound, (source.rows,)) for part in _parts(found)]
+    value = expression.evaluate(
+        rows.quantity, source.units, lambda number: _each(exact_literal(number), bounded)
+    )
+    factor = float(source.units.unit(value.dimension).factor)
+    bounds = [np.broadcast_to(bounded(part).bound, (source.rows,)) for part in _parts(value)]
     known = [np.where(np.isnan(bound), np.inf, bound) / factor for bound in bounds]
-    return known, [rows.largest / factor] * len(known)
-
-
-def _unless_zero(true: DoubleDoubles, bound: FloatArray, largest: float) -> FloatArray:
-    """The bound; none where a column is zero beside what it is computed of, and so is the bound."""
-    nothing = NO_DOUBT * largest
-    is_zero = np.abs(true.high[np.isfinite(true.high)]).max(initial=0.0) <= nothing
-    return np.where(is_zero & (bound <= nothing), 0.0, bound)
+    return known, rows.largest / factor
 
 
 def _evaluated(
     expression: Expression, source: TrueSource, literal: Callable[[NumberNode], Quantity]
 ) -> list[DoubleDoubles]:
-    found = expression.evaluate(source.quantity, source.units, literal)
-    return [_in_file_units(part, found.dimension, source) for part in _parts(found)]
+    value = expression.evaluate(source.quantity, source.units, literal)
+    factor, rows = source.units.unit(value.dimension).factor, np.zeros(source.rows)
+    parts = [exactly(part) + rows for part in _parts(value)]
+    return parts if factor == 1 else [part / DoubleDoubles.of_fraction(factor) for part in parts]
 
 
 _WITH_POLES = {"/", "^", "pow", "tan", "log", "mod", "atanh", "unit_vector", "angle_between"}
 """Operations that may make any number of a rounding."""
 
 OFF = float.fromhex("0x1p-98")
-"""What numbers are changed by to tell how far a column is off: above the rounding of double-double,
-2^-105, times a condition of a hundred, and far below that of doubles."""
+"""What numbers are changed by to estimate how far a column is off: above the rounding of
+double-double, 2^-105, times a condition of a hundred, and far below that of doubles."""
 
 
 class _Off:
@@ -113,9 +116,14 @@ class _Off:
 
     def quantity(self, name: str) -> Quantity:
         """As `TrueSource.quantity`."""
-        found = self.source.quantity(name)
         part = OFF * (1.0 + sum(name.encode()) % 7 / 7.0)
-        return _each(found, lambda value: _moved(value, part))
+
+        def moved(value: Any) -> Any:
+            number = exactly(value)
+            sizes = np.abs(number.high)
+            return number + part * float(sizes[np.isfinite(sizes)].max(initial=0.0))
+
+        return _each(self.source.quantity(name), moved)
 
 
 class _Bounding:
@@ -127,46 +135,30 @@ class _Bounding:
 
     def quantity(self, name: str) -> Quantity:
         """As `TrueSource.quantity`."""
-        found = self.source.quantity(name)
-        for part in _parts(found):
+        quantity = self.source.quantity(name)
+        for part in _parts(quantity):
             sizes = np.abs(exactly(part).high)
             self.largest = max(self.largest, float(sizes[np.isfinite(sizes)].max(initial=0.0)))
-        return _each(found, bounded)
+        return _each(quantity, bounded)
 
 
-def _bounded_literal(number: NumberNode) -> Quantity:
-    return _each(exact_literal(number), bounded)
-
-
-def _parts(found: Quantity) -> list[Any]:
+def _parts(quantity: Quantity) -> list[Any]:
     """The value of a quantity, of a vector its components."""
-    value: Any = found.value
+    value: Any = quantity.value
     return list(value.components) if hasattr(value, "components") else [value]
 
 
-def _each(found: Quantity, change: Callable[[Any], Any]) -> Quantity:
+def _each(quantity: Quantity, change: Callable[[Any], Any]) -> Quantity:
     """The quantity with each of its numbers changed."""
-    parts = [change(part) for part in _parts(found)]
-    value: Any = Vector(*parts) if hasattr(found.value, "components") else parts[0]
-    rest = None if found.rest is None else change(found.rest)
-    return Quantity(value, found.dimension, rest)
-
-
-def _moved(value: Any, part: float) -> Any:
-    number = exactly(value)
-    sizes = np.abs(number.high)
-    return number + part * float(sizes[np.isfinite(sizes)].max(initial=0.0))
+    parts = [change(part) for part in _parts(quantity)]
+    value: Any = Vector(*parts) if hasattr(quantity.value, "components") else parts[0]
+    rest = None if quantity.rest is None else change(quantity.rest)
+    return Quantity(value, quantity.dimension, rest)
 
 
 def _off_literal(number: NumberNode) -> Quantity:
-    found = exact_literal(number)
+    quantity = exact_literal(number)
     if number.unit is None and number.value == int(number.value):
-        return found  # whole numbers are what they are: exponents, counts
-    value: Any = exactly(found.value)
-    return Quantity(value + OFF * value, found.dimension)
-
-
-def _in_file_units(value: Any, dimension: Dimension, source: TrueSource) -> DoubleDoubles:
-    factor = source.units.unit(dimension).factor
-    rows = exactly(value) + np.zeros(source.rows)
-    return rows if factor == 1 else rows / DoubleDoubles.of_fraction(factor)
+        return quantity  # whole numbers are what they are: exponents, counts
+    value: Any = exactly(quantity.value)
+    return Quantity(value + OFF * value, quantity.dimension)

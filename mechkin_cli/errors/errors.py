@@ -12,7 +12,7 @@ from mechkin_cli.arguments import a_text, texts
 from mechkin_cli.building import used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.errors.cells import doubts, true_values
-from mechkin_cli.errors.repeat import repetition
+from mechkin_cli.errors.response import repetition
 from mechkin_cli.errors.rows import BALANCE, DENSE, SUMMARY, WORDS, NotRepeated, Repeated, reason_of
 from mechkin_cli.mechanism import read_for
 from mechkin_cli.record import replace
@@ -34,9 +34,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Expression
-    from mechkin_cli.mechanism import Wanted
     from mechkin_cli.sweep import Readable
-    from mechkin_cli.tables import ColumnLayout, Columns, TableColumn
+    from mechkin_cli.tables import TableColumn
     from mechkin_cli.tape import DoubleDoubles
 
 
@@ -57,20 +56,16 @@ class Errors(Listed):
 
     def __init__(self, analysis: Readable) -> None:
         self._analysis = analysis
-        self.columns: tuple[ColumnErrors, ...] = tuple(
-            found
+        columns = [
+            self._of_column(own.expression, table.name, column)
             for layout, table in zip(analysis.layouts, analysis.tables, strict=True)
-            for found in self._of_table(layout.columns, table)
-        ) + tuple(
-            not_repeated(table.name, ALL_COLUMNS, "", 0, why)
-            for tables, why in ((analysis.coefficients, DENSE), (analysis.balance_tables, BALANCE))
-            for table in tables
-        )
-        self.columns += tuple(
-            not_repeated(f"{table.name}.summary", ALL_COLUMNS, "", 0, SUMMARY)
-            for table in analysis.tables
-            if table.summary is not None
-        )
+            for own, column in zip(layout.columns, table.columns, strict=True)
+        ]
+        others = [(table.name, DENSE) for table in analysis.coefficients]
+        others += [(table.name, BALANCE) for table in analysis.balance_tables]
+        others += [(f"{t.name}.summary", SUMMARY) for t in analysis.tables if t.summary is not None]
+        columns += [not_repeated(name, ALL_COLUMNS, "", 0, why) for name, why in others]
+        self.columns: tuple[ColumnErrors, ...] = tuple(columns)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled and copied as the analysis, whose rows are repeated once more."""
@@ -83,11 +78,11 @@ class Errors(Listed):
         rows = []
         for column in self.columns:
             row = column.worst
-            told = [column.why, "", "", ""]
+            cells = ("", "", "", column.why)
             if row >= 0:
                 error, relative = column.error[row], column.relative[row]
-                told = ["", f"{error:.1e} {column.unit}", f"{relative:.1e}", str(row + 1)]
-            rows.append((column.table, column.label, told[1], told[2], told[3], told[0]))
+                cells = (f"{error:.1e} {column.unit}", f"{relative:.1e}", str(row + 1), "")
+            rows.append((column.table, column.label, *cells))
         labels = ("table", "column", "worst error", "relative", "row", "why not")
         return Listing(f"True errors of {self._analysis.model.name}: {digits}", labels, tuple(rows))
 
@@ -98,23 +93,20 @@ class Errors(Listed):
 
     @cached_property
     def _rough(self) -> Repeated | None:
-        """The rows of a response once more, less finely: what both differ by is what the repetition
-        is known to. None of a sweep."""
+        """The rows of a response once more, less finely: the repetition is known to the difference
+        of both. None of a sweep."""
         rough = self.repeated.rough
         return None if rough is None else self._read(rough)
 
     def _read(self, repeated: Repeated) -> Repeated:
-        # what cannot be repeated says so at its own column
-        with suppress(NotRepeated):
-            repeated.read(self._readable())
-        return repeated
-
-    def _readable(self) -> list[Wanted]:
-        """What the tables read, as far as it is repeated."""
+        """Repeats what the tables read, as far as it can be."""
         problem = self._analysis.result.problem
         known = problem.quantities()
         names = read_for(used_quantities(self._analysis.layouts, known), known)
-        return [known[name] for name in names if not reason_of(problem, known[name])]
+        # a column that cannot be repeated has its own reason
+        with suppress(NotRepeated):
+            repeated.read([known[name] for name in names if not reason_of(problem, known[name])])
+        return repeated
 
     @property
     def digits(self) -> int | None:
@@ -136,19 +128,15 @@ class Errors(Listed):
     def states(self) -> NDArray[np.float64]:
         """The largest error of any state in every row (rows,), in rad or in parts of the length
         unit of the mechanism's size: what `row.error_bound` bounds."""
-        wide = self.repeated.wide
-        known = wide.states
         with np.errstate(invalid="ignore"):
-            off = np.abs((known - self._analysis.result.row_states.states).high)
-        found: NDArray[np.float64] = np.max(off, axis=0, initial=0.0)
-        return found
+            off = (self.repeated.wide.states - self._analysis.result.row_states.states).high
+        return np.asarray(np.max(np.abs(off), axis=0, initial=0.0))
 
     def __getitem__(self, name: str | tuple[str, str]) -> NDArray[Any]:
         """The errors of a column, or of an expression.
 
         Raises:
-            UsageError: several tables have other columns of this label, or what it says is not
-                repeated.
+            UsageError: several tables have other columns of this label, or it is not repeated.
             ExpressionError: neither a label nor an expression of quantities.
         """
         if isinstance(name, tuple):
@@ -174,11 +162,11 @@ class Errors(Listed):
             if (column.table, column.label) == (table, label):
                 return column
         known = list(dict.fromkeys(f"{c.table}.{c.label}" for c in self.columns))
-        asked = f"{table[:LONGEST_NAME]}.{label[:LONGEST_NAME]}"
-        hint = (
-            nearest_hint(asked, known) or f"columns are {', '.join(known[:MOST_LISTED]) or 'none'}"
+        name = f"{table[:LONGEST_NAME]}.{label[:LONGEST_NAME]}"
+        some = ", ".join(known[:MOST_LISTED]) or "none"
+        raise UsageError(
+            f"there is no column {name}; {nearest_hint(name, known) or f'columns are {some}'}"
         )
-        raise UsageError(f"there is no column {asked}; {hint}")
 
     def _of_expression(self, text: str) -> NDArray[Any]:
         if text in row_texts(self._analysis.run):
@@ -189,11 +177,11 @@ class Errors(Listed):
             true = self._true(self._analysis.result.problem.definitions.parse(text))
         except NotRepeated as reason:
             raise UsageError(f"{text} is not repeated in double-double: {reason}") from None
-        found = [
+        errors = [
             column_errors("", text, "", cells, *exact).error
             for cells, exact in zip(parts, true, strict=True)
         ]
-        return np.stack(found, axis=1) if len(found) > 1 else found[0]
+        return np.stack(errors, axis=1) if len(errors) > 1 else errors[0]
 
     def _true(self, expression: Expression) -> list[tuple[DoubleDoubles, NDArray[Any]]]:
         """The true values of an expression, and how far they may be off.
@@ -210,26 +198,17 @@ class Errors(Listed):
             doubt = [np.fmax(a, b) for a, b in zip(doubt, apart, strict=True)]
         return list(zip(true, doubt, strict=True))
 
-    def _of_table(self, layouts: tuple[ColumnLayout, ...], table: Columns) -> list[ColumnErrors]:
-        return [
-            self._of_column(layout.expression, table.name, column)
-            for layout, column in zip(layouts, table.columns, strict=True)
-        ]
-
     def _of_column(self, expression: Expression, table: str, column: TableColumn) -> ColumnErrors:
         values = column.values
-        is_text = expression.text.strip() in row_texts(self._analysis.run)
-        if is_text or isinstance(values, Words):
-            return not_repeated(table, column.label, column.unit, _values(column), WORDS)
+        if isinstance(values, Words):
+            return not_repeated(table, column.label, column.unit, column.rows, WORDS)
+        if expression.text.strip() in row_texts(self._analysis.run):
+            return not_repeated(table, column.label, column.unit, values, WORDS)
         try:
             ((true, doubt),) = self._true(expression)
         except NotRepeated as reason:
             return not_repeated(table, column.label, column.unit, values, str(reason))
         lost = self.repeated.lost_why or LOST
-        found = column_errors(table, column.label, column.unit, values, true, doubt, lost)
+        errors = column_errors(table, column.label, column.unit, values, true, doubt, lost)
         there = self._analysis.result.status == Status.dead_centre
-        return replace(found, there=there) if there.any() else found
-
-
-def _values(column: TableColumn) -> Any:
-    return column.rows if isinstance(column.values, Words) else column.values
+        return replace(errors, there=there) if there.any() else errors

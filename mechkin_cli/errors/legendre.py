@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.kernel.functions import cos
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import DoubleDoubles, joined, stacked
 
 if TYPE_CHECKING:
@@ -26,24 +25,11 @@ DIGITS = 50
 """Of the decimals that nodes are computed in; double-double has 32."""
 
 
-class Collocation(NamedTuple):
-    """Of one number of nodes.
-
-    Attributes:
-        nodes: (nodes,) in (0, 1).
-        coefficients: (nodes, nodes) from values at the nodes to Legendre coefficients.
-        integrals: (nodes + 1, nodes) from coefficients to the integrals from 0 to each node and to
-            1.
-    """
-
-    nodes: DoubleDoubles
-    coefficients: DoubleDoubles
-    integrals: DoubleDoubles
-
-
 @cache
-def collocation(count: int) -> Collocation:
-    """The collocation of a number of nodes."""
+def collocation(count: int) -> tuple[DoubleDoubles, DoubleDoubles, DoubleDoubles]:
+    """Of a number of nodes: these (nodes,) in (0, 1); the matrix (nodes, nodes) from values there
+    to Legendre coefficients; that (nodes + 1, nodes) from coefficients to the integrals from 0 to
+    each node and to 1."""
     with localcontext() as context:
         context.prec = DIGITS
         roots = [_root(count, k) for k in range(count)]
@@ -60,18 +46,16 @@ def collocation(count: int) -> Collocation:
         ends = [*values, [Decimal(1)] * (count + 2)]
         integrals = [[_integral(k, v) for k in range(count)] for v in ends]
         nodes = [(x + 1) / 2 for x in roots]
-    return Collocation(
-        _double_doubles(nodes), _double_doubles(coefficients), _double_doubles(integrals)
-    )
+    return _double_doubles(nodes), _double_doubles(coefficients), _double_doubles(integrals)
 
 
 def integrals_to(places: DoubleDoubles, count: int) -> DoubleDoubles:
     """From `count` coefficients to the integrals from 0 to some places (places, count), which may
     lie outside [0, 1]."""
     p = _polynomials(places, count + 1)
-    found = [places + 0.0]
-    found += [(p[k + 1] - p[k - 1]) / (2.0 * (2.0 * k + 1.0)) for k in range(1, count)]
-    return stacked(found, axis=1)
+    integrals = [places + 0.0]
+    integrals += [(p[k + 1] - p[k - 1]) / (2.0 * (2.0 * k + 1.0)) for k in range(1, count)]
+    return stacked(integrals, axis=1)
 
 
 def values_at(places: DoubleDoubles, coefficients: DoubleDoubles) -> DoubleDoubles:
@@ -126,10 +110,9 @@ def _integral(degree: int, p: Sequence[Decimal]) -> Decimal:
 
 
 def _double_doubles(numbers: Sequence[Sequence[Decimal]] | Sequence[Decimal]) -> DoubleDoubles:
-    given = np.array(numbers, dtype=object)
-    high = given.astype(np.float64)
+    decimals = np.array(numbers, dtype=object)
+    high = decimals.astype(np.float64)
     with localcontext() as context:
         context.prec = DIGITS
         rest = np.vectorize(lambda x, h: float(x - Decimal(h)), otypes=[np.float64])
-        low = rest(given, high)
-    return DoubleDoubles(high, low)
+        return DoubleDoubles(high, rest(decimals, high))

@@ -1,8 +1,12 @@
 """The rows of a run by the kernel's double-double unit, with the numbers of the file's text.
 
 The kernel starts from the converged doubles, closes the loops in double-double, and computes what
-is wanted there. Constants and inputs are those of the text (`solver.precise`), so what is found is
-true to about 1e-31 times the condition.
+is wanted there (`KernelRows`). Constants and inputs are those of the text (`session.precise`), so
+results are true to about 1e-31 times the condition.
+
+Nothing is decided again (`Repeated`): which rows there are, their branch, the whole turns of angles
+and which reactions are unique are those of the run. Its quantities are those of the same code, for
+derived ones line by line (`tape.double_doubles`). `reason_of` gives why a quantity is not repeated.
 """
 
 from __future__ import annotations
@@ -10,10 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.derived import BasisQuantities, basis_of, derived_columns
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import (
@@ -41,9 +46,6 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep import Result
 
 
-# Double-double numbers as the kernel takes them: high and low parts beside each other.
-
-
 def as_number(parts: Floats) -> DoubleDoubles:
     """(numbers, 2, rows) as double-doubles (numbers, rows)."""
     return DoubleDoubles(parts[:, 0], parts[:, 1])
@@ -51,12 +53,11 @@ def as_number(parts: Floats) -> DoubleDoubles:
 
 def as_parts(numbers: Any) -> Floats:
     """Double-doubles (numbers, rows) as (numbers, 2, rows)."""
-    given = exactly(numbers)
-    return np.stack([given.high, given.low], axis=1)
+    exact = exactly(numbers)
+    return np.stack([exact.high, exact.low], axis=1)
 
 
-# Why a quantity is not repeated in double-double, in a few words.
-
+# why a quantity is not repeated
 VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
@@ -71,7 +72,6 @@ DENSE = "a dense system"
 BALANCE = "a balance over all rows"
 SUMMARY = "a summary: off by no more than twice the worst cell of its column"
 AS_DRIVEN = "read as if the start's coordinates were driven"
-
 
 _NUMBERS_OF_ROWS = {"time", "kinetic_energy", "potential_energy", "work", "dissipated"}
 
@@ -96,54 +96,8 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
     return ""
 
 
-# The rows of a run once more, in double-double numbers.
-#
-# Nothing is decided again: which rows there are, their branch, the whole turns of angles and which
-# reactions are unique are those of the run. Its quantities are those of the same code, for derived
-# ones line by line (`tape.double_doubles`).
-
 Wide = dict[str, DoubleDoubles]
 """Quantities by name: (1, rows), vectors (3, rows); SI."""
-
-
-class WideRun(Protocol):
-    """What gives the rows in double-double."""
-
-    @property
-    def inputs(self) -> KernelInputs:
-        """Of the rows, as `Session.inputs`; the arrays are double-double."""
-        ...
-
-    @property
-    def parameters(self) -> Mapping[str, Quantity]:
-        """The file's parameters, in SI."""
-        ...
-
-    @property
-    def written(self) -> Mapping[str, DoubleDoubles]:
-        """Time and inputs with their rates, by the names of their quantities, in the file's
-        units."""
-        ...
-
-    @property
-    def time(self) -> DoubleDoubles | None:
-        """Time of the rows in s (rows,); None of a run without time."""
-        ...
-
-    @property
-    def states(self) -> DoubleDoubles:
-        """The states of the plan (states, rows); nan in rows that did not close."""
-        ...
-
-    def run(
-        self,
-        wanted: Sequence[Wanted],
-        session: Session,
-        inputs: KernelInputs,
-        demand: Demand,
-    ) -> Wide:
-        """Quantities of the kernel on the rows of the run; nan in rows that did not close."""
-        ...
 
 
 class NotRepeated(Exception):
@@ -155,15 +109,13 @@ class Repeated:
 
     Args:
         result: the run.
-        wide: what gives its rows.
+        wide: its rows in double-double.
     """
 
     shifts: tuple[int, ...] = ()
 
-    def __init__(self, result: Result, wide: WideRun) -> None:
-        self.result = result
-        self.wide = wide
-        self.row_states = result.row_states
+    def __init__(self, result: Result, wide: KernelRows) -> None:
+        self.result, self.wide, self.row_states = result, wide, result.row_states
         self._columns: Wide = {}
         self._rests: Wide = {}
 
@@ -199,7 +151,7 @@ class Repeated:
 
     @property
     def written(self) -> Mapping[str, DoubleDoubles]:
-        """What the rows were given, in the file's units."""
+        """Time and inputs of the rows, in the file's units."""
         return self.wide.written
 
     def quantity(self, name: str) -> Quantity:
@@ -242,27 +194,19 @@ class Repeated:
                 raise NotRepeated(reason)
         plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
         derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
-        if derived:
-            from mechkin_cli.derived import basis_of
-
-            basis = basis_of(self.problem.mechanism, derived)
-            plain += [q for q in basis if q.name not in self._columns and q not in plain]
+        basis = basis_of(self.problem.mechanism, derived)
+        plain += [q for q in basis if q.name not in self._columns and q not in plain]
         if plain:
-            found = self.evaluated(plain)
-            self._rests |= self._turned(plain, found)
-            self._columns |= found
+            columns = self.evaluated(plain)
+            self._rests |= self._turned(plain, columns)
+            self._columns |= columns
         if derived:
-            self._columns |= self._derived(derived)
-
-    def _derived(self, wanted: list[Wanted]) -> Wide:
-        from mechkin_cli.derived import BasisQuantities, derived_columns
-
-        run: Any = BasisQuantities(self, self._columns, self.wide.inputs)  # type: ignore[arg-type]
-        try:
-            found: Any = derived_columns(run, wanted)
-        except TypeError as error:
-            raise NotRepeated(f"computed in doubles alone ({error})") from None
-        return dict(found)
+            run = BasisQuantities(self, self._columns, self.wide.inputs)  # type: ignore[arg-type]
+            try:
+                of_run: Any = derived_columns(run, derived)
+            except TypeError as error:
+                raise NotRepeated(f"computed in doubles alone ({error})") from None
+            self._columns |= of_run
 
     def evaluated(
         self,
@@ -276,15 +220,15 @@ class Repeated:
         """Quantities on the rows, as `Result.evaluated`; of the balance of least norm alone."""
         session = session or self.session
         demand |= demand_of(session.problem.mechanism, wanted)
-        found = self.wide.run(wanted, session, self._exact(inputs), demand)
+        columns = self.wide.run(wanted, session, self._exact(inputs), demand)
         rows = self.row_states
         unclear = ~has_rates(rows.status)
         for quantity in wanted:
-            own = found[quantity.name]
+            own = columns[quantity.name]
             own[:, ~rows.reached] = np.nan
             if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
                 own[:, unclear] = np.nan
-        return found
+        return columns
 
     def _exact(self, inputs: KernelInputs | None) -> KernelInputs:
         """The rows' inputs, with those rates of `inputs` that are not the rows' own: of whole
@@ -297,26 +241,26 @@ class Repeated:
         known = {id(getattr(one, name)) for one in (own, exact) for name in moving}
         return exact._replace(**{k: v for k, v in others.items() if id(v) not in known})
 
-    def _turned(self, wanted: Sequence[Wanted], found: Wide) -> Wide:
+    def _turned(self, wanted: Sequence[Wanted], columns: Wide) -> Wide:
         """Gives angles the whole turns that they have in the run, in place; returns what they are
         within a turn."""
         rests: Wide = {}
         for quantity in wanted:
             if quantity.kind != "coordinate" or quantity.order or not is_angle(quantity.coordinate):
                 continue
-            said = np.asarray(self.result.quantity(quantity.name).value)
-            within = found[quantity.name][0]
-            turns = np.rint((said - within.high) / (2.0 * pi))
+            in_run = np.asarray(self.result.quantity(quantity.name).value)
+            within = columns[quantity.name][0]
+            turns = np.rint((in_run - within.high) / (2.0 * pi))
             turns = np.where(np.isfinite(turns), turns, 0.0)
             if turns.any():
                 turned = within + turns * DoubleDoubles.of_fraction(2 * PI)
                 rests[quantity.name] = within.copy()
-                found[quantity.name] = np.stack([turned])  # type: ignore[assignment]
+                columns[quantity.name] = np.stack([turned])  # type: ignore[assignment]
         return rests
 
 
 def wide_run(result: Result) -> KernelRows:
-    """What repeats the rows of a run.
+    """The rows of a run in double-double.
 
     Raises:
         NotRepeated: a number depends on the file's text in a way that no tape holds.
@@ -328,11 +272,11 @@ def wide_run(result: Result) -> KernelRows:
 
 
 class KernelRows:
-    """The rows of a run in double-double, as `repeated.WideRun`.
+    """The rows of a run in double-double.
 
     Args:
         result: the run.
-        precise: the numbers of its session as the text says them.
+        precise: the numbers of its session's text.
         chosen: rows that are wanted (rows,); None: all.
 
     Attributes:
@@ -341,15 +285,13 @@ class KernelRows:
     """
 
     def __init__(self, result: Result, precise: Precise, chosen: Bools | None = None) -> None:
-        self.result = result
-        self.precise = precise
-        self.chosen = chosen
+        self.result, self.precise, self.chosen = result, precise, chosen
         self.residual: Floats = np.full(result.rows, np.nan)
         self._known: dict[int, tuple[Session, Floats]] = {}
 
     @property
-    def given(self) -> PreciseInputs:
-        """Inputs and time over the rows, as the text says them."""
+    def of_text(self) -> PreciseInputs:
+        """Inputs and time of the text over the rows."""
         return self.precise.inputs(self.result.session)
 
     @property
@@ -360,36 +302,36 @@ class KernelRows:
 
     @cached_property
     def inputs(self) -> KernelInputs:
-        """Of the rows, double-double."""
-        given = self.given
+        """Of the rows, as `Session.inputs`; the arrays are double-double."""
         names = ("values", "rates", "accelerations", "jerks", "reduced")
-        numbers: dict[str, Any] = {name: as_number(getattr(given, name)) for name in names}
-        return KernelInputs(**numbers, whole=given.whole)
+        numbers: dict[str, Any] = {name: as_number(getattr(self.of_text, name)) for name in names}
+        return KernelInputs(**numbers, whole=self.of_text.whole)
 
     @cached_property
     def parameters(self) -> Mapping[str, Quantity]:
         """The file's parameters, in SI."""
         known = self.result.problem.parameters
-        found: dict[str, Quantity] = {}
+        parameters: dict[str, Quantity] = {}
         for name, (high, low) in self.precise.parameters.items():
             value: Any = DoubleDoubles(high, low)
-            found[name] = Quantity(value, known[name].dimension)
-        return found
+            parameters[name] = Quantity(value, known[name].dimension)
+        return parameters
 
     @cached_property
     def written(self) -> Mapping[str, DoubleDoubles]:
-        """Time and inputs with their rates, in the file's units."""
-        return {name: DoubleDoubles(*parts) for name, parts in self.given.written.items()}
+        """Time and inputs with their rates, by the names of their quantities, in the file's
+        units."""
+        return {name: DoubleDoubles(*parts) for name, parts in self.of_text.written.items()}
 
     @property
     def time(self) -> DoubleDoubles | None:
         """Time of the rows in s (rows,); None of a run without time."""
-        time = self.given.time
+        time = self.of_text.time
         return None if time is None else DoubleDoubles(*time)
 
     @cached_property
     def states(self) -> DoubleDoubles:
-        """The states of the plan (states, rows)."""
+        """The states of the plan (states, rows); nan in rows that did not close."""
         return self._run((), self.result.session, self.inputs, Demand.POSITION)[0]
 
     def run(
@@ -412,7 +354,6 @@ class KernelRows:
     ) -> tuple[DoubleDoubles, DoubleDoubles | None]:
         known = self.known
         at = np.flatnonzero(known) if known.any() else np.zeros(1, dtype=np.intp)
-
         ask = Ask(demand & ~Demand.CONDITION, session.readout(wanted) if wanted else None)
         written = self.precise.outputs(session, wanted) if wanted else None
         numbers = PreciseConstants(self._constants(session), written)
@@ -425,22 +366,22 @@ class KernelRows:
         return _put_back(batch.states, at, closed, known.size), values
 
     def _row_inputs(self, inputs: KernelInputs, session: Session) -> RowInputs:
-        """What a run of `session` is given for the rows."""
-        given, rows = self.given, self.result.row_states
+        """The rows of a run of `session`."""
+        of_text, rows = self.of_text, self.result.row_states
         values, rates, accelerations, jerks, reduced, _ = map(as_parts, inputs)
-        in_parts = KernelInputs(values, rates, accelerations, jerks, reduced, given.whole)
-        return in_parts.at(rows.states, rows.turns, given.time, given.constraint_rates)
+        in_parts = KernelInputs(values, rates, accelerations, jerks, reduced, of_text.whole)
+        return in_parts.at(rows.states, rows.turns, of_text.time, of_text.constraint_rates)
 
     def _constants(self, session: Session) -> Floats:
-        """The constants of a session's plan as the text says them (constants, 2); kept."""
+        """The constants of a session's plan in the text (constants, 2)."""
         if id(session) not in self._known:
             self._known[id(session)] = (session, self.precise.constants(session))
         return self._known[id(session)][1]
 
 
-def _put_back(found: Floats, at: NDArray[np.intp], closed: Bools, rows: int) -> DoubleDoubles:
+def _put_back(some: Floats, at: NDArray[np.intp], closed: Bools, rows: int) -> DoubleDoubles:
     """Numbers (numbers, 2, places) of the rows `at` among all; nan elsewhere and where a row did
     not close."""
-    numbers = np.full((len(found), 2, rows), np.nan)
-    numbers[..., at[closed]] = found[..., closed]
+    numbers = np.full((len(some), 2, rows), np.nan)
+    numbers[..., at[closed]] = some[..., closed]
     return as_number(numbers)

@@ -1,9 +1,15 @@
 """Motions that all joints around some links allow, so that nothing but these links moves.
 
-Screws (angular, linear at the origin of the drawing; lengths in parts of a size) are taken on the
-links' own drawing at general coordinates of the joints: what is common there is common everywhere,
-and no accident of the drawing. Two such places are compared, so that a line that the links carry
-with them is told from one that only happens to be there.
+`common_motions`: screws (angular, linear at the origin of the drawing; lengths in parts of a size)
+are taken on the links' own drawing at general coordinates of the joints: what is common there is
+common everywhere, and no accident of the drawing. Two such places are compared, which distinguishes
+a line that the links carry with them from one that only happens to be there.
+
+`idle_groups`: links with two joints and more, and chains of links with two joints each, are taken
+one after the other, few links first. A group's motions are those that no smaller group has: in
+S-E-C with the axes in line the two links in between turn, each on its own, and that both turn
+together adds nothing. This is a matter of the rates of all joints at one place, so motions are
+stored at each general place and reduced by those before (`IdleBasis`).
 """
 
 from __future__ import annotations
@@ -48,41 +54,23 @@ _BALLS = ((1.0, 2.0, 3.0, 4.0), (4.0, 1.0, -2.0, 3.0), (2.0, -3.0, 1.0, 4.0))
 """Directions of the quaternions of general places."""
 
 
-class Displacement(NamedTuple):
-    """A rigid displacement: axes and origin of a frame that stood along the ground's axes."""
-
-    x: Vector
-    y: Vector
-    z: Vector
-    o: Vector
-
-    def vector(self, a: Vector) -> Vector:
-        """A direction, displaced."""
-        return add(add(scale(a[0], self.x), scale(a[1], self.y)), scale(a[2], self.z))
-
-    def after(self, first: Displacement) -> Displacement:
-        """`first`, then this."""
-        x, y, z = (self.vector(axis) for axis in (first.x, first.y, first.z))
-        return Displacement(x, y, z, add(self.vector(first.o), self.o))
-
-    def reversed(self) -> Displacement:
-        """The displacement back."""
-        frame = Frame(self.x, self.y, self.z, ZERO)
-        x, y, z = (frame.components(axis) for axis in (GROUND.x, GROUND.y, GROUND.z))
-        return Displacement(x, y, z, scale(-1.0, frame.components(self.o)))
-
-    def screw(self, screw: Screw) -> Screw:
-        """A screw, displaced."""
-        angular = self.vector(screw[0])
-        return angular, add(self.vector(screw[1]), cross(self.o, angular))
+# a rigid displacement is a frame that stood along the ground's axes; GROUND stands still
 
 
-STILL = Displacement(*GROUND)
+def _back(by: Frame) -> Frame:
+    """The displacement back."""
+    x, y, z = (by.components(axis) for axis in (GROUND.x, GROUND.y, GROUND.z))
+    return Frame(x, y, z, scale(-1.0, by.components(by.o)))
+
+
+def _displaced(screw: Screw, by: Frame) -> Screw:
+    angular = by.vector(screw[0])
+    return angular, add(by.vector(screw[1]), cross(by.o, angular))
 
 
 class LinkMotion(NamedTuple):
     """A motion of some links at one place: the rates of the freedoms that move, the twist of each
-    link on its own drawing, and by what twist the joints miss to have it in common."""
+    link on its own drawing, and the twist by which the joints miss having it in common."""
 
     rates: Mapping[Freedom, float]
     twists: Mapping[str, Screw]
@@ -93,19 +81,22 @@ class LinkMotion(NamedTuple):
         """The largest rate."""
         return max((abs(rate) for rate in self.rates.values()), default=0.0)
 
+    @property
+    def fastest_freedom(self) -> Freedom:
+        """The first freedom that has it."""
+        return max(self.rates, key=lambda freedom: abs(self.rates[freedom]))
+
     def less(self, factor: float, other: LinkMotion) -> LinkMotion:
-        """This, and another motion back by a factor."""
+        """This, less another motion times a factor."""
         rates = {
-            known: self.rates.get(known, 0.0) - factor * other.rates.get(known, 0.0)
-            for known in (*self.rates, *(each for each in other.rates if each not in self.rates))
+            freedom: self.rates.get(freedom, 0.0) - factor * other.rates.get(freedom, 0.0)
+            for freedom in dict.fromkeys((*self.rates, *other.rates))
         }
         twists = dict(self.twists)
         for link, (angular, linear) in other.twists.items():
-            own = twists.get(link, (ZERO, ZERO))
-            twists[link] = (
-                subtract(own[0], scale(factor, angular)),
-                subtract(own[1], scale(factor, linear)),
-            )
+            turn, slide = twists.get(link, (ZERO, ZERO))
+            turn = subtract(turn, scale(factor, angular))
+            twists[link] = turn, subtract(slide, scale(factor, linear))
         return LinkMotion(rates, twists, self.miss + abs(factor) * other.miss)
 
 
@@ -122,19 +113,19 @@ def common_motions(
         links: in the order of the chain.
         inner: the joints between them, each leads from one to the next.
         border: the joints to other links.
-        still: freedoms that shall not move.
+        still: freedoms that do not move.
         general: the place.
     """
-    pose = {links[0]: STILL}
+    pose = {links[0]: GROUND}
     for here, there, joint in zip(links, links[1:], inner, strict=False):
-        pose[there] = pose[here].after(general.seen_from(joint, here)[0])
+        pose[there] = pose[here].carry(general.seen_from(joint, here)[0])
     columns: list[tuple[int, Freedom, tuple[float, ...]]] = []
     for number, joint in enumerate(border):
         link = joint.first if joint.first in pose else joint.second
         at = pose[link]
         outward = 1.0 if link == joint.second else -1.0  # rates are of the second link
         for own, screw in enumerate(general.seen_from(joint, link)[1]):
-            seen = screw if at is STILL else at.screw(screw)
+            seen = screw if at is GROUND else _displaced(screw, at)
             entries = tuple(outward * entry for entry in (*seen[0], *seen[1]))
             columns.append((number, (joint.name, own), entries))
     # the twist by the first joint is that by each other
@@ -148,7 +139,7 @@ def common_motions(
     ]
     for freedom in still:
         rows.append([1.0 if known == freedom else 0.0 for _, known, _ in columns])
-    found = []
+    motions = []
     for motion in _null_space([row.copy() for row in rows], len(columns)):
         v = [0.0] * 6
         for rate, (number, _, entries) in zip(motion, columns, strict=True):
@@ -156,9 +147,11 @@ def common_motions(
                 v = [known + rate * entry for known, entry in zip(v, entries, strict=True)]
         twist: Screw = ((v[0], v[1], v[2]), (v[3], v[4], v[5]))
         rates = {freedom: rate for rate, (_, freedom, _) in zip(motion, columns, strict=True)}
-        twists = {n: pose[n].reversed().screw(twist) for n in links}
-        found.append(LinkMotion(rates, twists, _miss(rows, motion)))
-    return found
+        twists = {link: _displaced(twist, _back(pose[link])) for link in links}
+        mapped = (sum(a * b for a, b in zip(row, motion, strict=True)) for row in rows)
+        miss = max((abs(entry) for entry in mapped), default=0.0)
+        motions.append(LinkMotion(rates, twists, miss))
+    return motions
 
 
 class General:
@@ -169,30 +162,34 @@ class General:
         self.size, self.origin = size, origin
         self._next = 7 * place
         self._drawn = place == DRAWN
-        self._seen: dict[tuple[str, str], tuple[Displacement, list[Screw]]] = {}
+        self._seen: dict[tuple[str, str], tuple[Frame, list[Screw]]] = {}
 
-    def seen_from(self, joint: Joint, link: str) -> tuple[Displacement, list[Screw]]:
+    def seen_from(self, joint: Joint, link: str) -> tuple[Frame, list[Screw]]:
         """The displacement from the drawing of the joint's other link to that of a link, and the
         joint's screws on the latter."""
         if (joint.name, link) not in self._seen:
-            passed = STILL
+            passed = GROUND
             screws: list[Screw] = []
             pitch = joint.pitch / self.size
             for part in joint.parts:
-                part = _scaled(part, self.size, self.origin)
+                before, after = (
+                    frame._replace(o=scale(1.0 / self.size, subtract(frame.o, self.origin)))
+                    for frame in (part.before, part.after)
+                )
+                part = part._replace(before=before, after=after)
                 own = part.screws(pitch)
-                screws += own if passed is STILL else [passed.screw(screw) for screw in own]
-                passed = passed.after(self._moved(part, pitch))
-            back = passed.reversed()
+                screws += own if passed is GROUND else [_displaced(s, passed) for s in own]
+                passed = passed.carry(self._moved(part, pitch))
+            back = _back(passed)
             self._seen[joint.name, joint.first] = passed, screws
-            self._seen[joint.name, joint.second] = back, [back.screw(screw) for screw in screws]
+            self._seen[joint.name, joint.second] = back, [_displaced(s, back) for s in screws]
         return self._seen[joint.name, link]
 
-    def _moved(self, part: Part, pitch: float) -> Displacement:
+    def _moved(self, part: Part, pitch: float) -> Frame:
         """A part at general coordinates: from the drawing after it to the drawing before it."""
         self._next += 1
         turn, slide = _TURNS[self._next % len(_TURNS)], _SLIDES[self._next % len(_SLIDES)]
-        own = STILL
+        own = GROUND
         if self._drawn:
             pass
         elif part.type.is_ball:
@@ -201,21 +198,11 @@ class General:
             motions = {freedom.motion for freedom in part.type.freedoms}
             cosine, sine = (1.0, 0.0) if motions == {"slide"} else turn
             along = slide if "slide" in motions else slide * pitch
-            own = Displacement(
-                (cosine, sine, 0.0), (-sine, cosine, 0.0), GROUND.z, (0.0, 0.0, along)
-            )
-        before, after = Displacement(*part.before), Displacement(*part.after)
-        return before.after(own).after(after.reversed())
+            own = Frame((cosine, sine, 0.0), (-sine, cosine, 0.0), GROUND.z, (0.0, 0.0, along))
+        return part.before.carry(own).carry(_back(part.after))
 
 
-def _scaled(part: Part, size: float, origin: Vector) -> Part:
-    before, after = (
-        f._replace(o=scale(1.0 / size, subtract(f.o, origin))) for f in (part.before, part.after)
-    )
-    return part._replace(before=before, after=after)
-
-
-def _turned_by(quaternion: tuple[float, float, float, float]) -> Displacement:
+def _turned_by(quaternion: tuple[float, float, float, float]) -> Frame:
     w, x, y, z = quaternion
     square = w * w + x * x + y * y + z * z
     axis = (x, y, z)
@@ -226,7 +213,7 @@ def _turned_by(quaternion: tuple[float, float, float, float]) -> Displacement:
         part = add(scale(2.0 * w * w - square, a), scale(2.0 * along, axis))
         return scale(1.0 / square, add(part, scale(2.0 * w, cross(axis, a))))
 
-    return Displacement(turned(GROUND.x), turned(GROUND.y), turned(GROUND.z), ZERO)
+    return Frame(turned(GROUND.x), turned(GROUND.y), turned(GROUND.z), ZERO)
 
 
 def _null_space(rows: list[list[float]], count: int) -> list[list[float]]:
@@ -251,23 +238,17 @@ def _null_space(rows: list[list[float]], count: int) -> list[list[float]]:
                 row[:] = [a - factor * b for a, b in zip(row, pivot, strict=True)]
         order.append(column)
         done += 1
-    found = []
+    basis = []
     for free in (k for k in range(count) if k not in order):
         motion = [0.0] * count
         motion[free] = 1.0
         for number, column in enumerate(order):
             motion[column] = -rows[number][free]
-        found.append(motion)
-    return found
+        basis.append(motion)
+    return basis
 
 
-def _miss(rows: list[list[float]], motion: list[float]) -> float:
-    """The largest entry of what the rows map a motion to."""
-    mapped = (sum(a * b for a, b in zip(row, motion, strict=True)) for row in rows)
-    return max((abs(entry) for entry in mapped), default=0.0)
-
-
-def same_line(one: Screw, other: Screw) -> bool:
+def _same_line(one: Screw, other: Screw) -> bool:
     """Whether two screws, scaled alike, are the same or opposite."""
     a, b = (*one[0], *one[1]), (*other[0], *other[1])
     apart = max(abs(x - y) for x, y in zip(a, b, strict=True))
@@ -275,7 +256,7 @@ def same_line(one: Screw, other: Screw) -> bool:
     return min(apart, mirrored) <= tolerances.SAME_COMMON_MOTION
 
 
-def scaled_screw(screw: Screw) -> Screw:
+def _scaled_screw(screw: Screw) -> Screw:
     """The screw with a unit angular part, or, of a slide, a unit linear part."""
     angular, linear = screw
     turn, slide = (max(abs(c) for c in part) for part in (angular, linear))
@@ -291,38 +272,22 @@ def line_of(screw: Screw) -> tuple[Vector, Vector]:
     return angular, cross(angular, linear)
 
 
-def advance_of(screw: Screw) -> Vector:
-    """What a scaled screw slides along its line while it turns."""
-    angular, linear = screw
-    point = cross(angular, linear)
-    return subtract(linear, cross(point, angular))
-
-
-# The motions that some links may make, as one body, while all others stay at rest.
-#
-# Links with two joints and more, and chains of links with two joints each, are looked at one after
-# the other, few links first. A group's motions are those that no smaller group has: in S-E-C with
-# the axes in line the two links in between turn, each on its own, and that both turn together says
-# nothing more. This is a matter of the rates of all joints at one place, so motions are kept at
-# each general place (common_motions.py), and reduced by those that were found before.
-
 Coordinate = tuple[str, str]
 """A joint and its coordinate."""
 
 
 class Moving(NamedTuple):
-    """A motion as a group makes it (`own`), and less the motions that were found before
-    (`beside`)."""
+    """A motion as a group makes it (`own`), and less the motions before it (`beside`)."""
 
     own: LinkMotion
     beside: LinkMotion
 
     def rate(self, freedom: Freedom) -> float:
-        """The rate of a freedom beside what is found, in parts of the fastest."""
+        """The rate of a freedom in `beside`, in parts of the fastest."""
         return abs(self.beside.rates.get(freedom, 0.0)) / (self.beside.fastest or 1.0)
 
     def less(self, factor: float, other: Moving) -> Moving:
-        """This, and another motion back by a factor."""
+        """This, less another motion times a factor."""
         return Moving(self.own.less(factor, other.own), self.beside.less(factor, other.beside))
 
 
@@ -335,18 +300,18 @@ class IdleBasis:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Of the motions."""
         return len(self._at[0])
 
     def beside(self, place: int, motion: LinkMotion) -> LinkMotion:
-        """A motion less those that were found."""
+        """A motion less those of the basis."""
         for freedom, known in self._at[place]:
             if rate := motion.rates.get(freedom, 0.0):
                 motion = motion.less(rate / known.rates[freedom], known)
         return motion
 
     def add(self, place: int, freedom: Freedom, motion: LinkMotion) -> None:
-        """One more, beside the others, with a freedom that tells it from them."""
+        """One more, beside the others, with a freedom that none of them moves."""
         self._at[place].append((freedom, motion))
 
 
@@ -367,42 +332,40 @@ class RigidGroup:
         """How many motions are left: where there are the fewest, as others are accidents."""
         return min(len(place) for place in self.left)
 
-    def look_beside(self, found: IdleBasis) -> None:
-        """Leaves the motions that are independent of those found."""
+    def reduce(self, basis: IdleBasis) -> None:
+        """Leaves the motions that are independent of a basis."""
         for place, motions in enumerate(self.left):
-            kept: list[Moving] = []
+            independent: list[Moving] = []
             own = IdleBasis()
             for moving in motions:
-                beside = own.beside(place, found.beside(place, moving.own))
+                beside = own.beside(place, basis.beside(place, moving.own))
                 if beside.fastest > tolerances.SAME_COMMON_MOTION * moving.own.fastest:
-                    freedom = max(beside.rates, key=lambda each: abs(beside.rates[each]))
-                    own.add(place, freedom, beside)
-                    kept.append(Moving(moving.own, beside))
-            self.left[place] = kept
+                    own.add(place, beside.fastest_freedom, beside)
+                    independent.append(Moving(moving.own, beside))
+            self.left[place] = independent
 
-    def join(self, found: IdleBasis) -> None:
-        """Accounts for all that is left, and keeps it."""
+    def join(self, basis: IdleBasis) -> None:
+        """Adds all that is left to a basis, and leaves it."""
         for place, motions in enumerate(self.left):
             for _, beside in motions:
-                freedom = max(beside.rates, key=lambda each: abs(beside.rates[each]))
-                found.add(place, freedom, beside)
+                basis.add(place, beside.fastest_freedom, beside)
 
     def least_rate(self, freedom: Freedom) -> float:
         """The rate of a freedom in the motion that moves it most, at the place where it is
         least."""
         return min(max(moving.rate(freedom) for moving in place) for place in self.left)
 
-    def take(self, freedom: Freedom, found: IdleBasis) -> Moving:
-        """Accounts for the motion that moves a freedom most, which the others then leave at rest;
-        gives it as it is at the first place."""
+    def take(self, freedom: Freedom, basis: IdleBasis) -> Moving:
+        """Moves the motion that moves a freedom most to a basis, so that the others leave the
+        freedom at rest; gives it as it is at the first place."""
         taken = []
         for place, motions in enumerate(self.left):
             best = max(range(len(motions)), key=lambda k: motions[k].rate(freedom))
             one, own = motions[best], freedom
             if one.rate(own) <= tolerances.SAME_COMMON_MOTION:  # at rest here, by chance
-                own = max(one.beside.rates, key=lambda each: abs(one.beside.rates[each]))
+                own = one.beside.fastest_freedom
             rate = one.beside.rates[own]
-            found.add(place, own, one.beside)
+            basis.add(place, own, one.beside)
             self.left[place] = [
                 other.less(other.beside.rates.get(own, 0.0) / rate, one)
                 for k, other in enumerate(motions)
@@ -419,12 +382,12 @@ class RigidGroup:
         twists = [place[0].own.twists[link] for place in self.left]
         if not all(any(angular) or any(linear) for angular, linear in twists):
             return None
-        screws = [scaled_screw(twist) for twist in twists]
-        return screws[0] if all(same_line(screws[0], other) for other in screws[1:]) else None
+        screws = [_scaled_screw(twist) for twist in twists]
+        return screws[0] if all(_same_line(screws[0], other) for other in screws[1:]) else None
 
     def is_steady(self, freedom: Freedom) -> bool:
-        """Whether the one motion left moves a freedom as fast at every place; of several, which are
-        told in no way of their own, nothing is said."""
+        """Whether the one motion left moves a freedom as fast at every place; True of several,
+        which no freedom distinguishes."""
         if any(len(place) != 1 for place in self.left):
             return True
         speeds = []
@@ -446,23 +409,15 @@ def is_slide(screw: Screw | None) -> bool:
 
 def is_pure_turn(screw: Screw | None) -> bool:
     """Whether a scaled screw turns and does not slide."""
-    return (
-        screw is not None
-        and any(screw[0])
-        and norm(advance_of(screw)) <= tolerances.SAME_COMMON_MOTION
-    )
+    if screw is None or not any(screw[0]):
+        return False
+    angular, linear = screw
+    advance = subtract(linear, cross(cross(angular, linear), angular))
+    return norm(advance) <= tolerances.SAME_COMMON_MOTION
 
 
 Chain = tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]
 """Links, the joints between them, and the joints to other links."""
-
-
-class Groups(NamedTuple):
-    """Groups that may move wherever their joints are, few links first; `drawn` are all that may
-    move as they are drawn, with the number of motions that they have anywhere."""
-
-    groups: list[RigidGroup]
-    drawn: list[DrawnGroup]
 
 
 class DrawnGroup(NamedTuple):
@@ -484,14 +439,15 @@ def idle_groups(
     size: float,
     origin: Vector,
     spinning: Collection[frozenset[str]],
-) -> Groups:
-    """Groups of links with common motions that move no driven coordinate; lengths in parts of
-    `size` (m), about `origin` (m). Those of `spinning` only where others are beside them."""
+) -> tuple[list[RigidGroup], list[DrawnGroup]]:
+    """Groups of links with common motions that move no driven coordinate: those that may move
+    wherever their joints are, few links first, and all that may move as they are drawn. Lengths in
+    parts of `size` (m), about `origin` (m). Those of `spinning` only where others are beside."""
     drawn = General(DRAWN, size, origin)
     general = [General(place, size, origin) for place in range(PLACES)]
     groups: list[RigidGroup] = []
     waiting: list[tuple[Chain, list[Freedom]]] = []
-    found: list[DrawnGroup] = []
+    as_drawn: list[DrawnGroup] = []
     for chain in _chains(mechanism):
         links, _, border = chain
         others = {end for joint in border for end in (joint.first, joint.second)}
@@ -509,19 +465,18 @@ def idle_groups(
         if not common_motions(*chain, still, drawn):
             continue
         group = RigidGroup(links, border, [common_motions(*chain, still, one) for one in general])
-        found.append(DrawnGroup(chain, still, drawn, group.count))
+        as_drawn.append(DrawnGroup(chain, still, drawn, group.count))
         groups += [group] if group.count else []
     beside = {joint.name for group in groups for joint in group.joints}
     for chain, still in waiting:
         if beside & {joint.name for joint in chain[2]}:
             motions = [common_motions(*chain, still, one) for one in general]
             groups.append(RigidGroup(chain[0], chain[2], motions))
-    return Groups(groups, found)
+    return groups, as_drawn
 
 
 def _chains(mechanism: Mechanism) -> Iterator[Chain]:
-    """Single links with two or more joints, then
-    chains of links with two joints each."""
+    """Single links with two or more joints, then chains of links with two joints each."""
     joints_of = mechanism.joints_of
     single = [name for name in mechanism.links if name != GROUND_NAME and len(joints_of[name]) > 1]
     for name in single:

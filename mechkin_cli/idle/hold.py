@@ -1,4 +1,23 @@
-"""Chooses for each idle motion of a group of links a coordinate that holds it, or one more pair."""
+"""Chooses for each idle motion of a group of links a coordinate that locks it, or one more pair.
+
+First those coordinates that the motion moves at the same rate wherever the mechanism goes, angles
+before slides. A slide between two tilted planes has none where the planes' coordinates stand on the
+other links; a plane on the link, square to the slide, then keeps a point of its neighbour (Sp), and
+holds it everywhere. What has no named coordinate left is held by turns of a ball or by slides on a
+plane (`Holder`).
+
+Balls as three turns, one after the other, of which some can be held: where an idle spin moves no
+coordinate that has a name, a ball around the links is replaced by turns about an axis of the far
+link, about what is square to both, and about the line of the near link; the last one is held. It is
+singular where the line comes to lie along the first axis, which is chosen as that of a joint of the
+far link, about which the line as a rule goes round. Where there is no line, the turns are about the
+axes of the drawing; if all three are held, they are never singular.
+
+Exact numbers (`exact_holds`): where a made pair stands is that of the joint that it belongs to,
+along which axes it holds is a choice of the doubles. An axis that was chosen in doubles is made a
+unit vector, and a frame of such axes orthonormal, so that the pair is one; which one it is, only
+conventional quantities depend on.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +29,6 @@ from mechkin_cli.idle.find import (
     DrawnGroup,
     Freedom,
     IdleBasis,
-    LinkMotion,
     Moving,
     RigidGroup,
     idle_groups,
@@ -45,21 +63,13 @@ from mechkin_cli.mechanism import (
     turn_name,
     unit,
 )
-from mechkin_cli.record import NamedTuple
-
-# Balls told as three turns one after the other, of which some can be held.
-#
-# Where an idle spin moves no coordinate that has a name, a ball around the links is told as turns
-# about an axis of the far link, about what is square to both, and about the line of the near link;
-# the last one is held. It is singular where the line comes to lie along the first axis, which is
-# chosen as that of a joint of the far link, about which the line as a rule goes round. Where no
-# line is told, the turns are about the axes of the drawing; if all three are held, they are never
-# singular.
 
 
-def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> tuple[Joint, int]:
-    """A joint whose ball is told as three turns, one of them about a line (a unit vector) on the
-    drawing of one of its links; and the number of that freedom."""
+def _turns_with_line(
+    mechanism: Mechanism, joint: Joint, link: str, line: Vector
+) -> tuple[Joint, int]:
+    """A joint whose ball is three turns, one of them about a line (a unit vector) on the drawing of
+    one of its links; and the number of that freedom."""
     far = joint.second if joint.first == link else joint.first
     ball = next(part for part in joint.parts if part.type.is_ball)
     own, other = (ball.before, ball.after) if link == joint.first else (ball.after, ball.before)
@@ -76,27 +86,25 @@ def held_ball(mechanism: Mechanism, joint: Joint, link: str, line: Vector) -> tu
         middle = unit(cross(last, first))
         triad = (first, middle, last) if link == joint.second else (last, middle, first)
         held = number + (2 if link == joint.second else 0)
-        before = [_about(part.before, z, middle if z is not middle else last) for z in triad]
-        after = _about(part.after, triad[2], middle)
-        parts += [Part("R", before[0], before[0]), Part("R", before[1], before[1])]
-        parts.append(Part("R", before[2], after))
+        parts += _turns(part, [(z, middle if z is not middle else last) for z in triad])
         number += 3
     return joint._replace(parts=tuple(parts)), held
 
 
-def three_turns(joint: Joint) -> Joint:
-    """A joint whose ball is told as turns about x, y and z as drawn."""
+def _three_turns(joint: Joint) -> Joint:
+    """A joint whose ball is turns about x, y and z as drawn."""
+    x, y, z = GROUND.x, GROUND.y, GROUND.z
     parts: list[Part] = []
     for part in joint.parts:
-        if not part.type.is_ball:
-            parts.append(part)
-            continue
-        x, y, z = GROUND.x, GROUND.y, GROUND.z
-        for axis, beside in ((x, y), (y, z)):
-            frame = _about(part.before, axis, beside)
-            parts.append(Part("R", frame, frame))
-        parts.append(Part("R", _about(part.before, z, x), _about(part.after, z, x)))
+        parts += _turns(part, [(x, y), (y, z), (z, x)]) if part.type.is_ball else [part]
     return joint._replace(parts=tuple(parts))
+
+
+def _turns(ball: Part, axes: Sequence[tuple[Vector, Vector]]) -> list[Part]:
+    """A ball as turns about the first of each pair of axes, given in its own axes."""
+    before = [_about(ball.before, z, x) for z, x in axes]
+    after = [*before[:-1], _about(ball.after, *axes[-1])]
+    return [Part("R", *frames) for frames in zip(before, after, strict=True)]
 
 
 def _axis_of(
@@ -118,18 +126,7 @@ def _axis_of(
 
 def _about(frame: Frame, z: Vector, x: Vector) -> Frame:
     """A frame at the origin of another, its z and x given in that one's axes."""
-
-    def drawn(a: Vector) -> Vector:
-        return tuple(frame.x[i] * a[0] + frame.y[i] * a[1] + frame.z[i] * a[2] for i in range(3))  # type: ignore[return-value]
-
-    return frame_about(drawn(z), drawn(x), frame.o)
-
-
-def ball_line(one: Vector, other: Vector, size: float) -> Vector | None:
-    """The unit vector from one point to another, None where they coincide."""
-    way = (other[0] - one[0], other[1] - one[1], other[2] - one[2])
-    length = norm(way)
-    return scale(1.0 / length, way) if length > tolerances.COMMON_MOTION * size else None
+    return frame_about(frame.vector(z), frame.vector(x), frame.o)
 
 
 Screws = dict[str, Screw | None]
@@ -144,23 +141,21 @@ class Holder:
     def __init__(
         self, mechanism: Mechanism, driven: Collection[Coordinate], size: float, origin: Vector
     ) -> None:
-        self.mechanism, self.size = mechanism, size
-        self.origin = origin
+        self.mechanism, self.size, self.origin = mechanism, size, origin
         self.held: list[LockedFreedom] = []
         self.split: set[str] = set()
         self.taken = {*driven}
-        self.found = IdleBasis()
+        self.basis = IdleBasis()
         self.inside = {name for c in mechanism.constraints for name in c.joints}
 
     def leave(self, group: RigidGroup) -> None:
         """Accounts for the motions of a group that need nothing to hold them."""
         while group.count:
-            rates = group.left[0][0].beside.rates
-            group.take(max(rates, key=lambda each: abs(rates[each])), self.found)
+            group.take(group.left[0][0].beside.fastest_freedom, self.basis)
 
     def named(self, group: RigidGroup) -> list[tuple[Joint, str, Freedom]]:
         """The coordinates by which a group may be held: angles first, of one turn before two."""
-        found = [
+        candidates = [
             (joint, name, (joint.name, freedom))
             for joint in group.joints
             if joint.name not in self.inside
@@ -169,12 +164,12 @@ class Holder:
             and group.count
             and group.least_rate((joint.name, freedom)) > tolerances.HELD_RATE
         ]
-        coordinates = [joint.type.coordinate[name] for joint, name, _ in found]
-        order = sorted(
-            range(len(found)),
-            key=lambda k: (not coordinates[k].is_angle, coordinates[k].axis is None),
-        )
-        return [found[k] for k in order]
+
+        def order(candidate: tuple[Joint, str, Freedom]) -> tuple[bool, bool]:
+            coordinate = candidate[0].type.coordinate[candidate[1]]
+            return not coordinate.is_angle, coordinate.axis is None
+
+        return sorted(candidates, key=order)
 
     def steady(self, group: RigidGroup) -> list[tuple[Joint, str, Freedom]]:
         """Those that move at the same rate wherever the mechanism goes."""
@@ -182,16 +177,16 @@ class Holder:
 
     def hold(self, group: RigidGroup) -> None:
         """Holds whatever a group may do beside what is held."""
-        group.look_beside(self.found)
+        group.reduce(self.basis)
         centre, first = _centre(group, self.size, self.origin), len(self.held)
         while group.count and self._hold_once(group):
             pass
         self.leave(group)
         if len(self.held) - first > 1:
-            self._tell_apart(first, centre)
+            self._name_each(first, centre)
 
     def _hold_once(self, group: RigidGroup) -> bool:
-        """Holds one of the motions that are left, if there is a way."""
+        """Holds one of the motions that are left, if that is possible."""
         named, steady = self.named(group), self.steady(group)
         if not steady and self._hold_by_stop(group):
             return True
@@ -199,7 +194,7 @@ class Holder:
             unsteady = sorted(named, key=lambda one: -group.least_rate(one[2]))
             joint, name, freedom = (steady or unsteady)[0]
             screws = self._screws(group)
-            self._put(group, (joint.name, name), group.take(freedom, self.found), screws)
+            self._put(group, (joint.name, name), group.take(freedom, self.basis), screws)
             return True
         # three turns of one ball are never singular together
         begun = self._unnamed(group, self.split, tolerances.HELD_WELL, slides=False)
@@ -218,15 +213,13 @@ class Holder:
             screw = screws[link]
             if screw is None or not is_slide(screw) or joint.name in self.inside:
                 continue
-            rates = group.left[0][0].own.rates
-            stop = stop_of(joint, link, screw[1])
-            freedom = max(rates, key=lambda each: abs(rates[each]))
-            self._put(group, None, group.take(freedom, self.found), screws, stop=stop)
+            moving = group.take(group.left[0][0].own.fastest_freedom, self.basis)
+            self._put(group, None, moving, screws, stop=stop_of(joint, link, screw[1]))
             return True
         return False
 
     def _balls(self, group: RigidGroup) -> list[Joint]:
-        """The balls around a group that are free to be told otherwise, plain ones first."""
+        """The balls around a group that may become three turns, plain ones first."""
         told = {one.told.name for one in self.held if one.told is not None}
         busy = {*told, *self.inside, *(name for name, _ in self.taken)}
         balls = [j for j in group.joints if j.type.is_oriented and j.name not in busy]
@@ -241,28 +234,31 @@ class Holder:
             line = self._line(group, ball, link, screws[link])
             if line is None:
                 continue
-            told, freedom = held_ball(self.mechanism, ball, link, line)
-            own = _of_ball(ball)
+            turns, freedom = _turns_with_line(self.mechanism, ball, link, line)
+            chain = enumerate(ball.type.chain)
+            own = [(ball.name, number) for number, one in chain if one.motion == "ball"]
             most = max(own, key=rates.rate)
             if rates.rate(most) <= tolerances.HELD_RATE:
                 continue
             coordinate = (ball.name, turn_name(freedom))
-            self._put(group, coordinate, group.take(most, self.found), screws, told=told)
+            self._put(group, coordinate, group.take(most, self.basis), screws, told=turns)
             return True
         return False
 
     def _line(
         self, group: RigidGroup, ball: Joint, link: str, screw: Screw | None
     ) -> Vector | None:
-        """The line about which a group turns at a ball: that which a link carries, or that of two
-        balls as drawn."""
+        """The unit vector along the line about which a group turns at a ball: that which a link
+        carries, or that of two balls as drawn, unless they coincide."""
         if screw is not None:
             return screw[0] if any(screw[0]) else None
         other = next((j for j in group.joints if j is not ball and j.type.is_oriented), None)
         if other is None or len(group.joints) > 2:
             return None
         end = other.second if other.second in group.links else other.first
-        return ball_line(frame_on(ball, link).o, frame_on(other, end).o, self.size)
+        line = subtract(frame_on(other, end).o, frame_on(ball, link).o)
+        length = norm(line)
+        return scale(1.0 / length, line) if length > tolerances.COMMON_MOTION * self.size else None
 
     def _hold_by_unnamed(self, group: RigidGroup, best: tuple[Joint, int, str] | None) -> bool:
         """Holds what is left at a turn of a ball or a slide without a name: that which moves most,
@@ -273,10 +269,10 @@ class Holder:
         if best is None:
             return False
         joint, number, name = best
-        told_joint = three_turns(joint) if joint.type.is_oriented else None
         self.split.add(joint.name)
-        moving = group.take((joint.name, number), self.found)
-        self._put(group, (joint.name, name), moving, {}, told=told_joint)
+        moving = group.take((joint.name, number), self.basis)
+        turns = _three_turns(joint) if joint.type.is_oriented else None
+        self._put(group, (joint.name, name), moving, {}, told=turns)
         return True
 
     def _unnamed(
@@ -289,9 +285,9 @@ class Holder:
             for number, freedom in enumerate(joint.type.chain):
                 of_ball = freedom.motion == "ball"
                 name = turn_name(number) if of_ball else slide_name(number)
-                told = number in joint.type.scalars.values() or (joint.name, name) in self.taken
+                named = number in joint.type.scalars.values() or (joint.name, name) in self.taken
                 allowed = joint.name in balls if of_ball else slides
-                if told or joint.name in self.inside or not allowed:
+                if named or joint.name in self.inside or not allowed:
                     continue
                 rate = group.least_rate((joint.name, number))
                 if rate > least:
@@ -308,16 +304,28 @@ class Holder:
         told: Joint | None = None,
         stop: Joint | None = None,
     ) -> None:
-        """Notes what holds a motion."""
+        """Records what holds a motion."""
         slides = any(is_slide(screw) for screw in screws.values())
-        axes = {link: _axis(screws.get(link), self.size) for link in group.links}
+        axes: dict[str, Line | None] = {}
+        for link in group.links:
+            screw = screws.get(link)
+            axes[link] = None
+            if screw is not None and is_pure_turn(screw):
+                along, point = line_of(screw)
+                axes[link] = Line(along, scale(self.size, point))
         if coordinate is not None:
             self.taken.add(coordinate)
         kind = "moment" if coordinate is not None and is_turn(coordinate[1]) else "force"
         holding = f"{group.links[0]}.holding_{kind}"
         if any(one.holding == holding for one in self.held):
             holding = f"{group.links[-1]}.holding_{kind}"
-        moves = _moves(group.joints, moving.own)
+        least = tolerances.HELD_RATE * tolerances.SAME_COMMON_MOTION * moving.own.fastest
+        moves = frozenset(
+            (joint.name, name)
+            for joint in group.joints
+            for name, freedom in joint.type.freedom_of.items()
+            if abs(moving.own.rates.get((joint.name, freedom), 0.0)) > least
+        )
         joints = tuple(joint.name for joint in group.joints)
         miss = moving.own.miss / (moving.own.fastest or 1.0)
         held = LockedFreedom(
@@ -325,7 +333,7 @@ class Holder:
         )
         self.held.append(held)
 
-    def _tell_apart(self, first: int, centre: Line | None) -> None:
+    def _name_each(self, first: int, centre: Line | None) -> None:
         """Names for what holds several motions of one group; `centre` if they are turns about
         it."""
         for k, one in enumerate(self.held[first:], first):
@@ -343,17 +351,8 @@ class Holder:
             self.held[k] = one._replace(holding=holding)
 
 
-def _of_ball(joint: Joint) -> list[Freedom]:
-    """The freedoms of a joint's ball."""
-    return [
-        (joint.name, number)
-        for number, freedom in enumerate(joint.type.chain)
-        if freedom.motion == "ball"
-    ]
-
-
 def _centre(group: RigidGroup, size: float, origin: Vector) -> Line | None:
-    """The centre about which a link turns in every way: of two spheres in one place."""
+    """The centre about which a link turns freely: that of two spheres in one place."""
     if len(group.links) > 1 or group.count != 3:
         return None
     balls = [joint for joint in group.joints if joint.type.is_oriented]
@@ -365,58 +364,24 @@ def _centre(group: RigidGroup, size: float, origin: Vector) -> Line | None:
     return Line(None, subtract(centres[0], origin)) if near else None
 
 
-def _moves(joints: Sequence[Joint], motion: LinkMotion) -> frozenset[Coordinate]:
-    moving = tolerances.HELD_RATE * tolerances.SAME_COMMON_MOTION * motion.fastest
-    return frozenset(
-        (joint.name, name)
-        for joint in joints
-        for name, freedom in joint.type.freedom_of.items()
-        if abs(motion.rates.get((joint.name, freedom), 0.0)) > moving
-    )
-
-
-def _axis(screw: Screw | None, size: float) -> Line | None:
-    if screw is None or not is_pure_turn(screw):
-        return None
-    along, point = line_of(screw)
-    return Line(along, scale(size, point))
-
-
-# Holds the idle freedoms of a mechanism: chooses a coordinate for each, or a pair that holds it.
-#
-# First those coordinates that the motion moves at the same rate wherever the mechanism goes, angles
-# before slides. A slide between two tilted planes has none where the planes' coordinates stand on
-# the other links; a plane on the link, square to the slide, then keeps a point of its neighbour
-# (Sp), and holds it everywhere. What has no named coordinate left is held by turns of a ball or by
-# slides on a plane.
-
-
-class Holding(NamedTuple):
-    """What is held, small groups of links first; `as_drawn` says whether more, or other motions,
-    may be idle because the mechanism keeps its joints as they are drawn."""
-
-    held: tuple[LockedFreedom, ...]
-    as_drawn: bool
-
-
-def held_freedoms(mechanism: Mechanism, driven: Collection[Coordinate]) -> Holding:
-    """The idle freedoms that joints have wherever they are, but the spins."""
+def held_freedoms(
+    mechanism: Mechanism, driven: Collection[Coordinate]
+) -> tuple[tuple[LockedFreedom, ...], bool]:
+    """What holds the idle freedoms that joints have wherever they are, but those of legs, small
+    groups of links first; and whether more, or other motions, may be idle because the mechanism
+    keeps its joints as they are drawn."""
     size = mechanism.box_diagonal()
     origin = next((joint.point.vector for joint in mechanism.joints.values()), ZERO)
     groups, drawn = idle_groups(mechanism, driven, size, origin, _spinning(mechanism))
     held = held_groups(mechanism, driven, groups, size, origin)
-    as_drawn = any(_moves_as_drawn(one, held) for one in drawn)
-    return Holding(held, as_drawn or _count(drawn) != len(held))
-
-
-def _count(drawn: Sequence[DrawnGroup]) -> int:
-    """How many independent motions some groups have as they are drawn."""
-    found = IdleBasis()
+    if any(_moves_as_drawn(one, held) for one in drawn):
+        return held, True
+    independent = IdleBasis()  # motions as drawn
     for one in drawn:
         group = RigidGroup(one.chain[0], one.chain[2], [one.motions([])])
-        group.look_beside(found)
-        group.join(found)
-    return found.count
+        group.reduce(independent)
+        group.join(independent)
+    return held, independent.count != len(held)
 
 
 def _moves_as_drawn(group: DrawnGroup, held: Sequence[LockedFreedom]) -> bool:
@@ -453,32 +418,24 @@ def held_groups(
             group.join(known)
             holder.leave(group)
     for group in sorted(others, key=lambda group: len(group.links)):
-        group.look_beside(known)
+        group.reduce(known)
         group.join(known)
     # what can be held at few places has the choice before what can be held at many
     for group in sorted(others, key=lambda group: len(holder.steady(group))):
         holder.hold(group)
-    return tuple(_from_ground(one, origin) for one in holder.held)
+    from_ground = []
+    for one in holder.held:
+        axes = {
+            link: None if line is None else Line(line.along, add(line.start, origin))
+            for link, line in one.axes.items()
+        }
+        from_ground.append(one._replace(axes=axes))
+    return tuple(from_ground)
 
 
 def _spinning(mechanism: Mechanism) -> set[frozenset[str]]:
     return {frozenset(spin.links) for spin in mechanism.spins}
 
-
-def _from_ground(held: LockedFreedom, origin: Vector) -> LockedFreedom:
-    """With lines from the ground's origin instead of another."""
-    axes = {
-        link: None if line is None else Line(line.along, add(line.start, origin))
-        for link, line in held.axes.items()
-    }
-    return held._replace(axes=axes)
-
-
-# Pairs that hold idle freedoms, on exact numbers: where they stand is that of the joints that they
-# belong to, along which axes they hold is a choice of the doubles.
-#
-# An axis that was chosen in doubles is made a unit vector, and a frame of such axes orthonormal, so
-# that the pair is one; which one it is nothing but what is conventional depends on.
 
 Lift = Callable[[float], float]
 """A double as a recorded number."""
@@ -492,7 +449,7 @@ def exact_holds(
     Args:
         held: in doubles.
         own: the mechanism in doubles.
-        recorded: the same on a recording.
+        recorded: the mechanism on a recording.
         lift: puts a double on that recording.
     """
     if held.told is None and held.stop is None:
@@ -512,7 +469,7 @@ class _Placed:
         self.points: dict[Vector, Vector] = {one.o: other.o for one, other in pairs}
 
     def told(self, joint: Joint) -> Joint:
-        """A joint told as other parts; those that it has as written stay what they are."""
+        """A joint made of other parts; those that it has as written stay what they are."""
         written = self.recorded.joints[joint.name]
         known = zip(self.own.joints[joint.name].parts, written.parts, strict=True)
         same = {id(one): other for one, other in known}

@@ -1,13 +1,14 @@
-"""Idle freedoms: what moves freely while all else stands still, and by what convention it is told.
+"""Idle freedoms: what moves freely while all else stands still, the convention about it, and what
+mechkin reports of it.
 
 The own links of a constraint may spin (`Spin`): their pose is the shortest turn from the drawing,
-and their rate is zero. Other idle freedoms are held at a coordinate (held.py). Nothing else moves
-with them. Forces are exact as long as nothing drives such a motion; otherwise it is a dynamic
-freedom that a kinematic analysis cannot know.
+and their rate is zero. Other idle freedoms are held at a coordinate (`hold`). Nothing else moves
+with them. Forces are exact as long as nothing drives such a motion (`spin_errors`); otherwise it is
+a dynamic freedom that a kinematic analysis cannot know.
 
-A body that nothing turns about a line of its own, about which it is symmetric, has no spin: what it
-needs does not know its moment of inertia about that line, which is left out where a held link turns
-with the link beside it (`without_spin`).
+A body that nothing turns about a line of its own, about which it is symmetric, has no spin: the
+forces on it do not depend on its moment of inertia about that line, which is left out where a held
+link turns with the link beside it (`without_spin`).
 """
 
 from __future__ import annotations
@@ -33,8 +34,6 @@ from mechkin_cli.mechanism import (
     Line,
     LinkLoad,
     Load,
-    LockedFreedom,
-    Mechanism,
     Problem,
     RigidLink,
     Spin,
@@ -62,8 +61,8 @@ class Idle(NamedTuple):
 
     `lines`: about what each turns, on its own drawing, None where that is no line of the link;
     `slides`: it does not turn; `moves`: coordinates that move with it; `length`: what distances
-    from a line are compared with, m; `convention`, `cure` and `holding`: in words, what is told of
-    it, how to have a pose of its own, and the quantity that holds it.
+    from a line are compared with, m; `convention` and `cure`: in words, its pose by convention and
+    how to give it one of its own; `holding`: the quantity that holds it.
     """
 
     words: str
@@ -81,8 +80,10 @@ def idle_freedoms(problem: Problem) -> Iterator[Idle]:
     """Spins, then what is held."""
     for spin in problem.mechanism.spins:
         yield _of_spin(spin)
-    for held in problem.held:
-        yield _of_held(problem.mechanism, held)
+    length = problem.mechanism.box_diagonal() if problem.held else 0.0
+    for h in problem.held:
+        motion = h.words, h.links, h.axes, h.slides, h.moves
+        yield Idle(*motion, length, h.convention, h.cure, h.holding)
 
 
 def _of_spin(spin: Spin) -> Idle:
@@ -99,20 +100,6 @@ def _of_spin(spin: Spin) -> Idle:
     )
 
 
-def _of_held(mechanism: Mechanism, held: LockedFreedom) -> Idle:
-    return Idle(
-        held.words,
-        held.links,
-        held.axes,
-        held.slides,
-        held.moves,
-        mechanism.box_diagonal(),
-        held.convention,
-        held.cure,
-        held.holding,
-    )
-
-
 def without_spin(problem: Problem) -> Problem:
     """The problem whose held links have no moment of inertia about the lines that they turn about;
     those that a moment holds (`idle: hold`) keep it."""
@@ -122,34 +109,21 @@ def without_spin(problem: Problem) -> Problem:
     for held in problem.held:
         for name, line in held.axes.items():
             if line is not None and links[name].has_mass:
-                links[name] = _without_spin_about(links[name], line)
+                links[name] = _without_spin_about(links[name], line.along)
     return replace(problem, mechanism=replace(problem.mechanism, links=links))
 
 
-def _without_spin_about(body: RigidLink, line: Line) -> RigidLink:
-    if line.along is None:
-        # what turns about its mass centre in every way asks no moment of anything
+def _without_spin_about(body: RigidLink, line: Vector | None) -> RigidLink:
+    if line is None:  # free about its mass centre, it needs no moment
         return body._replace(inertia=(0.0,) * 6)
-    return _without_moment_about(body, line.along)
+    along = dot(line, _times(body, line))
+    (xx, yy, zz, xy, xz, yz), (x, y, z) = body.inertia, line
+    turning = (xx - along * x * x, yy - along * y * y, zz - along * z * z)
+    across = (xy - along * x * y, xz - along * x * z, yz - along * y * z)
+    return body._replace(inertia=(*turning, *across))
 
 
-def _without_moment_about(body: RigidLink, line: Vector) -> RigidLink:
-    xx, yy, zz, xy, xz, yz = body.inertia
-    x, y, z = line
-    along = dot(line, times(body, line))
-    return body._replace(
-        inertia=(
-            xx - along * x * x,
-            yy - along * y * y,
-            zz - along * z * z,
-            xy - along * x * y,
-            xz - along * x * z,
-            yz - along * y * z,
-        )
-    )
-
-
-def times(body: RigidLink, a: Vector) -> Vector:
+def _times(body: RigidLink, a: Vector) -> Vector:
     """Its inertia tensor times a vector, kg m^2."""
     xx, yy, zz, xy, xz, yz = body.inertia
     return (dot((xx, xy, xz), a), dot((xy, yy, yz), a), dot((xz, yz, zz), a))
@@ -202,11 +176,11 @@ def conventional_notes(problem: Problem, wanted: Iterable[Wanted]) -> list[Diagn
     """Notes on quantities that depend on the convention about an idle freedom."""
     wanted = list(wanted)
     notes: list[Diagnostic] = []
-    told: set[tuple[str, str]] = set()
+    noted: set[tuple[str, str]] = set()
     for idle in idle_freedoms(problem) if wanted else ():
         names = [q.name for q in wanted if _is_conventional(problem, idle, q)]
-        if names and (idle.words, idle.convention) not in told:
-            told.add((idle.words, idle.convention))
+        if names and (idle.words, idle.convention) not in noted:
+            noted.add((idle.words, idle.convention))
             notes.append(
                 Diagnostic(
                     "conventional",
@@ -296,40 +270,29 @@ def _direction_moves(idle: Idle, at: Attached) -> bool:
     return norm(off) > tolerances.ON_LINE
 
 
-# What drives idle freedoms: there they are dynamic freedoms, which kinematics does not know.
-
-
 def spin_errors(problem: Problem, *, free: bool = False) -> list[tuple[str, Diagnostic]]:
-    """For every idle freedom that something drives: the link, and what to say; in a `free` motion
-    it may be one of the freedoms that the start names.
-
-    None if the file holds idle freedoms.
-    """
+    """For every idle freedom that something drives: the link, and an error; in a `free` motion it
+    may be one of the freedoms that the start names. None if the file holds idle freedoms."""
     if problem.hold_idle:
         return []
-    found: list[tuple[str, Diagnostic]] = []
+    errors: list[tuple[str, Diagnostic]] = []
     for idle in idle_freedoms(problem):
         for link in idle.links:
             cause = _spin_cause(problem, idle, link)
             if cause is not None:
-                cure = _cure_in_motion(idle) if free else idle.cure
-                error = (link, _dynamic_freedom(idle, cure, *cause))
-                found += [error] if error not in found else []
+                error = (link, _dynamic_freedom(idle, *cause, free=free))
+                errors += [error] if error not in errors else []
                 break
-    return found
+    return errors
 
 
-def _cure_in_motion(idle: Idle) -> str:
-    """How the start of a free motion comes to have an idle freedom for one of its own."""
-    if idle.moves:
-        return f"name {'.'.join(min(idle.moves))} in start: it is a freedom as others are"
-    return (
-        "give it a coordinate that start names: write one S as an R along that line and a U, with "
-        "a link {} between"
-    )
-
-
-def _dynamic_freedom(idle: Idle, cure: str, cause: str, measured: str) -> Diagnostic:
+def _dynamic_freedom(idle: Idle, cause: str, measured: str, *, free: bool) -> Diagnostic:
+    cure = idle.cure
+    if free and idle.moves:
+        cure = f"name {'.'.join(min(idle.moves))} in start: it is a freedom as others are"
+    elif free:
+        cure = "give it a coordinate that start names: write one S as an R along that line and a U,"
+        cure += " with a link {} between"
     motion, what = ("slide", "a force") if idle.slides else ("spin", "a moment")
     return Diagnostic(
         "loaded-spin",
@@ -379,7 +342,7 @@ def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[st
                 return f"a force acts on {link}", "its part along the motion"
             if off := _off_line(problem, idle, line, load.point):
                 return f"a force acts on {link} off that line", off
-            if load.axes == "link" and not _runs_along(load, line):
+            if load.axes == "link" and not _acts_along(load, line):
                 return f"a force across that line turns with {link}", "its axes are the link's"
     if (
         isinstance(load, JointLoad | Spring | Damper)
@@ -397,8 +360,8 @@ def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[st
     return None
 
 
-def _runs_along(load: LinkLoad, line: Line) -> bool:
-    """Whether a constant force runs along a line."""
+def _acts_along(load: LinkLoad, line: Line) -> bool:
+    """Whether a constant force acts along a line."""
     if varying(load) or line.along is None:
         return False
     across = cross(load.value, line.along)  # type: ignore[arg-type]
@@ -412,7 +375,7 @@ def _asymmetry(body: RigidLink, line: Vector) -> float:
     greatest = largest(*(abs(entry) for row in rows for entry in row))
     if greatest == 0.0:
         return 0.0
-    along = dot(line, times(body, line))
+    along = dot(line, _times(body, line))
     across = (xx + yy + zz - along) / 2.0
     worst = 0.0
     for i, row in enumerate(rows):

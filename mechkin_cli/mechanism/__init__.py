@@ -51,7 +51,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.joint import (
         GROUND_NAME as GROUND_NAME,
         Joint as Joint,
-        far_link as far_link,
         frame_on as frame_on,
         is_written as is_written,
         stop_of as stop_of,
@@ -103,7 +102,6 @@ if TYPE_CHECKING:
         screws_at as screws_at,
     )
     from mechkin_cli.mechanism.pairs import (
-        CLOSING_CONDITIONS as CLOSING_CONDITIONS,
         FREE as FREE,
         JOINT_TYPES as JOINT_TYPES,
         PLANE_JOINT_TYPES as PLANE_JOINT_TYPES,
@@ -195,7 +193,7 @@ __getattr__, __dir__ = lazy_names(
             "reference_point",
         ],
         "held": ["LockedFreedom", "is_turn", "is_unnamed", "slide_name", "turn_name"],
-        "joint": ["GROUND_NAME", "Joint", "far_link", "frame_on", "is_written", "stop_of"],
+        "joint": ["GROUND_NAME", "Joint", "frame_on", "is_written", "stop_of"],
         "model": [
             "Amount",
             "Damper",
@@ -243,7 +241,6 @@ __getattr__, __dir__ = lazy_names(
             "screws_at",
         ],
         "pairs": [
-            "CLOSING_CONDITIONS",
             "FREE",
             "JOINT_TYPES",
             "PLANE_JOINT_TYPES",

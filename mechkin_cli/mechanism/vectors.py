@@ -81,6 +81,16 @@ class Frame(NamedTuple):
         (a, b, c), (d, e, f), (g, h, i), (x, y, z) = self.x, self.y, self.z, vector
         return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
 
+    def vector(self, components: Vector) -> Vector:
+        """The vector that has these components along the frame's axes."""
+        a, b, c = components
+        return add(add(scale(a, self.x), scale(b, self.y)), scale(c, self.z))
+
+    def carry(self, inner: Frame) -> Frame:
+        """A frame given in this one, in ground axes."""
+        x, y, z = (self.vector(axis) for axis in (inner.x, inner.y, inner.z))
+        return Frame(x, y, z, add(self.vector(inner.o), self.o))
+
     def local(self, point: Vector) -> Vector:
         """Coordinates of a point in the frame."""
         return self.components(subtract(point, self.o))

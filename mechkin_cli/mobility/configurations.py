@@ -1,9 +1,18 @@
 """Assembled configurations of the opened mechanism, and the motion from one to the next.
 
 The unknowns are the coordinates of all joints, loops and inputs alike; poses come from the kernel,
-columns from the joint table's screws. A configuration closes by least-squares Newton steps on all
-cuts (truncated singular values), so redundant constraints and free motions do no harm.
-Twists are (angular, linear at the centre), lengths in parts of the size.
+columns from the joint table's screws. Twists are (angular, linear at the centre), lengths in parts
+of the size.
+
+Loops close from many places at once by Levenberg and Marquardt's steps (`closed`): a step is that
+of Gauss and Newton, damped by the square of what the loops are open, so that redundant constraints
+and free motions do no harm: quadratic where the equations bound the distance (Yamashita, Fukushima
+2001), and halving where they touch their solutions. Steps are solved by QR of the Jacobian above
+the damping, so that the Jacobian's condition is not squared.
+
+Loops of a spanning tree that share a joint, one after the other, are a part (`LoopPart`), which
+moves on its own; its freedoms are those of the joints passed. What no loop passes moves freely.
+Motions of the whole are products of motions of the parts, so that dimensions add up.
 """
 
 from __future__ import annotations
@@ -24,7 +33,7 @@ from mechkin_cli.mechanism import (
     Problem,
     screws_at,
 )
-from mechkin_cli.mobility.opened import LoopClosure, Loops, Pose, Poses, displacement, opened
+from mechkin_cli.mobility.opened import Loops, Pose, Poses, displacement, opened
 from mechkin_cli.plan import home_state
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Session
@@ -35,21 +44,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Floats
-
-
-# Closing loops from many places at once, by Levenberg and Marquardt's steps.
-#
-# A step is that of Gauss and Newton, damped by the square of what the loops are open: quadratic
-# where the equations bound the distance, however many of them are redundant (Yamashita, Fukushima
-# 2001), and halving where they touch their solutions. Steps are solved by QR of the Jacobian above
-# the damping, so that the Jacobian's condition is not squared.
-
-
-class Sphere(NamedTuple):
-    """Places whose steps from a `centre` (states,) have lengths, `radii` (places,)."""
-
-    centre: Floats
-    radii: Floats
 
 
 class Closed(NamedTuple):
@@ -64,8 +58,9 @@ class Closed(NamedTuple):
         return self.misses < limit
 
 
-def closed(part: LoopPart, starts: Floats, sphere: Sphere | None = None) -> Closed:
-    """The assembled places next to `starts` (places, states), on a sphere if one is given."""
+def closed(part: LoopPart, starts: Floats, sphere: tuple[Floats, Floats] | None = None) -> Closed:
+    """The assembled places next to `starts` (places, states); with a `sphere`, those whose steps
+    from its centre (states,) have its radii (places,) as lengths."""
     states = starts.copy()
     places = len(states)
     best = Closed(
@@ -77,9 +72,12 @@ def closed(part: LoopPart, starts: Floats, sphere: Sphere | None = None) -> Clos
         misses, jacobians = part.closing(states[active])
         largest = np.abs(misses).max(axis=1, initial=0.0)
         if sphere is not None:
-            misses, matrix, off = _on_sphere(
-                part, states[active], misses, jacobians, Sphere(sphere.centre, sphere.radii[active])
-            )
+            centre, radii = sphere[0], sphere[1][active]
+            steps = part.steps(states[active], np.broadcast_to(centre, states[active].shape))
+            beyond = (np.sum(steps * steps, axis=1) / radii - radii) / 2.0
+            row = steps / radii[:, None]
+            misses = np.concatenate([misses, beyond[:, None]], axis=1)
+            matrix, off = np.concatenate([jacobians, row[:, None]], axis=1), np.abs(beyond)
         else:
             matrix, off = jacobians, np.zeros(active.size)
         whole = np.maximum(largest, np.where(off > tolerances.MOBILITY_SPHERE, off, 0.0))
@@ -98,20 +96,6 @@ def closed(part: LoopPart, starts: Floats, sphere: Sphere | None = None) -> Clos
     return best
 
 
-def _on_sphere(
-    part: LoopPart, states: Floats, misses: Floats, jacobians: Floats, sphere: Sphere
-) -> tuple[Floats, Floats, Floats]:
-    """Misses and Jacobians with the sphere's equation, and how far off it the places are."""
-    ways = part.steps(states, np.broadcast_to(sphere.centre, states.shape))
-    off = (np.sum(ways * ways, axis=1) / sphere.radii - sphere.radii) / 2.0
-    row = ways / sphere.radii[:, None]
-    return (
-        np.concatenate([misses, off[:, None]], axis=1),
-        np.concatenate([jacobians, row[:, None]], axis=1),
-        np.abs(off),
-    )
-
-
 def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
     """Damped steps (places, columns), none longer than the stride."""
     places, _, columns = jacobians.shape
@@ -121,18 +105,11 @@ def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
     below = np.zeros((places, columns, columns + 1))
     below[:, np.arange(columns), np.arange(columns)] = damping[:, None]
     triangle = np.asarray(np.linalg.qr(np.concatenate([above, below], axis=1), mode="r"))
-    steps = np.linalg.solve(triangle[:, :columns, :columns], triangle[:, :columns, columns:])
-    found = steps[:, :, 0]
-    longest = np.abs(found).max(axis=1, initial=0.0)
+    solved = np.linalg.solve(triangle[:, :columns, :columns], triangle[:, :columns, columns:])
+    steps = solved[:, :, 0]
+    longest = np.abs(steps).max(axis=1, initial=0.0)
     too_long = np.maximum(longest / tolerances.MOBILITY_STRIDE, 1.0)
-    return np.asarray(found / too_long[:, None])
-
-
-# Parts of a mechanism whose loops have no joint in common: each moves on its own.
-#
-# Loops of a spanning tree that share a joint, one after the other, are a part; its freedoms are
-# those of the joints passed. What no loop passes moves freely. Motions of the whole are products of
-# motions of the parts, so that dimensions add up.
+    return np.asarray(steps / too_long[:, None])
 
 
 class LoopPart:
@@ -140,15 +117,9 @@ class LoopPart:
     `columns`."""
 
     def __init__(
-        self,
-        mechanism: Mechanism,
-        loops: Loops,
-        cuts: NDArray[np.intp],
-        columns: NDArray[np.intp],
+        self, mechanism: Mechanism, loops: Loops, cuts: NDArray[np.intp], columns: NDArray[np.intp]
     ) -> None:
-        self.mechanism = mechanism
-        self.loops = loops
-        self.columns = columns
+        self.mechanism, self.loops, self.columns = mechanism, loops, columns
         self.rows = (6 * cuts[:, None] + np.arange(6)).ravel()
         self.count = columns.size
 
@@ -176,26 +147,21 @@ class LoopPart:
         links = [link for link in self.mechanism.links if link != GROUND_NAME]
         groups = [{link} for link in links]
         groups += [{j.first, j.second} for j in self.mechanism.joints.values()]
-        found = [np.zeros((motions.shape[1], 0))]
+        bases = [np.zeros((motions.shape[1], 0))]
         for group in groups:
             rest = [numbers[link] for link in links if link not in group]
-            found.append(null_space(seen[rest].reshape(-1, motions.shape[1])))
-        left, values, _ = np.linalg.svd(np.concatenate(found, axis=1), full_matrices=False)
+            _, values, right = np.linalg.svd(seen[rest].reshape(-1, motions.shape[1]))
+            rank = int(np.count_nonzero(values > tolerances.MOBILITY_NO_WRENCH))
+            bases.append(right[rank:].T)  # motions that leave the rest still
+        left, values, _ = np.linalg.svd(np.concatenate(bases, axis=1), full_matrices=False)
         return np.asarray(left[:, values > tolerances.MOBILITY_FORM])
 
 
-def null_space(matrix: Floats) -> Floats:
-    """An orthonormal basis (columns, count) of what a matrix of unit twists maps to none."""
-    _, values, right = np.linalg.svd(matrix)
-    rank = int(np.count_nonzero(values > tolerances.MOBILITY_NO_WRENCH))
-    return np.asarray(right[rank:].T)
-
-
-def parts(mechanism: Mechanism, loops: Loops) -> tuple[LoopPart, ...]:
+def _parts(mechanism: Mechanism, loops: Loops) -> tuple[LoopPart, ...]:
     """The parts in the order of their first cuts."""
     passed = loops.signs != 0.0
     left = list(range(len(passed)))
-    found = []
+    parts = []
     while left:
         cuts, grown = [left.pop(0)], True
         columns = passed[cuts[0]].copy()
@@ -207,13 +173,13 @@ def parts(mechanism: Mechanism, loops: Loops) -> tuple[LoopPart, ...]:
                     cuts.append(cut)
                     columns |= passed[cut]
                     grown = True
-        found.append(LoopPart(mechanism, loops, np.array(sorted(cuts)), np.flatnonzero(columns)))
-    return tuple(found)
+        parts.append(LoopPart(mechanism, loops, np.array(sorted(cuts)), np.flatnonzero(columns)))
+    return tuple(parts)
 
 
 class Body:
-    """What all configurations share: the mechanism, its moving links, centre (m) and size (m), and
-    the mechanism opened to a tree."""
+    """What all configurations share: the mechanism, its moving links, centre (m) and size (m), the
+    mechanism opened to a tree, and the count of all joints' freedoms."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         points = [at.vector for _, at in mechanism.joint_points()]
@@ -228,11 +194,12 @@ class Body:
         bodies = self.opened.mechanism.links
         poses = Poses(self.session, bodies, self.centre, self.size)
         self.loops = Loops(self.opened, self.layout, poses)
+        self.count = self.loops.count
 
     @cached_property
     def parts(self) -> tuple[LoopPart, ...]:
         """Loops that move on their own."""
-        return parts(self.mechanism, self.loops)
+        return _parts(self.mechanism, self.loops)
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
@@ -249,11 +216,6 @@ class Body:
             for name, edges in self.opened.elements.items()
         }
 
-    @property
-    def count(self) -> int:
-        """Number of all joints' freedoms."""
-        return self.loops.count
-
     @cached_property
     def signs(self) -> dict[str, Floats]:
         """How the loop of each cut (cuts,) passes each joint: outward +1, back to ground -1."""
@@ -261,17 +223,25 @@ class Body:
         return {name: table[:, numbers[0]] for name, numbers in elements.items()}
 
     def column(self, joint: str, coordinate: str) -> int:
-        """Column of a coordinate."""
+        """Of a coordinate."""
         freedom = self.mechanism.joints[joint].type.freedom_of[coordinate]
         return self.columns[joint][freedom]
+
+    def coordinates(self, chosen: NDArray[np.bool_]) -> tuple[str, ...]:
+        """Names of the coordinates whose columns are chosen (columns,)."""
+        return tuple(
+            f"{joint.name}.{name}"
+            for joint in self.mechanism.joints.values()
+            for name in joint.type.freedom_of
+            if chosen[self.column(joint.name, name)]
+        )
 
 
 class Configuration:
     """The opened mechanism at a state of the kernel."""
 
     def __init__(self, body: Body, state: Floats) -> None:
-        self.body = body
-        self.state = state
+        self.body, self.state = body, state
 
     @cached_property
     def _arrays(self) -> tuple[Floats, Floats]:
@@ -291,24 +261,18 @@ class Configuration:
         return {name: twists[k] for name, k in loops.number.items()}
 
     @cached_property
-    def closing(self) -> LoopClosure:
-        """Misses and Jacobian of all loops, in arrays of one row."""
+    def _closing(self) -> tuple[Floats, Floats]:
         return self.body.loops.closing_of(*self._arrays)
 
     @property
     def jacobian(self) -> Floats:
         """Twists of the copies against their links: (6 cuts, freedoms)."""
-        return np.asarray(self.closing.jacobian[0])
-
-    @property
-    def misses(self) -> Floats:
-        """Displacements of the copies against their links (6 cuts,): rad, parts of the size."""
-        return np.asarray(self.closing.misses[0])
+        return np.asarray(self._closing[1][0])
 
     @property
     def miss(self) -> float:
-        """Largest part of `misses`."""
-        return float(np.abs(self.misses).max(initial=0.0))
+        """Largest part of the copies' displacements against their links: rad, parts of the size."""
+        return float(np.abs(self._closing[0][0]).max(initial=0.0))
 
     @property
     def assembled(self) -> bool:
@@ -323,25 +287,19 @@ class Configuration:
 
     def wider(self, joint: Joint, letter: str) -> Floats:
         """The Jacobian's columns of a softer joint of one part, on the frames of a joint of one
-        part."""
-        (edge,) = self.body.opened.elements[joint.name]
-        signs = self.body.signs[joint.name]
-        found = self._screws(edge, letter)
-        return np.array([np.outer(signs, screw).ravel() for screw in found]).T
-
-    def _screws(self, edge: int, letter: str) -> Floats:
-        """Unit screws (freedoms, 6) of a displacement `letter` in place of that of an edge: of the
-        body it carries against the one before, whose place it is drawn on."""
+        part: of the body that it carries against the one before."""
         body = self.body
-        before, joint = body.layout.carriers[edge].part.before, body.opened.graph.edges[edge].joint
-        pose = self.poses[body.opened.graph.edges[edge].parent]
+        (number,) = body.opened.elements[joint.name]
+        edge, before = body.opened.graph.edges[number], body.layout.carriers[number].part.before
+        pose = self.poses[edge.parent]
         origin = (np.array(before.o) - body.centre) / body.size
         frame = before._replace(o=tuple(origin.tolist()))
-        found = [np.zeros((0, 6))]
-        for angular, linear in screws_at(letter, frame, joint.pitch / body.size):
+        columns = []
+        for angular, linear in screws_at(letter, frame, edge.joint.pitch / body.size):
             spin = pose.turn @ np.array(angular)
-            found.append(np.array([[*spin, *(pose.turn @ linear + np.cross(pose.place, spin))]]))
-        return np.concatenate(found)
+            screw = np.array([*spin, *(pose.turn @ linear + np.cross(pose.place, spin))])
+            columns.append(np.outer(body.signs[joint.name], screw).ravel())
+        return np.array(columns).T
 
     def moved(self, steps: Floats) -> Configuration:
         """Displaced by steps (freedoms,) of the joints' freedoms."""
@@ -355,21 +313,15 @@ class Configuration:
         return Configuration(self.body, state)
 
 
-def least_squares(matrix: Floats, right: Floats) -> Floats:
-    """The shortest of the best solutions."""
-    found = np.linalg.lstsq(matrix, right, rcond=tolerances.MOBILITY_RANK)[0]
-    return np.asarray(found, dtype=np.float64)
-
-
 def home(body: Body) -> Configuration:
     """The drawing, assembled or not."""
     return Configuration(body, home_state(body.layout))
 
 
 def with_links_at(start: Configuration, target: Mapping[str, Pose]) -> Configuration:
-    """The configuration next to `start` whose links, and copies of them, have given poses."""
+    """The configuration next to `start` whose links, and copies of them, have the target poses."""
     body = start.body
-    bodies = {link: link for link in body.links} | {c.copy: c.link for c in body.opened.cuts}
+    bodies = {**{link: link for link in body.links}, **body.opened.cuts}
     here = start
     for _ in range(tolerances.MOBILITY_STUCK):
         pairs = [(here.poses[name], target[link]) for name, link in bodies.items()]
@@ -377,19 +329,18 @@ def with_links_at(start: Configuration, target: Mapping[str, Pose]) -> Configura
         if np.abs(miss).max() < tolerances.MOBILITY_TIGHT:
             break
         matrix = np.concatenate([here.twists[name] for name in bodies])
-        here = here.moved(-least_squares(matrix, miss))
+        here = here.moved(-np.linalg.lstsq(matrix, miss, rcond=tolerances.MOBILITY_RANK)[0])
     return here
 
 
 def assembled(body: Body) -> Configuration | None:
     """An assembled configuration: the home drawing, next to it, or from random coordinates."""
-    found = home(body).closed()
-    random = RandomStarts()
-    tries = 0
-    while not found.assembled and tries < tolerances.MOBILITY_STARTS:
-        tries += 1
-        found = _scattered(body, random).closed()
-    return found if found.assembled else None
+    place, random = home(body).closed(), RandomStarts()
+    for _ in range(tolerances.MOBILITY_STARTS):
+        if place.assembled:
+            break
+        place = _scattered(body, random).closed()
+    return place if place.assembled else None
 
 
 def _scattered(body: Body, random: RandomStarts) -> Configuration:

@@ -1,9 +1,18 @@
-"""How many freedoms a part of a mechanism has from a place: to first order, and in truth.
+"""How many freedoms a part of a mechanism has from a place: to first order, and finite ones.
 
 The assembled places next to a place form components of some dimensions that meet there. The motions
 of first order are as many as the largest where the place is regular; else directions come from the
-bifurcation equations, and two moves in one heading lead to a place of one component, where moves
-along every motion of first order are closed again: the rank of the chords is the dimension.
+bifurcation equations, and two moves in one heading lead to a place of one component.
+
+Directions: a curve of assembled places with the tangent N a at its start (N the motions of first
+order) obeys W^T D2F[N a, N a] = 0 for all stresses W, as many quadratic forms in a as there are
+stresses. They are solved for directions from random ones; forms say nothing along their common null
+space, the radical, and are solved beside it.
+
+Dimension: moves along an orthonormal frame of the motions of first order are closed again. They go
+where they are meant to as far as they lie in the component, else they fall back: the rank of the
+chords is its dimension. Two lengths must agree, and moves in the span of the chords must go where
+they are meant to.
 """
 
 from __future__ import annotations
@@ -13,30 +22,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mobility.configurations import Closed, Sphere, closed, damped_steps
+from mechkin_cli.mobility.configurations import Closed, closed, damped_steps
 from mechkin_cli.mobility.opened import Rank, rank_of
 from mechkin_cli.record import NamedTuple, dataclass, replace
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.mobility.configurations import LoopPart
     from mechkin_cli.show import Floats
     from mechkin_cli.structure import RandomStarts
-
-
-# Directions in which a mechanism may leave a place: the bifurcation equations.
-#
-# A curve of assembled places with the tangent N a at its start (N the motions of first order) obeys
-# W^T D2F[N a, N a] = 0 for all stresses W, as many quadratic forms in a as there are stresses. They
-# are solved for directions from random ones; forms say nothing along their common null space, the
-# radical, and are solved beside it.
 
 
 def quadratic_forms(part: LoopPart, state: Floats, motions: Floats, stresses: Floats) -> Floats:
     """Independent forms (forms, k, k) on `motions` (columns, k) at a place with `stresses`
     (rows, r): derivatives of the Jacobian by central differences."""
     step, count = tolerances.MOBILITY_DIFFERENCE, motions.shape[1]
-    ways = step * np.concatenate([motions.T, -motions.T])
-    _, jacobians = part.closing(part.moved(np.repeat(state[None], 2 * count, axis=0), ways))
+    moves = step * np.concatenate([motions.T, -motions.T])
+    _, jacobians = part.closing(part.moved(np.repeat(state[None], 2 * count, axis=0), moves))
     second = (jacobians[:count] - jacobians[count:]) / (2.0 * step) @ motions
     forms = np.einsum("rs,irj->sij", stresses, second)
     forms = 0.5 * (forms + np.swapaxes(forms, 1, 2))
@@ -57,14 +60,15 @@ def directions(forms: Floats, alone: Floats, random: RandomStarts) -> Floats:
     rank = int(np.count_nonzero(values > tolerances.MOBILITY_FORM))
     beside, radical = right[:rank], right[rank:]
     shared = _less(radical, alone)
-    solved = apart(_zeros(beside @ forms @ beside.T, random), tolerances.MOBILITY_HEADINGS)
-    found = [solved @ beside]
+    zeros = _zeros(beside @ forms @ beside.T, random)
+    solved = zeros[_far_apart(zeros, tolerances.MOBILITY_HEADINGS)]
+    units = [solved @ beside]
     if len(shared):
-        found.append((found[0] + _units(random, len(solved), len(shared)) @ shared) * np.sqrt(0.5))
-        found.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(shared)) @ shared)
+        units.append((units[0] + _units(random, len(solved), len(shared)) @ shared) * np.sqrt(0.5))
+        units.append(_units(random, tolerances.MOBILITY_FREE_HEADINGS, len(shared)) @ shared)
     if len(shared) < len(radical):
-        found.append(_units(random, tolerances.MOBILITY_LONE_HEADINGS, len(radical)) @ radical)
-    every = np.concatenate(found)
+        units.append(_units(random, tolerances.MOBILITY_LONE_HEADINGS, len(radical)) @ radical)
+    every = np.concatenate(units)
     return np.concatenate([every, -every])
 
 
@@ -104,17 +108,12 @@ def _values(forms: Floats, at: Floats) -> Floats:
 
 def _units(random: RandomStarts, number: int, size: int) -> Floats:
     """Random unit vectors (number, size)."""
-    found = random.between(1.0, number * size).reshape(number, size)
-    return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])
+    vectors = random.between(1.0, number * size).reshape(number, size)
+    return np.asarray(vectors / np.sqrt(np.sum(vectors * vectors, axis=1))[:, None])
 
 
-def apart(vectors: Floats, most: int) -> Floats:
-    """Some of many unit vectors (number, size), each as far from those before as any is."""
-    return np.asarray(vectors[apart_numbers(vectors, most)])
-
-
-def apart_numbers(vectors: Floats, most: int) -> list[int]:
-    """Their numbers."""
+def _far_apart(vectors: Floats, most: int) -> list[int]:
+    """Numbers of some of many unit vectors (number, size), each as far from those before as any."""
     if not len(vectors):
         return []
     chosen, nearest = [0], vectors @ vectors[0]
@@ -125,13 +124,6 @@ def apart_numbers(vectors: Floats, most: int) -> list[int]:
         chosen.append(further)
         nearest = np.maximum(nearest, vectors @ vectors[further])
     return chosen
-
-
-# The dimension of the assembled places about one of them, by moves that are closed again.
-#
-# Moves along an orthonormal frame of the motions of first order go where they are meant to as far
-# as they lie in the component, else they fall back: the rank of the chords is its dimension. Two
-# lengths must agree, and moves in the span of the chords must go where they are meant to.
 
 
 @dataclass(frozen=True)
@@ -171,9 +163,9 @@ def component_at(
         if count == 0 or rank.stresses.shape[1] == 0:
             return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
         units = (motions @ _frame(random, count)).T
-        ways = move.step * scaled(units)
-        ways = np.concatenate([part_of * ways for part_of in tolerances.MOBILITY_CHORDS])
-        ends = closed(part, part.moved(np.repeat(place[None], len(ways), axis=0), ways))
+        moves = move.step * _scaled(units)
+        moves = np.concatenate([part_of * moves for part_of in tolerances.MOBILITY_CHORDS])
+        ends = closed(part, part.moved(np.repeat(place[None], len(moves), axis=0), moves))
         if not ends.good(move.limit).all():
             raise Unclear("moves do not close again")
         ranks = [
@@ -181,7 +173,7 @@ def component_at(
             for jacobian in ends.jacobians
         ]
         if min(ranks) == count:
-            dimension, tangents = _chords(part, place, ends, ways, move)
+            dimension, tangents = _chords(part, place, ends, moves)
             if not dimension:
                 raise Unclear(f"{move.step:g} away nothing can move")
             if not _is_smooth(part, place, tangents, move, _frame(random, dimension)):
@@ -193,13 +185,11 @@ def component_at(
     raise Unclear("the rank changes from place to place")
 
 
-def _chords(
-    part: LoopPart, place: Floats, ends: Closed, ways: Floats, move: Move
-) -> tuple[int, Floats]:
+def _chords(part: LoopPart, place: Floats, ends: Closed, moves: Floats) -> tuple[int, Floats]:
     """Dimension and steps (columns, dimension) of the component at a place, from the `ends` of
-    moves along `ways` (number, columns), which are all motions of first order at two lengths."""
-    chords = part.steps(ends.states, np.repeat(place[None], len(ways), axis=0))
-    chords /= lengths(ways)[:, None]
+    `moves` (number, columns) along all motions of first order at two lengths."""
+    chords = part.steps(ends.states, np.repeat(place[None], len(moves), axis=0))
+    chords /= _lengths(moves)[:, None]
     seen = []
     for some in np.split(chords, len(tolerances.MOBILITY_CHORDS)):
         _, values, right = np.linalg.svd(some, full_matrices=False)
@@ -216,23 +206,29 @@ def _chords(
 def _is_smooth(part: LoopPart, place: Floats, tangents: Floats, move: Move, frame: Floats) -> bool:
     """Whether moves along the `tangents` (columns, dimension), mixed by a `frame`, go where they
     are meant to: they would not where several components meet, whose chords count together."""
-    ways = move.step * tolerances.MOBILITY_CHORDS[0] * scaled((tangents @ frame).T)
-    both = np.repeat(place[None], len(ways), axis=0)
-    ends = closed(part, part.moved(both, ways))
-    strayed = lengths(part.steps(ends.states, both) - ways)
-    return bool(
-        np.all(ends.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * lengths(ways)))
-    )
+    moves = move.step * tolerances.MOBILITY_CHORDS[0] * _scaled((tangents @ frame).T)
+    return bool(np.all(_closed_as_meant(part, place, moves, move)[1]))
 
 
-def lengths(ways: Floats) -> Floats:
+def _closed_as_meant(
+    part: LoopPart, place: Floats, moves: Floats, move: Move
+) -> tuple[Closed, NDArray[np.bool_]]:
+    """The ends of moves (number, columns) from a place, and which of them did not stray."""
+    starts = np.repeat(place[None], len(moves), axis=0)
+    ends = closed(part, part.moved(starts, moves))
+    strayed = _lengths(part.steps(ends.states, starts) - moves)
+    limit = tolerances.MOBILITY_STRAYED * _lengths(moves)
+    return ends, ends.good(move.limit) & (strayed < limit)
+
+
+def _lengths(steps: Floats) -> Floats:
     """Lengths (number,) of steps (number, columns)."""
-    return np.asarray(np.sqrt(np.sum(ways * ways, axis=1)))
+    return np.asarray(np.sqrt(np.sum(steps * steps, axis=1)))
 
 
-def scaled(ways: Floats) -> Floats:
+def _scaled(steps: Floats) -> Floats:
     """Steps (number, columns) whose largest is one."""
-    return np.asarray(ways / np.abs(ways).max(axis=1, initial=0.0, keepdims=True))
+    return np.asarray(steps / np.abs(steps).max(axis=1, initial=0.0, keepdims=True))
 
 
 def _frame(random: RandomStarts, size: int) -> Floats:
@@ -244,8 +240,8 @@ def _frame(random: RandomStarts, size: int) -> Floats:
 class LocalFreedom:
     """Freedoms of a part from a place.
 
-    `first` is the rank there; `components` are those found to meet there, one for each dimension,
-    the largest first; `doubt` says in words why the answer is not clear, else it is empty.
+    `first` is the rank there; `components` are those that meet there, one for each dimension, the
+    largest first; `doubt` says in words why the answer is not clear, else it is empty.
     """
 
     first: Rank
@@ -274,8 +270,8 @@ class _Nearly(Unclear):
 def freedom_of(
     part: LoopPart, state: Floats, random: RandomStarts, *, regular: bool = False
 ) -> LocalFreedom:
-    """The freedoms of a part from an assembled place `state` (states,); if only `regular` places
-    are wanted, others are a doubt."""
+    """The freedoms of a part from an assembled place `state` (states,); with `regular`, any other
+    than a regular place is a doubt."""
     _, jacobians = part.closing(state[None])
     first = rank_of(jacobians[0], tolerances.RANK_ZERO)
     if not first.clear:
@@ -299,31 +295,17 @@ def _regular(
     """The component if it has as many dimensions as there are motions of first order, so that there
     is but one; None else."""
     motions = first.motions
-    heading = scaled(_local_dimension_units(random, 1, motions.shape[1]) @ motions.T)
-    both = np.repeat(state[None], 2, axis=0)
+    heading = _scaled(_units(random, 1, motions.shape[1]) @ motions.T)
     for move in MOVES:
-        wanted = move.step * np.concatenate([heading, -heading])
-        there = closed(part, part.moved(both, wanted))
-        strayed = lengths(part.steps(there.states, both) - wanted)
-        kept = there.good(move.limit) & (strayed < tolerances.MOBILITY_STRAYED * lengths(wanted))
-        for place in there.states[kept]:
+        moves = move.step * np.concatenate([heading, -heading])
+        ends, as_meant = _closed_as_meant(part, state, moves, move)
+        for place in ends.states[as_meant]:
             try:
-                found = component_at(part, place, random, move)
+                component = component_at(part, place, random, move)
             except Unclear:
                 continue
-            return found if found.dimension == motions.shape[1] else None
+            return component if component.dimension == motions.shape[1] else None
     return None
-
-
-class _PlaceSearch(NamedTuple):
-    """Places to be found from the place `state` (states,) of a part along `headings` (number,
-    columns), whose largest steps are one; `most` of them are looked at."""
-
-    part: LoopPart
-    state: Floats
-    headings: Floats
-    most: int
-    random: RandomStarts
 
 
 def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) -> LocalFreedom:
@@ -331,50 +313,56 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
     count = first.motions.shape[1]
     forms = quadratic_forms(part, state, first.motions, first.stresses)
     alone = part.alone(state, first.motions)
-    headings = scaled(directions(forms, alone, random) @ first.motions.T)
+    headings = _scaled(directions(forms, alone, random) @ first.motions.T)
     least, largest = tolerances.MOBILITY_PLACES
     most = min(max(tolerances.MOBILITY_WORK // count, least), largest)
-    search = _PlaceSearch(part, state, headings, most, random)
+
+    def components(
+        move: Move, nearly: float = tolerances.MOBILITY_OPEN
+    ) -> tuple[AssemblyComponent, ...]:
+        if not len(headings):
+            return ()
+        moves = move.step * headings
+        starts = part.moved(np.repeat(state[None], len(moves), axis=0), moves)
+        ends = closed(part, starts, (state, _lengths(moves)))
+        open_by = float(ends.misses.min())
+        if move.limit <= open_by < nearly:
+            raise _Nearly(open_by, move)
+        places = _onward(part, state, ends.states[ends.good(move.limit)], most, move)
+        doubt = Unclear("a second move does not close") if open_by < move.limit else None
+        return _components(part, places, random, move, doubt)
+
     try:
         try:
-            found = _components(search, MOVES[0])
+            meeting = components(MOVES[0])
         except _Nearly as near:
-            found = _components(search, FAR_MOVE, tolerances.MOBILITY_GROWTH * near.least)
+            meeting = components(FAR_MOVE, tolerances.MOBILITY_GROWTH * near.least)
         except Unclear:
-            found = _components(search, MOVES[1])
+            meeting = components(MOVES[1])
     except Unclear as unclear:
         return LocalFreedom(first, (), str(unclear))
-    if len(found) > 1 and found[0].dimension == count:
-        found = found[1:]  # with as many as to first order the place would be regular
-    return LocalFreedom(first, found or (AssemblyComponent(0, state, first.motions[:, :0], 0.0),))
+    if len(meeting) > 1 and meeting[0].dimension == count:
+        meeting = meeting[1:]  # with as many as to first order the place would be regular
+    fixed = AssemblyComponent(0, state, first.motions[:, :0], 0.0)
+    return LocalFreedom(first, meeting or (fixed,))
 
 
 def _components(
-    search: _PlaceSearch, move: Move, nearly: float = tolerances.MOBILITY_OPEN
+    part: LoopPart, places: Floats, random: RandomStarts, move: Move, doubt: Unclear | None
 ) -> tuple[AssemblyComponent, ...]:
-    """Components that two moves lead to, one of each dimension, the largest first.
+    """Components of some places (number, states), one of each dimension, the largest first.
 
     Raises:
-        Unclear: none has a clear dimension, or no loops are closed, but some open by less than
-            `nearly`.
+        Unclear: the last `doubt`, where none has a clear dimension.
     """
-    if not len(search.headings):
-        return ()
-    ways = move.step * search.headings
-    starts = search.part.moved(np.repeat(search.state[None], len(ways), axis=0), ways)
-    there = closed(search.part, starts, Sphere(search.state, lengths(ways)))
-    least = float(there.misses.min())
-    if move.limit <= least < nearly:
-        raise _Nearly(least, move)
     known: dict[int, list[AssemblyComponent]] = {}
-    doubt = Unclear("a second move does not close") if least < move.limit else None
-    for place in _onward(search, there, move):
+    for place in places:
         try:
-            found = component_at(search.part, place, search.random, move)
+            component = component_at(part, place, random, move)
         except Unclear as unclear:
             doubt = unclear
             continue
-        known.setdefault(found.dimension, []).append(found)
+        known.setdefault(component.dimension, []).append(component)
     if doubt and not known:
         raise doubt
     return tuple(
@@ -383,19 +371,12 @@ def _components(
     )
 
 
-def _onward(search: _PlaceSearch, there: Closed, move: Move) -> Floats:
-    """Places (number, states) to which another move in the same heading leads, from some of those
-    that closed, which are far from each other."""
-    part = search.part
-    places = there.states[there.good(move.limit)]
-    ways = part.steps(places, np.repeat(search.state[None], len(places), axis=0))
-    some = apart_numbers(ways / lengths(ways)[:, None], search.most)
-    places, ways = places[some], ways[some]
-    on = closed(part, part.moved(places, ways))
-    far = lengths(part.steps(on.states, places)) > 0.5 * lengths(ways)
-    return np.asarray(on.states[on.good(move.limit) & far])
-
-
-def _local_dimension_units(random: RandomStarts, number: int, size: int) -> Floats:
-    found = random.between(1.0, number * size).reshape(number, size)
-    return np.asarray(found / np.sqrt(np.sum(found * found, axis=1))[:, None])
+def _onward(part: LoopPart, state: Floats, places: Floats, most: int, move: Move) -> Floats:
+    """Places (number, states) to which another move in the same heading leads, from `most` of
+    some places, far from each other, to which a first move from a state led."""
+    moves = part.steps(places, np.repeat(state[None], len(places), axis=0))
+    some = _far_apart(moves / _lengths(moves)[:, None], most)
+    places, moves = places[some], moves[some]
+    ends = closed(part, part.moved(places, moves))
+    far = _lengths(part.steps(ends.states, places)) > 0.5 * _lengths(moves)
+    return np.asarray(ends.states[ends.good(move.limit) & far])

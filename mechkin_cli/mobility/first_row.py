@@ -1,4 +1,11 @@
-"""The first row's assembly as a configuration of the opened mechanism."""
+"""The first row's assembly as a configuration of the opened mechanism, and locked coordinates that
+cannot keep their values on the path.
+
+What locks an idle freedom is an equation more, with dead centres of its own. At a place where a
+branch ends the mechanism is looked at without it (`lost_holds`): the motions that all loops allow
+with the inputs at rest. If these are as many as it has idle freedoms, the mechanism is as regular
+there as anywhere, and the end is that of what is locked.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +16,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import choose_start, probe_of
-from mechkin_cli.mechanism import Frame, is_unnamed
+from mechkin_cli.mechanism import is_unnamed
 from mechkin_cli.mobility.configurations import Body, Configuration, home, with_links_at
 from mechkin_cli.mobility.opened import Pose, Poses, quaternion_of, rank_of
 
@@ -39,8 +46,8 @@ def configuration_at(
     links = poses.named(turns[0], places[0])
     coordinates, _ = probe_of(session).read(inputs, state[:, None])
     seed = _seed(body, {name: float(value[0]) for name, value in coordinates.items()}, links)
-    found = with_links_at(seed, links)
-    return found if found.assembled else None
+    place = with_links_at(seed, links)
+    return place if place.assembled else None
 
 
 def _seed(body: Body, coordinates: Mapping[str, float], links: Mapping[str, Pose]) -> Configuration:
@@ -54,10 +61,10 @@ def _seed(body: Body, coordinates: Mapping[str, float], links: Mapping[str, Pose
             part = edge.joint.parts[0]
             if part.type.is_ball:
                 # slides beside a ball do not turn
-                before = links[joint.first].turn @ _axes(part.before)
-                after = links[joint.second].turn @ _axes(part.after)
-                seen = (before, after) if edge.forward else (after, before)
-                state[carrier.state : carrier.state + 4] = quaternion_of(seen[0].T @ seen[1])
+                before = links[joint.first].turn @ np.array(part.before[:3]).T
+                after = links[joint.second].turn @ np.array(part.after[:3]).T
+                turn = before.T @ after if edge.forward else after.T @ before
+                state[carrier.state : carrier.state + 4] = quaternion_of(turn)
                 continue
             for number in range(len(part.type.freedoms)):
                 known = values.get(carrier.column + number)
@@ -68,22 +75,9 @@ def _seed(body: Body, coordinates: Mapping[str, float], links: Mapping[str, Pose
     return Configuration(body, state)
 
 
-def _axes(frame: Frame) -> Floats:
-    """The axes of a frame as columns."""
-    return np.array([frame.x, frame.y, frame.z]).T
-
-
-# A coordinate that holds an idle freedom and comes to where it cannot keep its value.
-#
-# What holds an idle freedom is an equation more, with dead centres of its own. At a place where a
-# branch ends the mechanism is looked at without it: the motions that all loops allow with the
-# inputs at rest. If these are as many as it has idle freedoms, the mechanism is as regular there as
-# anywhere, and the end is that of what is held.
-
-
 def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedFreedom, ...]:
-    """What is held and cannot be kept at a place, inputs (inputs,) and states (states,), that is
-    regular without it; empty where the mechanism itself is singular or none is found."""
+    """What is locked and cannot keep its value at a place, inputs (inputs,) and states (states,),
+    that is regular without it; empty where the mechanism itself is singular or none is found."""
     problem = session.problem
     if not problem.held or not np.isfinite(state).all():
         return ()
@@ -91,23 +85,18 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     place = configuration_at(session, body, inputs, state)
     if place is None:
         return ()
-    driven = np.eye(body.count)[[body.column(*each) for each in problem.motion.driven]]
-    at_rest = np.concatenate([_scaled(place), driven])
-    motions = rank_of(at_rest, tolerances.REGULAR_WITHOUT_HOLDS).motions
-    if motions.shape[1] != len(problem.held) + len(problem.mechanism.spins):
-        return ()
-    return _dependent(problem.held, body, motions)
-
-
-def _scaled(place: Configuration) -> Floats:
-    """The loops' Jacobian with lengths in parts of how far the links are, where that is more than
-    the size, and columns of length one."""
+    # lengths in parts of how far the links are, where that is more than the size; unit columns
     far = max(1.0, *(float(np.abs(pose.place).max()) for pose in place.poses.values()))
     jacobian = place.jacobian
     parts = np.array([1.0, 1.0, 1.0, 1.0 / far, 1.0 / far, 1.0 / far])
     matrix = jacobian * np.tile(parts, len(jacobian) // 6)[:, None]
     lengths = np.sqrt((matrix * matrix).sum(axis=0))
-    return np.asarray(matrix / np.where(lengths > 0.0, lengths, 1.0), dtype=np.float64)
+    driven = np.eye(body.count)[[body.column(*each) for each in problem.motion.driven]]
+    at_rest = np.concatenate([matrix / np.where(lengths > 0.0, lengths, 1.0), driven])
+    motions = rank_of(at_rest, tolerances.REGULAR_WITHOUT_HOLDS).motions
+    if motions.shape[1] != len(problem.held) + len(problem.mechanism.spins):
+        return ()
+    return _dependent(problem.held, body, motions)
 
 
 def _dependent(

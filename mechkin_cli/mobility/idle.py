@@ -1,4 +1,12 @@
-"""Idle freedoms: motions of one link, or of a few as one body, that leave all others at rest."""
+"""Idle freedoms: motions of one link, or of a few as one body, that leave all others at rest.
+
+`idle_freedoms` finds and describes those of one configuration. `held_along` locks those that links
+have only where their mechanism takes them: a slide may stand square to the normal of a plane
+because the other joints turn both about that normal alone, and its link then slides between them at
+every position of the mechanism, though not if the joints were moved at will. Such motions are
+looked for where the drawing has more of them than its joints alone have anywhere, at general
+configurations of the mechanism.
+"""
 
 from __future__ import annotations
 
@@ -32,22 +40,21 @@ def idle_freedoms(
     configuration: Configuration, driven: Sequence[tuple[str, str]]
 ) -> tuple[IdleFreedom, ...]:
     """Freedoms that move no input and nothing but a link between two or more joints."""
-    found: list[IdleFreedom] = []
-    body = configuration.body
-    known = np.zeros((body.count, 0))
-    for names, border, motions in group_motions(configuration, driven):
+    idle: list[IdleFreedom] = []
+    known = np.zeros((configuration.body.count, 0))
+    for names, border, motions in _group_motions(configuration, driven):
         new = motions @ _split(motions - known @ (known.T @ motions))[0]
         if not new.shape[1]:
             continue
         known = np.linalg.qr(np.concatenate([known, new], axis=1))[0]
-        for twist in _told(configuration.twists[names[0]] @ new).T:
+        for twist in _turns_and_slides(configuration.twists[names[0]] @ new).T:
             verb, how = _words(border, twist)
             verb = f"{verb} together" if len(names) > 1 else f"{verb}s"
-            found.append(IdleFreedom(names, f"{' and '.join(names)} {verb} freely {how}"))
-    return tuple(found)
+            idle.append(IdleFreedom(names, f"{' and '.join(names)} {verb} freely {how}"))
+    return tuple(idle)
 
 
-def group_motions(
+def _group_motions(
     configuration: Configuration, driven: Sequence[tuple[str, str]]
 ) -> Iterator[tuple[tuple[str, ...], tuple[Joint, ...], Floats]]:
     """Groups of links, few first, with the joints to others and their motions (freedoms, count) as
@@ -71,7 +78,7 @@ def _split(matrix: Floats) -> tuple[Floats, Floats]:
     return right[:rank].T, right[rank:].T
 
 
-def _told(twists: Floats) -> Floats:
+def _turns_and_slides(twists: Floats) -> Floats:
     """Unit twists (6, count) that span the same: turns, then slides."""
     turning, sliding = _split(twists[:3] / np.linalg.norm(twists, axis=0).max())
     turns, slides = twists @ turning, twists @ sliding
@@ -106,9 +113,9 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     matrix = np.concatenate([configuration.jacobian, *rest])[:, moving]
     _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
     least = tolerances.RANK_ZERO * values.max(initial=0.0)  # welds alone have none
-    found = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))
-    found[moving] = right[len(moving) - found.shape[1] :].T
-    return found
+    motions = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))
+    motions[moving] = right[len(moving) - motions.shape[1] :].T
+    return motions
 
 
 def _words(border: Sequence[Joint], twist: Floats) -> tuple[str, str]:
@@ -124,16 +131,8 @@ def _words(border: Sequence[Joint], twist: Floats) -> tuple[str, str]:
     return "turn", f"about the common axis of {names}"
 
 
-# Idle freedoms that links have only where their mechanism takes them.
-#
-# A slide may stand square to the normal of a plane because the other joints turn both about that
-# normal alone: its link then slides between them, at every position of the mechanism, though not if
-# the joints were moved at will. Such motions are looked for where the drawing has more of them than
-# its joints alone have anywhere, at general configurations of the mechanism.
-
-
 def held_along(problem: Problem, known: tuple[LockedFreedom, ...]) -> tuple[LockedFreedom, ...]:
-    """What holds the idle freedoms of a mechanism on its way; `known` if there are no more, or if
+    """What locks the idle freedoms of a mechanism on its path; `known` if there are no more, or if
     the drawing is not assembled or a special position."""
     body = Body(problem.mechanism)
     places = _places(body)
@@ -141,21 +140,18 @@ def held_along(problem: Problem, known: tuple[LockedFreedom, ...]) -> tuple[Lock
         return known
     driven = problem.motion.driven
     groups = []
-    at = [list(group_motions(place, driven)) for place in places]
-    for (links, joints, first), *others in zip(*at, strict=True):
-        motions = [_motions(places[0], links, joints, first)]
-        motions += [
-            _motions(place, links, joints, ways)
-            for place, (_, _, ways) in zip(places[1:], others, strict=True)
+    for at_places in zip(*(_group_motions(place, driven) for place in places), strict=True):
+        links, joints, _ = at_places[0]
+        motions = [
+            _motions(place, links, joints, at_place[2])
+            for place, at_place in zip(places, at_places, strict=True)
         ]
         group = RigidGroup(links, joints, motions)
         groups += [group] if group.count else []
     x, y, z = (float(c) for c in body.centre)
     held = held_groups(problem.mechanism, driven, groups, body.size, (x, y, z))
-    same = {(one.links, one.coordinate) for one in held} == {
-        (one.links, one.coordinate) for one in known
-    }
-    if same:
+    locked = [{(one.links, one.coordinate) for one in some} for some in (held, known)]
+    if locked[0] == locked[1]:
         return known
     return tuple(one._replace(everywhere=False) for one in held)
 
@@ -166,21 +162,18 @@ def _places(body: Body) -> list[Configuration]:
     if not start.assembled:
         return []
     freedoms = [(p, freedom_of(p, start.state, random)) for p in body.parts]
-    if any(
-        found.doubt or found.dimensions != (found.first.motions.shape[1],) for _, found in freedoms
-    ):
-        return []  # at a branch point one way may leave idle what another needs
+    if any(f.doubt or f.dimensions != (f.first.motions.shape[1],) for _, f in freedoms):
+        return []  # at a branch point one branch may leave idle what another needs
     motions = Motions(body, start, freedoms)
-    found = [motions.general]
-    while len(found) < PLACES:
-        ways = motions.tangents
-        heading = ways @ random.between(1.0, ways.shape[1])
+    places = [motions.general]
+    while len(places) < PLACES:
+        heading = motions.tangents @ random.between(1.0, motions.tangents.shape[1])
         heading *= tolerances.IDLE_MOVE / max(1.0, float(np.abs(heading).max(initial=0.0)))
         moved = motions.general.moved(heading).closed()
         if not moved.assembled:
             return []
-        found.append(moved)
-    return found
+        places.append(moved)
+    return places
 
 
 def _motions(
@@ -188,7 +181,7 @@ def _motions(
 ) -> list[LinkMotion]:
     """Motions (freedoms, count) with the links' twists on their own drawings."""
     body = place.body
-    found = []
+    link_motions = []
     for motion in motions.T:
         rates = {
             (joint.name, freedom): float(motion[column])
@@ -197,14 +190,11 @@ def _motions(
         }
         twists = {}
         for link in links:
-            twist, pose = place.twists[link] @ motion, place.poses[link]
-            spin = twist[:3]
-            twists[link] = (
-                _vector(pose.turn.T @ spin),
-                _vector(pose.turn.T @ (twist[3:] + np.cross(spin, pose.place))),
-            )
-        found.append(LinkMotion(rates, twists))
-    return found
+            twist, (turn, origin) = place.twists[link] @ motion, place.poses[link]
+            linear = turn.T @ (twist[3:] + np.cross(twist[:3], origin))
+            twists[link] = _vector(turn.T @ twist[:3]), _vector(linear)
+        link_motions.append(LinkMotion(rates, twists))
+    return link_motions
 
 
 def _vector(entries: Floats) -> Vector:

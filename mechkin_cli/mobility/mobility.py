@@ -1,11 +1,13 @@
-"""Mobility: Kutzbach's count against the finite freedom, and what makes them differ.
+"""Mobility: Kutzbach's count against the finite freedom, what makes them differ, and what the
+inputs do to the freedoms.
 
 With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f: all freedoms
 less six for every loop; in a plane less three, 3 (n - 1) - 2 j where all joints have one freedom.
-The freedom of first order is sum f less the rank of the loops' screws at
-the first configuration; the finite freedom is the dimension of the assembled configurations next to
-it (`local_dimension`). The difference of sum f less the rank at a general configuration and the
-count is the number of redundant constraints.
+The freedom of first order is sum f less the rank of the loops' screws at the first configuration;
+the finite freedom is the dimension of the assembled configurations next to it (`dimension`). The
+difference of sum f less the rank at a general configuration and the count is the number of
+redundant constraints. Inputs may be locked, dependent, or too few (`input_notes`); `check` reports
+what is known of them from the drawing alone, without a search (`drawn_faults`).
 """
 
 from __future__ import annotations
@@ -25,23 +27,12 @@ from mechkin_cli.mobility.first_row import first_row
 from mechkin_cli.mobility.idle import IdleFreedom, idle_freedoms
 from mechkin_cli.mobility.motions import Motions
 from mechkin_cli.mobility.redundancy import Redundancy, redundancies
-from mechkin_cli.record import dataclass
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.structure import RandomStarts, listed
 
 if TYPE_CHECKING:
     from mechkin_cli.session import Session
-    from mechkin_cli.show import Floats
-
-
-# Mobility in words.
-
-
-def verdict(found: Mobility) -> str:
-    """What count and truth say together, in one sentence."""
-    if found.mobility is None:
-        return f"mobility unclear; the count says {found.count}"
-    return f"{_moves(found)}; {_compared(found)}"
 
 
 def count_of_freedoms(number: int) -> str:
@@ -56,36 +47,6 @@ def count_of_freedoms(number: int) -> str:
 def meeting(dimensions: tuple[int, ...]) -> str:
     """Dimensions of components that meet, the least first."""
     return " and ".join(str(number) for number in sorted(dimensions))
-
-
-def _moves(found: Mobility) -> str:
-    if not found.mobility:
-        text = "nothing can move"
-        return f"{text} but to first order" if found.first_order else text
-    if len(found.dimensions) > 1:
-        text = f"motions of {meeting(found.dimensions)} freedoms meet"
-    else:
-        text = count_of_freedoms(found.mobility)
-    if found.first_order != found.mobility:
-        text += f" ({found.first_order} to first order)"
-    return text + (f", {len(found.idle)} of them idle" if found.idle else "")
-
-
-def _compared(found: Mobility) -> str:
-    redundant = sum(item.number for item in found.redundant)
-    if not redundant:
-        same = found.mobility == found.count
-        return "as Kutzbach's count says" if same else f"Kutzbach's count is {found.count}"
-    if not found.mobility:
-        return f"Kutzbach's count is {found.count}"
-    constraints = "one constraint is" if redundant == 1 else f"{redundant} constraints are"
-    return (
-        f"Kutzbach's count is {found.count}: {constraints} redundant, so it moves only while the "
-        "dimensions are exact"
-    )
-
-
-# What the declared inputs do to the freedoms: locked, dependent, or too few.
 
 
 def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnostic]:
@@ -115,18 +76,8 @@ def input_notes(problem: Problem, motions: Motions, idle: int) -> list[Diagnosti
             )
         )
     left = motions.tangents @ right[rank:].T
-    return [*notes, *undriven_notes(motions.mobility, idle, rank, moving(motions, left, doubt))]
-
-
-def moving(motions: Motions, ways: Floats, doubt: float) -> tuple[str, ...]:
-    """Coordinates that some motions (freedoms, count) change."""
-    rates = np.abs(ways).max(axis=1, initial=0.0)
-    return tuple(
-        f"{joint.name}.{name}"
-        for joint in motions.body.mechanism.joints.values()
-        for name in joint.type.freedom_of
-        if rates[motions.body.column(joint.name, name)] > doubt
-    )
+    moving = motions.body.coordinates(np.abs(left).max(axis=1, initial=0.0) > doubt)
+    return [*notes, *undriven_notes(motions.mobility, idle, rank, moving)]
 
 
 def undriven_notes(
@@ -149,8 +100,8 @@ def undriven_notes(
 class Mobility(Listed):
     """What can move.
 
-    `count` is Kutzbach's; `mobility` the finite freedom, None where it cannot be told (no assembly,
-    or unclear); `dimensions` are those of all components of motion that meet at the first
+    `count` is Kutzbach's; `mobility` the finite freedom, None where it is unknown (no assembly, or
+    unclear); `dimensions` are those of all components of motion that meet at the first
     configuration, the largest first, which is `mobility`. `first_order` is the freedom of small
     moves there, larger than `mobility` where part of it goes no finite way. `loops` counts
     independent loops, `inputs` the driven coordinates; `fixed` are the coordinates that never move.
@@ -160,14 +111,14 @@ class Mobility(Listed):
     count: int
     loops: int
     inputs: tuple[str, ...]
-    mobility: int | None
-    first_order: int | None
-    dimensions: tuple[int, ...]
-    configurations: int
-    idle: tuple[IdleFreedom, ...]
-    redundant: tuple[Redundancy, ...]
-    fixed: tuple[str, ...]
-    diagnostics: tuple[Diagnostic, ...]
+    mobility: int | None = None
+    first_order: int | None = None
+    dimensions: tuple[int, ...] = ()
+    configurations: int = 0
+    idle: tuple[IdleFreedom, ...] = ()
+    redundant: tuple[Redundancy, ...] = ()
+    fixed: tuple[str, ...] = ()
+    diagnostics: tuple[Diagnostic, ...] = ()
 
     @property
     def listing(self) -> Listing:
@@ -185,34 +136,57 @@ class Mobility(Listed):
 
     @property
     def verdict(self) -> str:
-        """What count and truth say together, in one sentence."""
-        return verdict(self)
+        """The finite freedom and Kutzbach's count, in one sentence."""
+        if self.mobility is None:
+            return f"mobility unclear; the count says {self.count}"
+        return f"{self._moves()}; {self._compared()}"
+
+    def _moves(self) -> str:
+        if not self.mobility:
+            text = "nothing can move"
+            return f"{text} but to first order" if self.first_order else text
+        if len(self.dimensions) > 1:
+            text = f"motions of {meeting(self.dimensions)} freedoms meet"
+        else:
+            text = count_of_freedoms(self.mobility)
+        if self.first_order != self.mobility:
+            text += f" ({self.first_order} to first order)"
+        return text + (f", {len(self.idle)} of them idle" if self.idle else "")
+
+    def _compared(self) -> str:
+        redundant = sum(item.number for item in self.redundant)
+        if not redundant and self.mobility == self.count:
+            return "as Kutzbach's count says"
+        count = f"Kutzbach's count is {self.count}"
+        if not redundant or not self.mobility:
+            return count
+        constraints = "one constraint is" if redundant == 1 else f"{redundant} constraints are"
+        return f"{count}: {constraints} redundant, so it moves only while the dimensions are exact"
 
 
 def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     """The mobility of a mechanism; its inputs count as free. `session` of the problem, where it can
     be solved as it is driven, gives the first row's assembly."""
     mechanism = problem.mechanism
+    inputs = tuple(item.name for item in problem.motion.inputs)
+    counted = Mobility(mechanism.name, kutzbach(mechanism), mechanism.loops, inputs)
     body = Body(mechanism)
     start = (session and first_row(session, body)) or assembled(body)
     if start is None:
-        return _unknown(problem, [_not_assembled(body)])
+        return replace(counted, diagnostics=(_not_assembled(body),))
     random = RandomStarts()
     freedoms = [(part, freedom_of(part, start.state, random)) for part in body.parts]
-    first_order = body.free.size + sum(found.first.motions.shape[1] for _, found in freedoms)
-    doubts = [found for _, found in freedoms if found.doubt]
+    first_order = body.free.size + sum(freedom.first.motions.shape[1] for _, freedom in freedoms)
+    doubts = [freedom for _, freedom in freedoms if freedom.doubt]
+    if any(not freedom.first.clear for freedom in doubts):
+        return replace(counted, diagnostics=(_rank_unclear(doubts),))
     if doubts:
-        clear = all(found.first.clear for found in doubts)
-        note = _unclear(doubts) if clear else _rank_unclear(doubts)
-        return _unknown(problem, [note], first_order if clear else None)
+        return replace(counted, first_order=first_order, diagnostics=(_unclear(doubts[0]),))
     motion = Motions(body, start, freedoms)
     driven = problem.motion.driven
     idle = _idle(motion, driven)
-    return Mobility(
-        name=mechanism.name,
-        count=kutzbach(mechanism),
-        loops=loops(mechanism),
-        inputs=tuple(item.name for item in problem.motion.inputs),
+    return replace(
+        counted,
         mobility=motion.mobility,
         first_order=first_order,
         dimensions=motion.dimensions,
@@ -226,48 +200,23 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
 
 def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreedom, ...]:
     """Freedoms that are idle wherever the mechanism goes."""
-    found = idle_freedoms(motion.general, driven) if motion.mobility else ()
-    for other in motion.others if found else ():
+    idle = idle_freedoms(motion.general, driven) if motion.mobility else ()
+    for other in motion.others if idle else ():
         there = Counter(item.links for item in idle_freedoms(other, driven))
         here: Counter[tuple[str, ...]] = Counter()
-        kept = []
-        for item in found:
+        common = []
+        for item in idle:
             here[item.links] += 1
             if here[item.links] <= there[item.links]:
-                kept.append(item)
-        found = tuple(kept)
-    return found
+                common.append(item)
+        idle = tuple(common)
+    return idle
 
 
 def kutzbach(mechanism: Mechanism) -> int:
     """6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f."""
     freedom = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    return freedom - mechanism.space * loops(mechanism)
-
-
-def loops(mechanism: Mechanism) -> int:
-    """Number of independent loops."""
-    return mechanism.loops
-
-
-def _unknown(
-    problem: Problem, diagnostics: list[Diagnostic], first_order: int | None = None
-) -> Mobility:
-    mechanism = problem.mechanism
-    return Mobility(
-        name=mechanism.name,
-        count=kutzbach(mechanism),
-        loops=loops(mechanism),
-        inputs=tuple(item.name for item in problem.motion.inputs),
-        mobility=None,
-        first_order=first_order,
-        dimensions=(),
-        configurations=0,
-        idle=(),
-        redundant=(),
-        fixed=(),
-        diagnostics=tuple(diagnostics),
-    )
+    return freedom - mechanism.space * mechanism.loops
 
 
 def _not_assembled(body: Body) -> Diagnostic:
@@ -286,37 +235,32 @@ def _rank_unclear(unclear: list[LocalFreedom]) -> Diagnostic:
     return Diagnostic(
         "rank-unclear",
         "error",
-        "the rank of the constraints cannot be told",
+        "the rank of the constraints is not clear",
         measured=f"a gap of {min(item.first.gap for item in unclear):.3g} between singular values",
         limit=f"{tolerances.RANK_GAP:g}",
         hint="write exact dimensions (expressions), or another position of the inputs",
     )
 
 
-def _unclear(unclear: list[LocalFreedom]) -> Diagnostic:
+def _unclear(unclear: LocalFreedom) -> Diagnostic:
     return Diagnostic(
         "mobility-unclear",
         "error",
-        "how many freedoms go a finite way cannot be told",
-        measured=unclear[0].doubt,
+        "it is not clear how many freedoms allow finite motion",
+        measured=unclear.doubt,
         hint="write exact dimensions (expressions), or draw it in another position",
     )
 
 
-# What is known of the inputs from the drawing alone, without a search: for `check`.
-
-
 def drawn_faults(problem: Problem) -> list[Diagnostic]:
-    """Inputs that are locked, dependent or too few, as warnings.
-
-    Nothing is said where the drawing is not assembled or a special position.
-    """
+    """Inputs that are locked, dependent or too few, as warnings; none where the drawing is not
+    assembled or a special position."""
     body = Body(problem.mechanism)
     start, random = home(body), RandomStarts()
     if not start.assembled:
         return []
     freedoms = [(p, freedom_of(p, start.state, random, regular=True)) for p in body.parts]
-    if any(found.doubt for _, found in freedoms):
+    if any(freedom.doubt for _, freedom in freedoms):
         return []
     motions = Motions(body, start, freedoms)
     driven = problem.motion.driven

@@ -10,7 +10,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart
-from mechkin_cli.mobility.dimension import AssemblyComponent, LocalFreedom
+from mechkin_cli.mobility.dimension import LocalFreedom
 from mechkin_cli.mobility.opened import rank_of
 
 if TYPE_CHECKING:
@@ -48,12 +48,16 @@ class Motions:
     @cached_property
     def general(self) -> Configuration:
         """A general configuration of the largest component."""
-        return self._at([found.components[0].state for _, found in self.freedoms])
+        return self._at([freedom.components[0].state for _, freedom in self.freedoms])
 
     @cached_property
     def others(self) -> tuple[Configuration, ...]:
         """General configurations of more components, one of each dimension first."""
-        every = [_places(found) for _, found in self.freedoms]
+        every = [
+            [c.state for c in freedom.components]
+            + [place for c in freedom.components for place in c.places[1:]]
+            for _, freedom in self.freedoms
+        ]
         most = min(max(map(len, every), default=0), tolerances.MOBILITY_OTHERS)
         return tuple(
             self._at([p[k] if k < len(p) else p[0] for p in every]) for k in range(1, most)
@@ -76,30 +80,28 @@ class Motions:
         # what the plane holds is no constraint: of each cut the moment about z, forces along x, y
         rows = (6 * np.arange(len(jacobian) // 6)[:, None] + (2, 3, 4)).ravel()
         inside = rank_of(jacobian[rows], tolerances.MOBILITY_RANK_REACHED).stresses
-        found = np.zeros((len(jacobian), inside.shape[1]))
-        found[rows] = inside
-        return found
+        stresses = np.zeros((len(jacobian), inside.shape[1]))
+        stresses[rows] = inside
+        return stresses
 
     @cached_property
     def tangents(self) -> Floats:
         """Motions (freedoms, mobility) of the largest component at the general configuration."""
-        found = np.zeros((self.body.count, self.mobility))
+        motions = np.zeros((self.body.count, self.mobility))
         free = self.body.free
-        found[free, np.arange(free.size)] = 1.0
+        motions[free, np.arange(free.size)] = 1.0
         column = free.size
         for part, freedom in self.freedoms:
             tangents = freedom.components[0].tangents
-            found[part.columns, column : column + tangents.shape[1]] = tangents
+            motions[part.columns, column : column + tangents.shape[1]] = tangents
             column += tangents.shape[1]
-        return found
+        return motions
 
     @cached_property
     def doubt(self) -> float:
         """How far entries of the tangents may be off."""
-        every: list[AssemblyComponent] = [
-            c for _, freedom in self.freedoms for c in freedom.components
-        ]
-        return max((c.doubt for c in every), default=tolerances.RANK_ZERO)
+        doubts = (c.doubt for _, freedom in self.freedoms for c in freedom.components)
+        return max(doubts, default=tolerances.RANK_ZERO)
 
     @cached_property
     def fixed(self) -> tuple[str, ...]:
@@ -110,15 +112,4 @@ class Motions:
             for component in freedom.components:
                 rates = np.abs(component.tangents).max(axis=1, initial=0.0)
                 moving[part.columns] |= rates > max(component.doubt, tolerances.RANK_ZERO)
-        return tuple(
-            f"{joint.name}.{name}"
-            for joint in self.body.mechanism.joints.values()
-            for name in joint.type.freedom_of
-            if not moving[self.body.column(joint.name, name)]
-        )
-
-
-def _places(freedom: LocalFreedom) -> list[Floats]:
-    """General places of all components, one of each dimension first."""
-    first = [component.state for component in freedom.components]
-    return first + [place for component in freedom.components for place in component.places[1:]]
+        return self.body.coordinates(~moving)

@@ -1,8 +1,17 @@
-"""A mechanism opened to a tree of elementary displacements, and the poses of its bodies.
+"""A mechanism opened to a tree of elementary displacements: its poses, loops and their rank.
 
-Every joint is carried, part by part. One that would close a loop carries a copy of its second link
-(a cut), so that a configuration is a point in the space of all joint coordinates and closes where
-every copy lies on its link. No joint has closing equations here, and nothing is driven.
+Tree (`opened`): every joint is carried, part by part. One that would close a loop carries a copy of
+its second link (a cut), so that a configuration is a point in the space of all joint coordinates
+and closes where every copy lies on its link. No joint has closing equations here, and nothing is
+driven. `Poses` has the kernel give the poses of the bodies.
+
+Rotations and displacements are vectors, for questions of rank (messages, never cells); arrays may
+have any leading dimensions.
+
+Loops (`Loops`) are closed at many states at once: how far they are open, and their screws. A state
+of the kernel holds the coordinates of all joints; a step (freedoms,) changes it, balls by rotation
+vectors about the axes of the body before them. Twists are (angular, linear at the centre), lengths
+in parts of the size. Arrays are (rows, ...).
 """
 
 from __future__ import annotations
@@ -35,22 +44,15 @@ class Pose(NamedTuple):
     place: Floats
 
 
-class Cut(NamedTuple):
-    """A joint that closes a loop: the copy that it carries, and the link on which that lies."""
-
-    joint: str
-    copy: str
-    link: str
-
-
 class Opened(NamedTuple):
     """The tree: `mechanism` and `graph` of elementary joints, each one edge; `elements` are the
-    edges of every joint of the mechanism in the order of its parts."""
+    edges of every joint of the mechanism in the order of its parts; `cuts` gives the copy that each
+    cut joint carries the link on which it lies."""
 
     mechanism: Mechanism
     graph: SolverGraph
     elements: Mapping[str, tuple[int, ...]]
-    cuts: tuple[Cut, ...]
+    cuts: Mapping[str, str]
 
 
 def opened(mechanism: Mechanism) -> Opened:
@@ -67,35 +69,28 @@ def opened(mechanism: Mechanism) -> Opened:
             elements[name] = _carry(edges, _parts_of(joint, joint.second), link)
             reached.add(far)
             front.append(far)
-    cuts = []
+    cuts = {}
     for name, joint in mechanism.joints.items():
         if name not in elements:
-            cut = Cut(name, f"{name} | cut", joint.second)
-            elements[name] = _carry(edges, _parts_of(joint, cut.copy), joint.first)
-            cuts.append(cut)
+            copy = f"{name} | cut"
+            elements[name] = _carry(edges, _parts_of(joint, copy), joint.first)
+            cuts[copy] = joint.second
     links = {edge.child: RigidLink(edge.child) for edge in edges}
     joints = {edge.joint.name: edge.joint for edge in edges}
     tree = Mechanism(mechanism.name, links, joints)
-    return Opened(tree, SolverGraph(tuple(edges), (), (), (), ()), elements, tuple(cuts))
+    return Opened(tree, SolverGraph(tuple(edges), (), (), (), ()), elements, cuts)
 
 
 def _parts_of(joint: Joint, second: str) -> list[Joint]:
     """The parts of a joint, from its first link to `second`, as joints of their own."""
     between = [f"{joint.name} | {k}" for k in range(1, len(joint.parts))]
     bodies = [joint.first, *between, second]
-    return [
-        Joint(
-            f"{joint.name} | part {k + 1}",
-            part.letter,
-            bodies[k],
-            bodies[k + 1],
-            part.before,
-            part.after,
-            (part,),
-            joint.lead,
-        )
-        for k, part in enumerate(joint.parts)
-    ]
+    parts = []
+    for k, part in enumerate(joint.parts):
+        name, (first, second) = f"{joint.name} | part {k + 1}", bodies[k : k + 2]
+        frames = part.before, part.after
+        parts.append(Joint(name, part.letter, first, second, *frames, (part,), joint.lead))
+    return parts
 
 
 def _carry(edges: list[TreeEdge], parts: list[Joint], link: str) -> tuple[int, ...]:
@@ -143,20 +138,15 @@ class Poses:
         return {name: Pose(turns[k], places[k]) for k, name in enumerate(names)}
 
 
-# Finite rotations and displacements as vectors, for questions of rank (messages, never cells).
-#
-# Arrays may have any leading dimensions.
-
-
 def displacement(turn: Floats, place: Floats, to_turn: Floats, to_place: Floats) -> Floats:
     """The displacement (..., 6) that carries the pose `to_turn` (..., 3, 3), `to_place` (..., 3)
     onto `turn`, `place`: rotation vector, shift of the origin."""
     by = turn @ np.swapaxes(to_turn, -1, -2)
     shift = place - (by @ to_place[..., None])[..., 0]
-    return np.concatenate([rotation_vector(by), shift], axis=-1)
+    return np.concatenate([_rotation_vector(by), shift], axis=-1)
 
 
-def rotation_vector(turn: Floats) -> Floats:
+def _rotation_vector(turn: Floats) -> Floats:
     """Axis times angle (..., 3) of a rotation (..., 3, 3); at half a turn any axis."""
     skew = 0.5 * np.stack(
         [
@@ -170,9 +160,9 @@ def rotation_vector(turn: Floats) -> Floats:
     cosine = 0.5 * (np.trace(turn, axis1=-2, axis2=-1) - 1.0)
     angle = np.arctan2(sine, cosine)
     still = sine == 0.0
-    found = skew * (angle / np.where(still, 1.0, sine))[..., None]
-    found[..., 0] += np.where(still, angle, 0.0)
-    return np.asarray(found, dtype=np.float64)
+    vector = skew * (angle / np.where(still, 1.0, sine))[..., None]
+    vector[..., 0] += np.where(still, angle, 0.0)
+    return np.asarray(vector, dtype=np.float64)
 
 
 def quaternion_of(turn: Floats) -> Floats:
@@ -190,54 +180,36 @@ def quaternion_of(turn: Floats) -> Floats:
     return np.asarray(row / np.sqrt(row @ row), dtype=np.float64)
 
 
-def turned(quaternion: Floats, vector: Floats) -> Floats:
-    """Quaternions (..., 4) turned further by rotation vectors (..., 3) about axes that stand
-    still."""
+def _turned(quaternion: Floats, vector: Floats) -> Floats:
+    """Quaternions (..., 4) turned further by rotation vectors (..., 3) about fixed axes."""
     angle = np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
     half = 0.5 * vector * np.sinc(angle / (2.0 * np.pi))
-    found = product(np.concatenate([np.cos(0.5 * angle), half], axis=-1), quaternion)
-    return np.asarray(found / np.sqrt(np.sum(found * found, axis=-1, keepdims=True)))
+    turned = _product(np.concatenate([np.cos(0.5 * angle), half], axis=-1), quaternion)
+    return np.asarray(turned / np.sqrt(np.sum(turned * turned, axis=-1, keepdims=True)))
 
 
-def turn_between(quaternion: Floats, other: Floats) -> Floats:
+def _turn_between(quaternion: Floats, other: Floats) -> Floats:
     """The rotation vectors (..., 3) that turn `other` (..., 4) on to `quaternion`."""
-    back = other * np.array([1.0, -1.0, -1.0, -1.0])
-    by = product(quaternion, back)
+    by = _product(quaternion, other * np.array([1.0, -1.0, -1.0, -1.0]))
     by = np.where(by[..., :1] < 0.0, -by, by)
     sine = np.sqrt(np.sum(by[..., 1:] ** 2, axis=-1, keepdims=True))
     angle = 2.0 * np.arctan2(sine, by[..., :1])
     return np.asarray(by[..., 1:] * np.where(sine > 0.0, angle / np.where(sine > 0.0, sine, 1), 2))
 
 
-def product(one: Floats, two: Floats) -> Floats:
+def _product(one: Floats, two: Floats) -> Floats:
     """Products of quaternions (..., 4), scalar first."""
     a, v = one[..., :1], one[..., 1:]
     b, w = two[..., :1], two[..., 1:]
     scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
-    return np.concatenate([scalar, a * w + b * v + cross(v, w)], axis=-1)
+    return np.concatenate([scalar, a * w + b * v + _cross(v, w)], axis=-1)
 
 
-def cross(one: Floats, two: Floats) -> Floats:
-    """Cross products (..., 3), with less ado than NumPy's."""
+def _cross(one: Floats, two: Floats) -> Floats:
+    """Cross products (..., 3), with less overhead than NumPy's."""
     return np.asarray(
         one[..., [1, 2, 0]] * two[..., [2, 0, 1]] - one[..., [2, 0, 1]] * two[..., [1, 2, 0]]
     )
-
-
-# The loops of the opened mechanism at many states at once: how far they are open, and their
-# screws.
-#
-# A state of the kernel holds the coordinates of all joints; a step (freedoms,) changes it, balls by
-# rotation vectors about the axes of the body before them. Twists are (angular, linear at the
-# centre), lengths in parts of the size. Arrays are (rows, ...).
-
-
-class LoopClosure(NamedTuple):
-    """Displacements of the copies against their links, `misses` (rows, 6 cuts), and how unit rates
-    of the freedoms change them, `jacobian` (rows, 6 cuts, freedoms)."""
-
-    misses: Floats
-    jacobian: Floats
 
 
 class Loops:
@@ -262,18 +234,18 @@ class Loops:
         self._edges = np.array(edges, dtype=np.intp)
         parents = [number[edge.parent] for edge in opened.graph.edges]
         self._parents = np.array([parents[k] for k in edges], dtype=np.intp)
-        self._copies = np.array([number[cut.copy] for cut in opened.cuts], dtype=np.intp)
-        self._links = np.array([number[cut.link] for cut in opened.cuts], dtype=np.intp)
+        self._copies = np.array([number[copy] for copy in opened.cuts], dtype=np.intp)
+        self._links = np.array([number[link] for link in opened.cuts.values()], dtype=np.intp)
 
     @cached_property
     def passed(self) -> Floats:
-        """Whether the way from ground to each body passes each edge (bodies, edges), 0 or 1."""
+        """Whether the path from ground to each body passes each edge (bodies, edges), 0 or 1."""
         edges = self.opened.graph.edges
-        found = np.zeros((len(self.number), len(edges)))
+        passed = np.zeros((len(self.number), len(edges)))
         for k, edge in enumerate(edges):
-            found[self.number[edge.child]] = found[self.number[edge.parent]]
-            found[self.number[edge.child], k] = 1.0
-        return found
+            passed[self.number[edge.child]] = passed[self.number[edge.parent]]
+            passed[self.number[edge.child], k] = 1.0
+        return passed
 
     @cached_property
     def edge_signs(self) -> Floats:
@@ -286,26 +258,25 @@ class Loops:
         """How the loop of each cut passes each freedom (cuts, freedoms)."""
         return self.edge_signs[:, self._edges]
 
-    def closing(self, states: Floats) -> LoopClosure:
+    def closing(self, states: Floats) -> tuple[Floats, Floats]:
         """Misses and Jacobian at states (rows, states)."""
         return self.closing_of(*self.poses.at(np.empty((0, len(states))), states.T))
 
-    def closing_of(self, turns: Floats, places: Floats) -> LoopClosure:
-        """Misses and Jacobian at poses of all bodies."""
+    def closing_of(self, turns: Floats, places: Floats) -> tuple[Floats, Floats]:
+        """Displacements of the copies against their links, the misses (rows, 6 cuts), and their
+        Jacobian by the freedoms (rows, 6 cuts, freedoms), at poses of all bodies."""
         one, two = self._copies, self._links
         misses = displacement(turns[:, one], places[:, one], turns[:, two], places[:, two])
         screws = np.swapaxes(self.screws(turns, places), 1, 2)
         jacobian = self.signs[:, None, :] * screws[:, None]
-        rows = len(turns)
-        return LoopClosure(
-            misses.reshape(rows, 6 * len(one)), jacobian.reshape(rows, 6 * len(one), self.count)
-        )
+        rows, size = len(turns), 6 * len(one)
+        return misses.reshape(rows, size), jacobian.reshape(rows, size, self.count)
 
     def screws(self, turns: Floats, places: Floats) -> Floats:
         """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are."""
         turn, place = turns[:, self._parents], places[:, self._parents]
         spins = (turn @ self._spins)[..., 0]
-        slides = (turn @ self._slides)[..., 0] + cross(place, spins)
+        slides = (turn @ self._slides)[..., 0] + _cross(place, spins)
         return np.concatenate([spins, slides], axis=2)
 
     def twists(self, turns: Floats, places: Floats) -> Floats:
@@ -315,23 +286,23 @@ class Loops:
 
     def moved(self, states: Floats, steps: Floats) -> Floats:
         """States (rows, states) displaced by steps (rows, freedoms)."""
-        found = states.copy()
+        moved = states.copy()
         columns, slots, units = self._scalars
-        found[:, slots] += steps[:, columns] * units
+        moved[:, slots] += steps[:, columns] * units
         columns, slots = self._balls
         if slots.size:
-            found[:, slots] = turned(found[:, slots], steps[:, columns])
-        return found
+            moved[:, slots] = _turned(moved[:, slots], steps[:, columns])
+        return moved
 
     def steps(self, states: Floats, others: Floats) -> Floats:
         """The steps (rows, freedoms) that lead from `others` to `states`, both (rows, states)."""
-        found = np.zeros((len(states), self.count))
+        steps = np.zeros((len(states), self.count))
         columns, slots, units = self._scalars
-        found[:, columns] = (states[:, slots] - others[:, slots]) / units
+        steps[:, columns] = (states[:, slots] - others[:, slots]) / units
         columns, slots = self._balls
         if slots.size:
-            found[:, columns] = turn_between(states[:, slots], others[:, slots])
-        return found
+            steps[:, columns] = _turn_between(states[:, slots], others[:, slots])
+        return steps
 
     @cached_property
     def _scalars(self) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
@@ -354,9 +325,6 @@ class Loops:
         columns = np.array([c.column for c in balls], dtype=np.intp)
         slots = np.array([c.state for c in balls], dtype=np.intp)
         return columns[:, None] + np.arange(3), slots[:, None] + np.arange(4)
-
-
-# Rank of a Jacobian by singular values, with the motions that it allows and the stresses.
 
 
 class Rank(NamedTuple):

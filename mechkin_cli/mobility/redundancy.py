@@ -7,7 +7,7 @@ loop gives way to.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator
+from collections.abc import Container, Iterator
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -52,14 +52,18 @@ def redundancies(
         return ()
     joints = list(configuration.body.mechanism.joints.values())
     places = {joint.name: list(range(6 * k, 6 * k + 6)) for k, joint in enumerate(joints)}
-    carried = _carried(configuration, joints, stresses)
+    # an orthonormal basis (6 joints, count) of the wrenches that the joints carry
+    cuts = stresses.reshape(-1, 6, stresses.shape[1])
+    signs = configuration.body.signs
+    rows = [np.add.reduce(signs[joint.name][:, None, None] * cuts) for joint in joints]
+    carried = np.linalg.qr(np.concatenate(rows))[0]
     shares = carried @ carried.T
     found = []
     for group in _groups(joints, places, shares):
         every = [i for joint in group for i in places[joint.name]]
         number = round(float(np.trace(shares[np.ix_(every, every)])))
         if number:
-            words = _wrenches(configuration, group, places, carried, number)
+            words = _wrenches(configuration, group, carried[places[group[0].name]], number)
             names = tuple(joint.name for joint in group)
             softer = [joint for joint in group if joint.name not in driven]
             cure = _cure(configuration, softer, number)
@@ -67,31 +71,22 @@ def redundancies(
     return tuple(found)
 
 
-def _carried(configuration: Configuration, joints: list[Joint], stresses: Floats) -> Floats:
-    """An orthonormal basis (6 joints, count) of the wrenches that the joints carry."""
-    cuts = stresses.reshape(-1, 6, stresses.shape[1])
-    signs = configuration.body.signs
-    rows = [np.add.reduce(signs[joint.name][:, None, None] * cuts) for joint in joints]
-    return np.asarray(np.linalg.qr(np.concatenate(rows))[0], dtype=np.float64)
-
-
 def _groups(
     joints: list[Joint], places: dict[str, list[int]], shares: Floats
 ) -> Iterator[list[Joint]]:
     """Joints that carry stresses, in groups that do not stress each other."""
-    left = [
-        j
-        for j in joints
-        if np.abs(shares[np.ix_(places[j.name], places[j.name])]).max()
-        > tolerances.MOBILITY_NO_WRENCH
-    ]
+
+    def touch(one: Joint, other: Joint) -> bool:
+        block = shares[np.ix_(places[one.name], places[other.name])]
+        return bool(np.abs(block).max() > tolerances.MOBILITY_NO_WRENCH)
+
+    left = [joint for joint in joints if touch(joint, joint)]
     while left:
         group, grown = [left.pop(0)], True
         while grown:
             grown = False
             for joint in list(left):
-                touching = (shares[np.ix_(places[joint.name], places[g.name])] for g in group)
-                if any(np.abs(block).max() > tolerances.MOBILITY_NO_WRENCH for block in touching):
+                if any(touch(joint, other) for other in group):
                     group.append(joint)
                     left.remove(joint)
                     grown = True
@@ -99,21 +94,18 @@ def _groups(
 
 
 def _wrenches(
-    configuration: Configuration,
-    group: list[Joint],
-    places: dict[str, list[int]],
-    carried: Floats,
-    number: int,
+    configuration: Configuration, group: list[Joint], carried: Floats, number: int
 ) -> str:
-    """The stress of a single loop in words; empty for several loops."""
+    """The stress of a single loop in words, of what its first joint carries (6, count); empty for
+    several loops."""
     links = {link for joint in group for link in (joint.first, joint.second)}
     if len(links) != len(group):
         return ""
-    left, _, _ = np.linalg.svd(carried[places[group[0].name]])
-    return describe(left[:, :number], configuration)
+    left, _, _ = np.linalg.svd(carried)
+    return _described(left[:, :number], configuration)
 
 
-def describe(wrenches: Floats, configuration: Configuration) -> str:
+def _described(wrenches: Floats, configuration: Configuration) -> str:
     """A space of wrenches (6, count; moment first, scaled, about the centre) as forces and
     moments."""
     left, values, right = np.linalg.svd(wrenches[3:])
@@ -123,7 +115,7 @@ def describe(wrenches: Floats, configuration: Configuration) -> str:
     if moments.shape[1]:
         parts.append(_directions("moment", "about", np.linalg.svd(moments)[0], moments.shape[1]))
     if forces == 1 and not moments.shape[1]:
-        parts.append(_line(wrenches[:, 0], configuration))
+        parts.append(_line(wrenches[:, 0]))
     elif forces:
         place = "" if moments.shape[1] else _point(wrenches, configuration)
         parts.append(_directions("force", "along", left, forces) + place)
@@ -147,7 +139,7 @@ def _directions(noun: str, word: str, basis: Floats, count: int) -> str:
     return f"{noun}s {word} axes square to {_axis(normal)}"
 
 
-def _line(wrench: Floats, configuration: Configuration) -> str:
+def _line(wrench: Floats) -> str:
     """A single wrench by its axis and pitch (moment / force)."""
     moment, force = wrench[:3], wrench[3:]
     square = float(force @ force)
@@ -160,7 +152,10 @@ def _line(wrench: Floats, configuration: Configuration) -> str:
 
 def _point(wrenches: Floats, configuration: Configuration) -> str:
     """Through which point all the forces go, or that they go through none."""
-    rows = np.concatenate([_crossed(force) for force in wrenches[3:].T])
+    # p x force as a matrix on p
+    rows = np.array(
+        [row for x, y, z in wrenches[3:].T for row in ((0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0))]
+    )
     moments = wrenches[:3].T.ravel()
     point = np.linalg.lstsq(rows, moments, rcond=None)[0]
     if np.abs(rows @ point - moments).max() > tolerances.MOBILITY_NO_WRENCH:
@@ -171,12 +166,6 @@ def _point(wrenches: Floats, configuration: Configuration) -> str:
         if np.abs(configuration.point(joint) - point).max() < tolerances.MOBILITY_NO_WRENCH
     ]
     return f" through {near[0]}" if near else " through one point"
-
-
-def _crossed(force: Floats) -> Floats:
-    """The matrix of p -> p x force."""
-    x, y, z = force
-    return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 
 
 def _axis(direction: Floats) -> str:
@@ -199,22 +188,11 @@ def _cure(configuration: Configuration, group: list[Joint], number: int) -> str 
             )
             if freed != number or len({joint.name for joint, _ in changes}) < count:
                 continue
-            if _rank(_softened(configuration, changes)) == rank + number:
-                return "none is left with " + _list(
-                    f"{j.name} as {letter}" for j, letter in changes
-                )
+            softer = [configuration.wider(joint, letter) for joint, letter in changes]
+            if _rank(np.concatenate([configuration.jacobian, *softer], axis=1)) == rank + number:
+                words = (f"{joint.name} as {letter}" for joint, letter in changes)
+                return f"none is left with {' and '.join(words)}"
     return None
-
-
-def _softened(configuration: Configuration, changes: Iterable[tuple[Joint, str]]) -> Floats:
-    """The Jacobian with the freedoms of softer joints beside all others."""
-    columns = [configuration.jacobian]
-    columns += [configuration.wider(joint, letter) for joint, letter in changes]
-    return np.concatenate(columns, axis=1)
-
-
-def _list(words: Iterable[str]) -> str:
-    return " and ".join(words)
 
 
 def _rank(matrix: Floats) -> int:

@@ -1,4 +1,10 @@
-"""Which modes belong to one circuit, and where that is not known."""
+"""Circuits: all that a mechanism reaches by moving one input to and fro, without taking it apart.
+
+A branch is followed up and down from a place. Where it folds, the motion goes on along the branch
+on the other side of the dead centre, with the input turning back; so branch after branch, until the
+first one comes again or something else ends the walk (`Walker`). Modes that share a branch are in
+one circuit (`joined`); where a walk is lost, that two circuits differ is not known (`undecided`).
+"""
 
 from __future__ import annotations
 
@@ -11,7 +17,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.record import NamedTuple, dataclass, field
-from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.search import pose_number
 from mechkin_cli.session import BranchFold, BranchPoint, Runaway, find_limit
 
 if TYPE_CHECKING:
@@ -19,14 +25,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.session import Followed, InputPath, Session
     from mechkin_cli.show import Floats
-
-
-# Circuits: everything that a mechanism reaches by moving one input to and fro, without taking it
-# apart.
-#
-# A branch is followed up and down from a place. Where it folds, the motion goes on along the branch
-# on the other side of the dead centre, with the input turning back; so branch after branch, until
-# the first one comes again or something else ends the walk.
 
 EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
 
@@ -106,20 +104,22 @@ class Walker:
 
     def _walk(self, first: Branch, end: End, direction: float) -> tuple[list[Branch], bool]:
         """The branches beyond an end of the first one; whether they lead back to its other end."""
-        found: list[Branch] = []
+        walked: list[Branch] = []
         goal = first.lower if direction > 0.0 else first.upper
-        while end.fold is not None and len(found) < tolerances.MOST_BRANCHES:
+        while end.fold is not None and len(walked) < tolerances.MOST_BRANCHES:
             beyond = float(end.fold.inputs_beyond[self.number])
             start = Passage(beyond, end.fold.beyond)
             direction = -direction
             far, places = self._climb(start, direction, None)
             places = [*self._back_to(end, start, direction), *places]
             ends = (end, far) if direction > 0.0 else (far, end)
-            found.append(Branch(*ends, places if direction > 0.0 else places[::-1]))
-            if far.fold is not None and goal.fold is not None and self._same(far.fold, goal.fold):
-                return found, True
+            walked.append(Branch(*ends, places if direction > 0.0 else places[::-1]))
+            if far.fold is not None and goal.fold is not None:
+                states = far.fold.state, goal.fold.state
+                if self._is_same(*states, tolerances.SAME_DEAD_CENTRE):
+                    return walked, True
             end = far
-        return found, False
+        return walked, False
 
     def _back_to(self, fold: End, start: Passage, direction: float) -> list[Passage]:
         """The place between a dead centre and the first place of the branch beyond it."""
@@ -128,21 +128,21 @@ class Walker:
             return []
         if value == start.value:
             return [start]
-        way = self.follow(np.array([start.value, value]), start.state)
-        return [Passage(value, way.state)] if way.end == TrackEnd.FINISHED else []
+        followed = self.follow(np.array([start.value, value]), start.state)
+        return [Passage(value, followed.state)] if followed.end == TrackEnd.FINISHED else []
 
     def _climb(
         self, start: Passage, direction: float, first: Passage | None
     ) -> tuple[End, list[Passage]]:
-        """Follows a branch in a direction to its end; places on the way."""
+        """Follows a branch in a direction to its end; the places passed."""
         place = start
         places: list[Passage] = []
         for _ in range(tolerances.MOST_TURNS):
             target = self._next(place.value, direction)
-            way = self.follow(np.array([place.value, target]), place.state)
-            if way.end != TrackEnd.FINISHED:
-                limit = find_limit(self.session, way)
-                last = float(way.inputs[self.number])
+            followed = self.follow(np.array([place.value, target]), place.state)
+            if followed.end != TrackEnd.FINISHED:
+                limit = find_limit(self.session, followed)
+                last = float(followed.inputs[self.number])
                 if isinstance(limit, BranchFold):
                     return End("dead-centre", float(limit.inputs[self.number]), limit), places
                 if isinstance(limit, Runaway):
@@ -150,7 +150,7 @@ class Walker:
                 if isinstance(limit, BranchPoint):
                     return End("branch-point", float(limit.inputs[self.number])), places
                 return End("branch-lost", last), places
-            place = Passage(target, way.state)
+            place = Passage(target, followed.state)
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places
             if first is not None and self._is_same(place.state, first.state):
@@ -169,10 +169,10 @@ class Walker:
         places)."""
         if self.path is not None:
             return self.path.derivatives(values)
-        found = np.zeros((3, self.inputs.size, values.size))
-        found[0] = self.inputs[:, None]
-        found[0, self.number], found[1, self.number] = values, 1.0
-        return found
+        inputs = np.zeros((3, self.inputs.size, values.size))
+        inputs[0] = self.inputs[:, None]
+        inputs[0, self.number], inputs[1, self.number] = values, 1.0
+        return inputs
 
     def _next(self, value: float, direction: float, *, here: bool = False) -> float:
         """The next value in a direction at which a place is taken, or the end of the reach; `here`:
@@ -192,12 +192,8 @@ class Walker:
             whole += 1.0
         return origin + direction * whole * self.period
 
-    def _same(self, one: BranchFold, other: BranchFold) -> bool:
-        return self._is_same(one.state, other.state, tolerances.SAME_DEAD_CENTRE)
-
     def _is_same(self, one: Floats, other: Floats, limit: float = tolerances.SAME_MODE) -> bool:
-        keys = [pose_keys(self.session.layout, state[:, None]) for state in (one, other)]
-        return bool(same_poses(keys[0], keys[1], limit)[0, 0])
+        return pose_number(self.session.layout, one[:, None], other, limit) is not None
 
 
 class Circuit(NamedTuple):
@@ -224,8 +220,8 @@ def joined(circuits: Sequence[Circuit]) -> list[Circuit]:
 
 
 def undecided(circuits: Sequence[Circuit], name: str) -> list[Diagnostic]:
-    """That circuits may be one: those of which no walk came to all ends; a closed one has no part
-    in the others."""
+    """A warning that circuits may be one: those of which no walk came to all ends; a closed one has
+    no part in the others."""
     numbers = [str(number) for number, one in enumerate(circuits, 1) if one.is_open]
     if len(numbers) < 2:
         return []

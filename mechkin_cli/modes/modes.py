@@ -25,12 +25,12 @@ from mechkin_cli.assembly import (
 )
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import Problem, dimension_of
-from mechkin_cli.plan import Layout, TrackEnd
+from mechkin_cli.plan import TrackEnd
+from mechkin_cli.proofs import prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
-from mechkin_cli.search import Assemblies, all_assemblies, pose_keys, same_poses, with_assemblies
+from mechkin_cli.search import Assemblies, all_assemblies, pose_number, with_assemblies
 from mechkin_cli.session import input_numbers, input_text, kernel_inputs
 from mechkin_cli.show import Listed, Listing
-from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.proofs import ModeProofs
@@ -139,7 +139,7 @@ def find_modes(
     named = name_modes(session, first)
     start = choose_start(session)
     state = state_at_first_row(session, start)
-    chosen = _number_of(layout, named.found, state)
+    chosen = None if state is None else pose_number(layout, named.found.states, state)
     letter = UNNAMED if chosen is None else named.letters[chosen]
     if at is None:
         notes = start.diagnostics
@@ -153,7 +153,11 @@ def find_modes(
         found = with_assemblies(layout, session.plan, place, found, states)
     if found.number == 0:
         notes = [nothing_found(session, found, "there")]
-    names = _names_at(layout, found, ends)
+    names = [UNNAMED] * found.number
+    for name, end in ends.items():
+        number = pose_number(layout, found.states, end)
+        if number is not None:
+            names[number] = name
     return _result(session, place, at, found, names, letter, notes, certify)
 
 
@@ -164,18 +168,10 @@ def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
     for item in problem.motion.inputs:
         value = float(item.values[0])
         if item.name in at:
-            value = float(problem.units.to_si(at[item.name], _dimension(item.name)))
+            value = float(problem.units.to_si(at[item.name], dimension_of(item.coordinate)))
         inputs.append(item._replace(values=np.full(problem.motion.rows, value)))
     changed = replace(problem, motion=problem.motion._replace(inputs=tuple(inputs)))
     return kernel_inputs(changed, session.layout).values[:, 0]
-
-
-def _number_of(layout: Layout, found: Assemblies, state: Floats | None) -> int | None:
-    """Which of the assemblies a state is."""
-    if state is None:
-        return None
-    same = same_poses(pose_keys(layout, found.states), pose_keys(layout, state[:, None]))
-    return int(np.argmax(same[:, 0])) if same.any() else None
 
 
 def _follow_all(
@@ -204,15 +200,6 @@ def _follow_all(
     return ends, notes
 
 
-def _names_at(layout: Layout, found: Assemblies, ends: Mapping[str, Floats]) -> list[str]:
-    names = [UNNAMED] * found.number
-    for letter, state in ends.items():
-        number = _number_of(layout, found, state)
-        if number is not None:
-            names[number] = letter
-    return names
-
-
 def _result(
     session: Session,
     place: Floats,
@@ -224,10 +211,7 @@ def _result(
     certify: bool,
 ) -> Modes:
     problem = session.problem
-    if found.free and found.number:
-        notes = [*notes, _free_note(found)]
-    if found.stopped:
-        notes = [*notes, _stopped_note(found)]
+    notes = [*notes, *_search_notes(found)]
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
@@ -259,56 +243,51 @@ def _result(
         bound=found.bound,
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
-        proofs=_proofs(session, place, found.states[:, order]) if certify else None,
+        proofs=prove_modes(session, place, found.states[:, order]) if certify else None,
     )
-
-
-def _proofs(session: Session, place: Floats, states: Floats) -> ModeProofs:
-    from mechkin_cli.proofs import prove_modes
-
-    return prove_modes(session, place, states)
 
 
 def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: float) -> float:
-    """A coordinate in the file's units; that of an input as it was given."""
-    if is_cyclic(problem.mechanism, name) and (name not in inputs or wrapped(value) != value):
-        return _in_file_units(problem, name, wrapped(value))
-    return inputs.get(name, _in_file_units(problem, name, value))
+    """A coordinate in the file's units; that of an input as the file or the caller has it."""
+    turned = wrapped(value) if is_cyclic(problem.mechanism, name) else value
+    if name in inputs and turned == value:
+        return inputs[name]
+    return float(problem.units.from_si(turned, dimension_of(name.rpartition(".")[2])))
 
 
-def _in_file_units(problem: Problem, name: str, value: float) -> float:
-    return float(problem.units.from_si(value, _dimension(name)))
-
-
-def _dimension(name: str) -> Dimension:
-    return dimension_of(name.rpartition(".")[2])
-
-
-def _free_note(found: Assemblies) -> Diagnostic:
-    return Diagnostic(
-        "free-assembly",
-        "note",
-        "some starts ended where the loops still move with the inputs held, or in a singular "
-        "position; these are not listed",
-        measured=f"{found.free} of {found.starts} starts",
-    )
-
-
-def _stopped_note(found: Assemblies) -> Diagnostic:
-    if found.cut:
-        return Diagnostic(
-            "search-stopped",
-            "warning",
-            "the loops have more modes together than are listed",
-            measured=f"{found.number} listed, nearest to the drawing",
-            hint="ask for parts of the mechanism, or choose the assembly with assembly: near",
+def _search_notes(found: Assemblies) -> list[Diagnostic]:
+    notes = []
+    if found.free and found.number:
+        notes.append(
+            Diagnostic(
+                "free-assembly",
+                "note",
+                "some starts ended where the loops still move with the inputs held, or in a "
+                "singular position; these are not listed",
+                measured=f"{found.free} of {found.starts} starts",
+            )
         )
-    return Diagnostic(
-        "search-stopped",
-        "warning",
-        "the search ended at its most starts, or modes, before it could tell that few are left",
-        measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one more "
-        "finds a new mode",
-        limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
-        hint="more modes may exist; fewer turns under assembly: leave fewer for threads",
-    )
+    if found.stopped and found.cut:
+        notes.append(
+            Diagnostic(
+                "search-stopped",
+                "warning",
+                "the loops have more modes together than are listed",
+                measured=f"{found.number} listed, nearest to the drawing",
+                hint="ask for parts of the mechanism, or choose the assembly with assembly: near",
+            )
+        )
+    elif found.stopped:
+        notes.append(
+            Diagnostic(
+                "search-stopped",
+                "warning",
+                "the search ended at its most starts, or modes, before it could tell that few are "
+                "left",
+                measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one "
+                "more finds a new mode",
+                limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
+                hint="more modes may exist; fewer turns under assembly: leave fewer for threads",
+            )
+        )
+    return notes

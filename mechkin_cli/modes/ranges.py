@@ -22,11 +22,13 @@ from mechkin_cli.mechanism import Problem, Wanted, dimension_of
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, dataclass, replace
-from mechkin_cli.search import pose_keys, same_poses
-from mechkin_cli.session import Ask, RowInputs, input_number, input_path
+from mechkin_cli.search import pose_number
+from mechkin_cli.session import Ask, RowInputs, followers_of, input_number, input_path
 from mechkin_cli.show import Listed, Listing
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
@@ -147,11 +149,9 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
 
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:
-    """The input that moves where `number` is asked for, and all that move with it."""
+    """The input that moves where the range of `number` is requested, and all that move with it."""
     if not session.problem.motion.paths:
         return number, set()
-    from mechkin_cli.session import followers_of
-
     names = [item.name for item in session.problem.motion.inputs]
     followers = followers_of(session)
     leader = followers.get(names[number], names[number])
@@ -160,17 +160,11 @@ def _leader(session: Session, number: int) -> tuple[int, set[str]]:
 
 
 def _leader_note(problem: Problem, number: int, leader: int) -> list[Diagnostic]:
-    """That an input moves with the one that it follows."""
     if number == leader:
         return []
     name, moved = problem.motion.inputs[number].name, problem.motion.inputs[leader].name
-    return [
-        Diagnostic(
-            "tied-input",
-            "note",
-            f"{name} follows {moved}, which is moved; values are those of {name} on that way",
-        )
-    ]
+    text = f"{name} follows {moved}, which is moved; values are those of {name} on that way"
+    return [Diagnostic("tied-input", "note", text)]
 
 
 def _input_number(problem: Problem, name: str | None) -> int:
@@ -192,7 +186,7 @@ def _lost_ends(item: Range) -> int:
 
 
 class _Survey:
-    """The circuits of all modes, one after the other."""
+    """The circuits of all modes, one after the other; values are those of the input `shown`."""
 
     def __init__(
         self,
@@ -200,46 +194,41 @@ class _Survey:
         named: NamedModes,
         walker: Walker,
         shown: int,
-        outputs: tuple[str, ...],
+        outputs: Sequence[str],
     ) -> None:
         self.session, self.problem, self.layout = session, session.problem, session.layout
         self.named, self.walker, self.shown = named, walker, shown
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
-        self.keys = pose_keys(self.layout, named.found.states)
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
-        found: dict[str, Range] = {}
+        ranges: dict[str, Range] = {}
         circuits: list[Circuit] = []
         for number, letter in self.named.letters.items():
-            if letter in found:
+            if letter in ranges:
                 continue
             branches = self.walker.circuit(self.named.found.states[:, number])
             members: dict[str, tuple[Branch, float]] = {}
             for branch in branches:
                 for value, state in branch.places:
-                    name = self._letter(state)
-                    if name is not None and name not in members:
-                        members[name] = (branch, value)
+                    mode = pose_number(self.layout, self.named.found.states, state)
+                    if mode is not None:
+                        members.setdefault(self.named.letters[mode], (branch, value))
             members[letter] = (branches[0], float(self.walker.inputs[self.walker.number]))
             circuits = joined([*circuits, Circuit(frozenset(members), is_open(branches))])
             for name, (branch, value) in members.items():
-                known = found.get(name)
+                known = ranges.get(name)
                 if known is None or _lost_ends(known) > 0:
                     seen = self._range(name, branch, value)
-                    found[name] = min((r for r in (known, seen) if r), key=_lost_ends)
+                    ranges[name] = min((r for r in (known, seen) if r), key=_lost_ends)
         names = list(self.named.letters.values())
         ordered = sorted(circuits, key=lambda one: min(names.index(name) for name in one.modes))
         number_of = {name: k for k, one in enumerate(ordered, 1) for name in one.modes}
-        return tuple(replace(found[name], circuit=number_of[name]) for name in names), ordered
-
-    def _letter(self, state: Floats) -> str | None:
-        same = same_poses(self.keys, pose_keys(self.layout, state[:, None]))[:, 0]
-        return self.named.letters[int(np.argmax(same))] if same.any() else None
+        return tuple(replace(ranges[name], circuit=number_of[name]) for name in names), ordered
 
     def _range(self, name: str, branch: Branch, value: float) -> Range:
-        """The branch's range, counted in the turn in which it has this mode, at `value`."""
+        """The branch's range, in the turn in which it has this mode at `value`."""
         origin, period = float(self.walker.inputs[self.walker.number]), self.walker.period
         shift = value - origin
         extremes = self._extremes(branch, shift)
@@ -258,25 +247,17 @@ class _Survey:
 
     def _extremes(self, branch: Branch, shift: float) -> tuple[OutputExtreme, ...]:
         """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
-        if not self.outputs or not branch.places:
-            return ()
-        found = []
-        for wanted in self.outputs:
-            found += [
-                OutputExtreme(
-                    wanted.name, self._shown(wanted, value), self._limit_value(at - shift)
-                )
-                for at, value in _Stationary(self, branch, wanted).places()
-            ]
-        return tuple(found)
+        extremes = []
+        for wanted in self.outputs if branch.places else ():
+            for at, value in _Stationary(self, branch, wanted).places():
+                output = float(self.problem.units.from_si(value, wanted.dimension))
+                extremes.append(OutputExtreme(wanted.name, output, self._limit_value(at - shift)))
+        return tuple(extremes)
 
     def _limit_value(self, value: float) -> float:
         if self.shown != self.walker.number:
             value = float(self.walker.at(np.array([value]))[0, self.shown, 0]) + 0.0
         return input_number(self.problem, self.layout, self.shown, value).value
-
-    def _shown(self, wanted: Wanted, value: float) -> float:
-        return float(self.problem.units.from_si(value, wanted.dimension))
 
 
 class _Stationary:
@@ -293,31 +274,29 @@ class _Stationary:
         """(input, output) in kernel units and SI."""
         start = self.branch.places[0]
         ends = (self.branch.lower.value, self.branch.upper.value)
-        found: list[tuple[float, float]] = []
+        places: list[tuple[float, float]] = []
         if not all(isfinite(end) for end in ends):
-            return found
+            return places
         for first, last in ((start.value, ends[0]), (start.value, ends[1])):
             if first == last:
                 continue
-            steps = (
-                first + (last - first) * np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
-            )
-            way = self.walker.follow(steps, start.state)
-            count = way.reached
-            rates = self._derivatives(steps[:count], way.guess[:, :count])[1]
+            parts = np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
+            steps = first + (last - first) * parts
+            followed = self.walker.follow(steps, start.state)
+            count = followed.reached
+            rates = self._derivatives(steps[:count], followed.guess[:, :count])[1]
             for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
-                place = self._refined(way.guess[:, k], steps[k], steps[k + 1])
-                if place is not None and not any(place[0] == other[0] for other in found):
-                    found.append(place)
-        return sorted(found)
+                place = self._refined(followed.guess[:, k], steps[k], steps[k + 1])
+                if place is not None and not any(place[0] == other[0] for other in places):
+                    places.append(place)
+        return sorted(places)
 
     def _derivatives(self, values: Floats, guess: Floats) -> Floats:
         """The output and its first two derivatives by the input, (3, places)."""
         inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
-        batch = self.session.run(
-            RowInputs(inputs, guess, rates, accelerations),
-            Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout),
-        )
+        rows = RowInputs(inputs, guess, rates, accelerations)
+        ask = Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout)
+        batch = self.session.run(rows, ask)
         assert batch.outputs is not None
         return batch.outputs[self.slots]
 
@@ -326,13 +305,10 @@ class _Stationary:
         low, high = min(first, last), max(first, last)
         value = 0.5 * (low + high)
         sign_low: float | None = None
-        state = guess
         for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
             places = np.array([first, value])
             state = self.walker.follow(places, guess).state
-            output, rate, bend = (
-                float(x) for x in self._derivatives(places[1:], state[:, None])[:, 0]
-            )
+            output, rate, bend = self._derivatives(places[1:], state[:, None])[:, 0].tolist()
             if sign_low is None:
                 ends = self._derivatives(places[:1], guess[:, None])[1, 0]
                 sign_low = float(ends) if first == low else -float(ends)

@@ -1,7 +1,8 @@
-"""Proofs of positions by the kernel: boxes about places, and tubes along a way of the inputs.
+"""Proofs of positions by the kernel: boxes about places, and tubes along a path of the inputs.
 
 A box is as wide as rounding leaves the position; a tube is a box at every place between two places
-of the way (docs/numerics.md, Proofs).
+of the path (docs/numerics.md, Proofs). The mechanism's constants are enclosed (`Enclosed`), places
+along the path are `Nodes`; `differences` measures how far places are from each other.
 """
 
 from __future__ import annotations
@@ -23,12 +24,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.plan import Layout
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
 
 
+FULL_TURN = 2.0 * np.pi
+
+
 def about_high(parts: Iterable[Floats]) -> Floats:
-    """Radii about high parts, of numbers given as high parts, low parts and radii about both."""
+    """Radii about high parts, of numbers as high parts, low parts and radii about both."""
     _, low, radius = parts
     widened: Floats = np.nextafter(np.abs(low) + radius, np.inf)
     return np.where((low == 0.0) & (radius == 0.0), 0.0, widened)
@@ -56,8 +61,7 @@ class Enclosed(NamedTuple):
 
     @classmethod
     def of(cls, session: Session) -> Enclosed:
-        """As the file's text says it; where the text cannot be followed to all constants, the
-        mechanism that the doubles are."""
+        """Of the file's text; of the doubles where it cannot be followed to all constants."""
         try:
             constants = session.precise.enclosed_constants(session)
         except (LookupError, ValueError, TraceLost):
@@ -72,7 +76,7 @@ class Enclosed(NamedTuple):
 
 @remembered
 def enclosed_of(session: Session) -> Enclosed:
-    """The session's mechanism with its constants enclosed, as `Enclosed.of`."""
+    """As `Enclosed.of`."""
     return Enclosed.of(session)
 
 
@@ -104,8 +108,8 @@ _MEASURED = 1.0 + 1.0 / 1024.0
 
 
 class Nodes(NamedTuple):
-    """Places along a way of the inputs in the kernel's units, which goes straight from each to the
-    next; arrays over the places.
+    """Places along a path of the inputs in the kernel's units, straight from each to the next;
+    arrays over the places.
 
     Attributes:
         values: of the inputs with their whole turns (inputs, nodes).
@@ -148,23 +152,17 @@ class Nodes(NamedTuple):
         pairs = zip(self, places, strict=True)
         return Nodes(*(np.insert(own, before + 1, more, axis=1) for own, more in pairs))
 
-
-class Tubes(NamedTuple):
-    """Whether each node is joined to the next (nodes - 1,), the largest radius of the tube there,
-    and how many tubes there are."""
-
-    joined: Bools
-    width: Floats
-    number: int
+    def then(self, places: Nodes) -> Nodes:
+        """These and then other places."""
+        return Nodes(*(np.concatenate(pair, axis=1) for pair in zip(self, places, strict=True)))
 
 
 def input_rounding(session: Session, values: Floats) -> Floats:
-    """How far inputs may be from what the file says, of the same shape: their largest values over
-    the rows tell, since one near zero may be what two large ones leave."""
+    """How far inputs may be from those of the file's text, of the same shape: by their largest
+    values over the rows, since one near zero may be what two large ones leave."""
     largest = np.abs(session.inputs.values).max(axis=1, initial=0.0, keepdims=True)
-    rounding: Floats = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
-    off: Floats = np.maximum(rounding, _off_the_text(session))
-    return off
+    rounding = tolerances.INPUT_ROUNDING * np.maximum(largest, np.abs(values))
+    return np.asarray(np.maximum(rounding, _off_the_text(session)))
 
 
 @remembered
@@ -173,10 +171,10 @@ def _off_the_text(session: Session) -> Floats:
     where the text cannot be followed to them. Laws and expressions may cancel."""
     own = session.inputs
     try:
-        found = session.precise.inputs(session)
+        precise = session.precise.inputs(session)
     except (LookupError, ValueError, TraceLost):
         return np.zeros((len(own.values), 1))
-    pairs = ((own.values, found.values), (own.reduced, found.reduced))
+    pairs = ((own.values, precise.values), (own.reduced, precise.reduced))
     off = [distance(text[:, 0], text[:, 1], mine) for mine, text in pairs]
     largest: Floats = np.maximum(*off).max(axis=1, initial=0.0, keepdims=True)
     return largest * _MEASURED
@@ -185,12 +183,11 @@ def _off_the_text(session: Session) -> Floats:
 def distance(high: Floats, low: Floats, other: Floats) -> Floats:
     """How far numbers high + low are from doubles next to them: but for one rounding of it, since
     those of nearly the same size differ exactly."""
-    found: Floats = np.abs((high - other) + low)
-    return found
+    return np.asarray(np.abs((high - other) + low))
 
 
 def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
-    """Looks for the one position near each node's states."""
+    """Boxes about the one position near each node's states."""
     plan, places = enclosed.plan, nodes.states.shape[1]
     radius, proven = np.empty((plan.columns, places)), np.empty(places, dtype=np.uint8)
     contraction, beyond = np.empty(places), np.empty(places)
@@ -209,18 +206,19 @@ def prove_boxes(enclosed: Enclosed, nodes: Nodes) -> Boxes:
     return Boxes(proven.astype(bool), radius, contraction, beyond)
 
 
-def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
-    """Joins nodes by tubes; those whose box is not proven are joined to none."""
+def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> tuple[Bools, int]:
+    """Joins nodes by tubes, those whose box is not proven to none: whether each is joined to the
+    next (nodes - 1,), and how many tubes there are."""
     session, count = enclosed.session, nodes.states.shape[1]
     step = np.diff(nodes.values, axis=1)
-    length = np.sqrt(sum((way * way for way in step), np.zeros(count - 1)))
+    length = np.sqrt(sum((one * one for one in step), np.zeros(count - 1)))
     direction = step / np.where(length > 0.0, length, 1.0)
     after = np.concatenate([direction, direction[:, -1:]], axis=1)
     before = np.concatenate([direction[:, :1], direction], axis=1)
     bends = (np.abs(after - before) > tolerances.STRAIGHT_WAY).any(axis=0)
     first = _derivatives(session, nodes, after)
-    joined, width = np.empty(count, dtype=np.uint8), np.empty(count)
-    found, _ = _kernel.prove_tubes(
+    joined = np.empty(count, dtype=np.uint8)
+    number, _ = _kernel.prove_tubes(
         enclosed.plan,
         radii=enclosed.radii,
         follows=enclosed.follows,
@@ -234,14 +232,44 @@ def prove_tubes(enclosed: Enclosed, nodes: Nodes, boxes: Boxes) -> Tubes:
         proven=boxes.proven.astype(np.uint8),
         bends=bends.astype(np.uint8),
         joined=joined,
-        width=width,
+        width=np.empty(count),
     )
-    return Tubes(joined[:-1].astype(bool), width[:-1], found)
+    return joined[:-1].astype(bool), number
 
 
 def _derivatives(session: Session, nodes: Nodes, direction: Floats) -> Floats:
-    """Derivatives of the columns (columns, nodes) by the way's length."""
+    """Derivatives of the columns (columns, nodes) by the path's length."""
     rows = RowInputs(nodes.reduced, nodes.states, rates=direction)
     batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True))
     assert batch.first is not None
     return batch.first
+
+
+def differences(layout: Layout, one: Floats, others: Floats) -> Floats:
+    """How far a place (states,) is from others (columns, places), in rad and lengths of the kernel:
+    angles up to whole turns; of an orientation the largest of the increments x that turn it by
+    (1, x / 2), in all three columns."""
+    sizes = np.zeros((sum(len(c.part.type.freedoms) for c in layout.carriers), others.shape[1]))
+    for carrier in layout.carriers:
+        kind, row, column = carrier.part.type, carrier.state, carrier.column
+        if kind.is_ball:
+            turn = _increments(one[row : row + 4], others[row : row + 4])
+            sizes[column : column + 3] = turn
+            continue
+        for number, freedom in enumerate(kind.freedoms):
+            off = others[row + number] - one[row + number]
+            if freedom.is_cyclic:
+                off -= FULL_TURN * np.rint(off / FULL_TURN)
+            sizes[column + number] = np.abs(off)
+    return sizes
+
+
+def _increments(a: Floats, b: Floats) -> Floats:
+    """Largest of the increments that turn an orientation to others (places,)."""
+    w = np.abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3])
+    x = a[0] * b[1] - b[0] * a[1] - a[2] * b[3] + a[3] * b[2]
+    y = a[0] * b[2] - b[0] * a[2] - a[3] * b[1] + a[1] * b[3]
+    z = a[0] * b[3] - b[0] * a[3] - a[1] * b[2] + a[2] * b[1]
+    size = 2.0 * np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
+    # half a turn has no finite increments
+    return np.asarray(size / np.maximum(w, np.finfo(float).eps))

@@ -1,5 +1,7 @@
-"""Dead centres at which a sweep ends: proven where they are, with the branch of the rows that leads
-to them.
+"""Dead centres at which a sweep ends: proven to exist (`fold`) and to be on the branch of the rows.
+
+`bridge` joins two places that no one tube joins, by closing the mechanism at places between them;
+`Turned` counts the whole turns along a path, which its ends do not show.
 """
 
 from __future__ import annotations
@@ -9,10 +11,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, prove_boxes, prove_tubes
+from mechkin_cli.proofs.boxes import FULL_TURN, Boxes, Enclosed, Nodes, prove_boxes, prove_tubes
 from mechkin_cli.proofs.fold import Fold, prove_fold
-from mechkin_cli.proofs.modes import FULL_TURN
-from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.record import dataclass
 from mechkin_cli.session import exchange
 
 if TYPE_CHECKING:
@@ -26,15 +27,12 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# Joins two rows that no one tube joins, by closing the mechanism at places between them.
-
-
 def bridge(enclosed: Enclosed, ends: Nodes) -> int:
     """The tubes that join two nodes; 0 where the branch is not proven to lead from one to the
     other.
 
-    A long way is cut into parts at once. Where a tube is missing its middle is closed, and both
-    halves are tried: near a dead centre the places go there by halves of what is left.
+    A long path is cut into parts at once. Where a tube is missing its middle is closed, and both
+    halves are tried: near a dead centre each place halves the distance that is left.
     """
     nodes = _cut(enclosed.session, ends)
     if nodes is None:
@@ -42,10 +40,10 @@ def bridge(enclosed: Enclosed, ends: Nodes) -> int:
     most = nodes.states.shape[1] + tolerances.BRIDGE_NODES
     while True:
         boxes = prove_boxes(enclosed, nodes)
-        tubes = prove_tubes(enclosed, nodes, boxes)
-        if tubes.joined.all():
-            return tubes.number
-        missing = np.flatnonzero(~tubes.joined)
+        joined, tubes = prove_tubes(enclosed, nodes, boxes)
+        if joined.all():
+            return tubes
+        missing = np.flatnonzero(~joined)
         length = np.abs(np.diff(nodes.values, axis=1)).max(axis=0, initial=0.0)
         is_hopeless = (
             not boxes.proven.all()
@@ -67,14 +65,14 @@ def _cut(session: Session, ends: Nodes) -> Nodes | None:
         return ends
     if parts > tolerances.BRIDGE_PARTS:
         return None
-    way = np.arange(1, parts) / parts
-    values = ends.values[:, :1] + way * (ends.values[:, 1:] - ends.values[:, :1])
+    shares = np.arange(1, parts) / parts
+    values = ends.values[:, :1] + shares * (ends.values[:, 1:] - ends.values[:, :1])
     places = ends.between(np.zeros(parts - 1, dtype=np.intp), values, ends.states[:, :1])
     reduced = np.concatenate([ends.reduced[:, :1], places.reduced], axis=1)
-    found = session.follow(reduced, ends.states[:, 0], every_row=True)
-    if found.reached < parts:
+    followed = session.follow(reduced, ends.states[:, 0], every_row=True)
+    if followed.reached < parts:
         return None
-    closed = session.close(places.reduced, found.guess[:, 1:])
+    closed = session.close(places.reduced, followed.guess[:, 1:])
     if not closed.good.all():
         return None
     return ends.inserted(np.zeros(parts - 1, dtype=np.intp), places._replace(states=closed.states))
@@ -87,16 +85,13 @@ def _middles(session: Session, nodes: Nodes, before: NDArray[np.intp]) -> Nodes 
     places = nodes.between(before, values, nodes.states[:, before])
     guess = np.empty_like(places.states)
     for k, node in enumerate(before):
-        way = np.stack([nodes.reduced[:, node], places.reduced[:, k]], axis=1)
-        found = session.follow(way, nodes.states[:, node], every_row=True)
-        if found.reached < 2:
+        path = np.stack([nodes.reduced[:, node], places.reduced[:, k]], axis=1)
+        followed = session.follow(path, nodes.states[:, node], every_row=True)
+        if followed.reached < 2:
             return None
-        guess[:, k] = found.guess[:, 1]
+        guess[:, k] = followed.guess[:, 1]
     closed = session.close(places.reduced, guess)
     return places._replace(states=closed.states) if closed.good.all() else None
-
-
-# How far coordinates go along a way, with the whole turns that its ends do not show.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,26 +99,26 @@ class Turned:
     """How far coordinates went, rad and lengths of the kernel.
 
     Attributes:
-        tree: the states (states,); those of orientations say nothing.
-        closing: the angles of closing joints by (closing joint, freedom).
+        tree: the states (states,); those of orientations have no meaning.
+        closing: the angles of cut joints by (cut joint, freedom).
     """
 
     tree: Floats
     closing: Mapping[tuple[int, int], float]
 
     @classmethod
-    def along(cls, session: Session, found: Followed) -> Self:
-        """From the first place of a way to the last, that was followed with its turns."""
-        assert found.turns is not None
-        slots, turns = session.turn_slots, found.turns[:, -1] - found.turns[:, 0]
-        tree = found.guess[:, -1] - found.guess[:, 0]
+    def along(cls, session: Session, followed: Followed) -> Self:
+        """From the first place of a path, followed with its turns, to the last."""
+        assert followed.turns is not None
+        slots, turns = session.turn_slots, followed.turns[:, -1] - followed.turns[:, 0]
+        tree = followed.guess[:, -1] - followed.guess[:, 0]
         for state, slot in slots.tree.items():
             tree[state] += FULL_TURN * turns[slot]
         return cls(tree, {angle: float(turns[slot]) for angle, slot in slots.closing.items()})
 
     def and_on(self, other: Turned) -> Turned:
-        """Along this way and another one behind it, of the same tree."""
-        both = {angle: way + other.closing[angle] for angle, way in self.closing.items()}
+        """Along this path and then another one, of the same tree."""
+        both = {angle: one + other.closing[angle] for angle, one in self.closing.items()}
         return Turned(self.tree + other.tree, both)
 
     def of_angle(self, session: Session, wanted: Wanted) -> float:
@@ -144,7 +139,7 @@ proven to exist, but not that the branch of the rows leads to it."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DeadCentreProof:
-    """What is proven of a dead centre at which a way along the rows ends.
+    """What is proven of a dead centre at which a path along the rows ends.
 
     Attributes:
         row: the last row before it, counted from 0.
@@ -166,11 +161,8 @@ class DeadCentreProof:
     why: WhyNot | None
 
 
-class Lead(NamedTuple):
-    """The tubes along a way, and how far the coordinates go on it."""
-
-    tubes: int
-    turned: Turned
+Lead = tuple[int, Turned]
+"""The tubes along a path to a dead centre, and how far the coordinates go on it."""
 
 
 def prove_dead_centre(
@@ -182,41 +174,43 @@ def prove_dead_centre(
         enclosed: the mechanism as it is driven.
         row: the last row before the dead centre.
         box: of that row.
-        end: what following found.
+        end: where following ended.
     """
     session, ending = enclosed.session, end.ending
-    way = ending.inputs - row.values[:, 0]
-    moved = np.flatnonzero(np.abs(way) > row.off[:, 0])
-    number = int(np.abs(way).argmax())
+    gap = ending.inputs - row.values[:, 0]
+    moved = np.flatnonzero(np.abs(gap) > row.off[:, 0])
+    number = int(np.abs(gap).argmax())
 
-    def found(fold: Fold | None, lead: Lead | None, why: WhyNot | None) -> DeadCentreProof:
+    def proof(
+        why: WhyNot | None, fold: Fold | None = None, lead: Lead | None = None
+    ) -> DeadCentreProof:
         tubes, turned = lead or (0, None)
         return DeadCentreProof(end.row, number, ending.inputs, fold, tubes, turned, why)
 
     if moved.size > 1:
-        return found(None, None, "inputs")
+        return proof("inputs")
     exchanged = exchange(session, number, ending.block, ending.first)
     if exchanged is None:
-        return found(None, None, "balls")
+        return proof("balls")
     inputs = row.reduced[:, 0].copy()
-    inputs[number] += way[number]
+    inputs[number] += gap[number]
     guess = _guess(session, row, inputs, number, ending)
     fold = prove_fold(exchanged, inputs, row.off[:, 0], guess)
     if fold is None:
-        return found(None, None, "box")
+        return proof("box")
     if fold.boxes.beyond[0] > 0.0:
-        return found(None, None, "closure")
+        return proof("closure")
     lead = _lead(enclosed, row, box, fold) if box.proven[0] else None
-    return found(fold, lead, None if lead else "branch")
+    return proof(None if lead else "branch", fold, lead)
 
 
 def _guess(session: Session, row: Nodes, inputs: Floats, number: int, ending: Ending) -> Floats:
-    """States (states,) at a dead centre: of the block that has it as following found them, all
-    others at a place just before it, since the walk of one block may leave others behind."""
+    """States (states,) at a dead centre: of the block that has it those where following ended, all
+    others at a place just before it, since one block's path may leave others behind."""
     before = inputs[:, None].copy()
     gap = float(inputs[number] - row.reduced[number, 0])
     before[number] -= np.copysign(min(abs(gap), tolerances.DEAD_CENTRE_NEAR), gap)
-    place = _place_on_way(session, row, before)
+    place = _place_on_path(session, row, before)
     state: Floats = (row if place is None else place[0]).states[:, 0].copy()
     for edge, freedom in session.graph.blocks[ending.block].unknowns:
         carrier = session.layout.carriers[session.layout.carrier_of(edge, freedom)[0]]
@@ -235,16 +229,16 @@ def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> Lead | None
         if ahead < abs(gap):
             inputs = row.reduced.copy()
             inputs[number] += gap - np.copysign(ahead, gap)
-            found = _place_on_way(enclosed.session, row, inputs)
-            if found is None:
+            on_path = _place_on_path(enclosed.session, row, inputs)
+            if on_path is None:
                 continue
-            place, turned = found
-            way = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(row, place, strict=True)))
+            place, turned = on_path
+            path = row.then(place)
             near = prove_boxes(enclosed, place)
-            before = bridge(enclosed, way._replace(values=way.reduced)) if near.proven[0] else 0
+            before = bridge(enclosed, path._replace(values=path.reduced)) if near.proven[0] else 0
             behind = _lead_exchanged(place, near, fold) if before else None
             if behind:
-                return Lead(before + behind.tubes, turned.and_on(behind.turned))
+                return before + behind[0], turned.and_on(behind[1])
         else:
             behind = _lead_exchanged(row, box, fold)
             if behind:
@@ -252,7 +246,7 @@ def _lead(enclosed: Enclosed, row: Nodes, box: Boxes, fold: Fold) -> Lead | None
     return None
 
 
-def _place_on_way(session: Session, row: Nodes, inputs: Floats) -> tuple[Nodes, Turned] | None:
+def _place_on_path(session: Session, row: Nodes, inputs: Floats) -> tuple[Nodes, Turned] | None:
     """The closed place at some inputs (inputs, 1) to which the branch leads from a row, and how far
     the coordinates go to there."""
     path = np.concatenate([row.reduced, inputs], axis=1)
@@ -285,8 +279,8 @@ def _lead_exchanged(place: Nodes, box: Boxes, fold: Fold) -> Lead | None:
     states[freed.state], states[driven.state] = place.reduced[number], value
     least[freed.column], least[driven.column] = place.off[number], 0.0
     start = Nodes(values, values, states, off, least)
-    ends = Nodes(*(np.concatenate(pair, axis=1) for pair in zip(start, fold.node, strict=True)))
+    ends = start.then(fold.node)
     session = exchanged.session
     followed = session.follow(ends.reduced, states[:, 0], every_row=True, turns=True)
     tubes = bridge(fold.enclosed, ends) if followed.reached == 2 else 0
-    return Lead(tubes, Turned.along(session, followed)) if tubes else None
+    return (tubes, Turned.along(session, followed)) if tubes else None

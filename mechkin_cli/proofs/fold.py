@@ -15,9 +15,15 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.plan import Demand
-from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, enclosed_of, prove_boxes
+from mechkin_cli.proofs.boxes import (
+    Boxes,
+    Enclosed,
+    Nodes,
+    differences,
+    enclosed_of,
+    prove_boxes,
+)
 from mechkin_cli.proofs.enclose import Positions, enclose_derivatives
-from mechkin_cli.proofs.modes import differences
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
 
@@ -146,7 +152,7 @@ def _closed_fold(
         if abs(step) < tolerances.DEAD_CENTRE_LEAST:
             break
         values[exchanged.number] -= step
-    # the kernel reads the driven coordinate off the states
+    # the kernel reads the driven coordinate from the states
     states[driven.state] = values[exchanged.number]
     return values, states
 
@@ -160,6 +166,6 @@ def _derivatives(
     inputs = np.stack([node.values, np.zeros_like(node.values), node.off], axis=1)
     column = exchanged.freed.column
     return [
-        (float(found.high[column, 0]), float(found.about_high[column, 0]))
-        for found in enclose_derivatives(positions, inputs, exchanged.number)
+        (float(derivative.high[column, 0]), float(derivative.about_high[column, 0]))
+        for derivative in enclose_derivatives(positions, inputs, exchanged.number)
     ]

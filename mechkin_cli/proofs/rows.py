@@ -19,9 +19,6 @@ if TYPE_CHECKING:
     from mechkin_cli.session import EndOfRows, Session
     from mechkin_cli.show import Bools, Floats
 
-
-# What is proven of a sweep.
-
 Why = Literal["no position", "box", "branch"]
 """Why nothing is proven of a row: it has no position; no box about its position could be proven;
 its box is proven, but not that it lies on the branch of the rows before."""
@@ -45,10 +42,10 @@ class SweepProofs:
         solved: rows that have a position (rows,).
         joined: whether each row is joined to the next by tubes (rows - 1,).
         tubes: how many tubes there are.
-        anchor: the first row whose box is proven, whose branch all others are held against.
-        of_text: whether it is proven of the numbers that the file's text says; else of the doubles
-            that the kernel holds.
-        dead_centres: those at which ways along the rows end.
+        anchor: the first row whose box is proven; the branch of all others is compared with its.
+        of_text: whether it is proven of the numbers of the file's text; else of the kernel's
+            doubles.
+        dead_centres: those at which paths along the rows end.
     """
 
     boxes: Boxes
@@ -68,16 +65,14 @@ class SweepProofs:
     def status(self) -> NDArray[np.int8]:
         """Codes of `Proof` (rows,)."""
         exact = np.where(self.boxes.beyond > 0.0, Proof.proven_to_closure, Proof.proven)
-        found: NDArray[np.int8] = np.where(self.on_branch, exact, Proof.not_proven).astype(np.int8)
-        return found
+        return np.asarray(np.where(self.on_branch, exact, Proof.not_proven), dtype=np.int8)
 
     @property
     def on_branch(self) -> Bools:
         """Rows whose boxes are proven and joined without a gap to the first that is."""
         together = np.concatenate([[True], self.joined])
         together[: self.anchor + 1] = True
-        joined: Bools = np.logical_and.accumulate(together) & self.boxes.proven
-        return joined
+        return np.asarray(np.logical_and.accumulate(together) & self.boxes.proven)
 
     @property
     def is_complete(self) -> bool:
@@ -107,7 +102,7 @@ def certify(
         session: the mechanism, driven along the rows.
         states: of the rows in doubles (states, rows).
         solved: which rows have a position (rows,).
-        ends: the dead centres at which ways along the rows end.
+        ends: the dead centres at which paths along the rows end.
     """
     inputs = session.inputs
     nodes = Nodes.of(session, inputs.values, inputs.reduced, states)
@@ -117,13 +112,14 @@ def certify(
     boxes = boxes._replace(proven=proven)
     joined, count = np.zeros(max(solved.size - 1, 0), dtype=bool), 0
     for rows in _stretches(proven):
-        tubes = prove_tubes(enclosed, nodes.part(rows), boxes.part(rows))
-        joined[rows.start : rows.stop - 1] = tubes.joined
-        count += tubes.number
+        joined[rows.start : rows.stop - 1], tubes = prove_tubes(
+            enclosed, nodes.part(rows), boxes.part(rows)
+        )
+        count += tubes
     for row in np.flatnonzero(proven[:-1] & proven[1:] & ~joined):
-        found = bridge(enclosed, nodes.part(slice(row, row + 2)))
-        joined[row] = found > 0
-        count += found
+        tubes = bridge(enclosed, nodes.part(slice(row, row + 2)))
+        joined[row] = tubes > 0
+        count += tubes
     anchor = int(proven.argmax()) if proven.any() else 0
     certificate = SweepProofs(boxes, solved, joined, count, anchor, enclosed.of_text)
     dead_centres = tuple(_ended(enclosed, nodes, certificate, end) for end in ends)
@@ -136,10 +132,9 @@ def _ended(
     """What is proven of a dead centre behind a row, which the branch leads to if it leads to the
     row."""
     row = slice(end.row, end.row + 1)
-    found = prove_dead_centre(enclosed, nodes.part(row), certificate.boxes.part(row), end)
-    if found.why is None and not certificate.on_branch[end.row]:
-        return replace(found, why="branch")
-    return found
+    proof = prove_dead_centre(enclosed, nodes.part(row), certificate.boxes.part(row), end)
+    lost = proof.why is None and not certificate.on_branch[end.row]
+    return replace(proof, why="branch") if lost else proof
 
 
 def _stretches(proven: Bools) -> list[slice]:

@@ -6,11 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.response.integration import (
-        MotionStart as MotionStart,
-        integrate as integrate,
-        with_loads as with_loads,
-    )
+    from mechkin_cli.response.integration import integrate as integrate, with_loads as with_loads
     from mechkin_cli.response.result import ResponseResult as ResponseResult
     from mechkin_cli.response.runs import (
         Prepared as Prepared,
@@ -25,7 +21,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": ["MotionStart", "integrate", "with_loads"],
+        "integration": ["integrate", "with_loads"],
         "result": ["ResponseResult"],
         "runs": ["Prepared", "integrated", "prepare", "read", "respond", "watched_stop"],
         "start": ["Beginning"],

@@ -1,4 +1,4 @@
-"""Why a response ended before its last row, in words."""
+"""Why a response ended before its last row, in words: verdict, what was measured, and the cure."""
 
 from __future__ import annotations
 
@@ -25,11 +25,8 @@ if TYPE_CHECKING:
     from mechkin_cli.units import UnitSystem
 
 
-# What ends a response before its last row: verdict, words, what was measured, and the cure.
-
-
 class Reason(NamedTuple):
-    """Why no row follows; `place` where the file says what ends the motion, if it is no whole
+    """Why no row follows; `place` in the file of what ends the motion, where that is not the whole
     response."""
 
     status: Status
@@ -42,10 +39,14 @@ class Reason(NamedTuple):
 
 
 def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Reason:
-    """The reason of an end that was not wanted; `free` is the session that moved."""
+    """The reason of a premature end; `free` is the session that moved."""
     law = _law(free, report.which) if report.met else None
     if law is not None and report.value < tolerances.KINK_ROUNDING:
-        return _rounding(law, report)
+        # a jump whose side rounding chooses, of a load that moves something
+        text = f"{_words(law)} jumps with the sign of what is zero all along but for rounding"
+        hint = "leave the jump out: what it asks for does not move"
+        measured = f"at most {report.value:.1e}"
+        return Reason(Status.friction_undecided, "held-at-jump", text, hint, measured, law.place)
     if report.end is MotionEnd.STEP_LIMIT and not report.singular:
         return _step_limit(free, report)
     if report.end is MotionEnd.HELD:
@@ -56,14 +57,21 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
         hint = "write loads that hold along the motion"
         return Reason(Status.step_limit, "load-undefined", text, hint)
     if fault & Fault.UNDEFINED_STOP:
-        return _undefined_stop(response, report)
+        stop = response.stops[report.stop]
+        text = f"the value of the stop {stop.words} is not defined there"
+        hint = "write a value that is defined along the motion"
+        return Reason(Status.step_limit, "stop-undefined", text, hint, "", stop.place)
     if fault & Fault.FRICTION:
         rubbing = _rubbing(free, report)
         whose = f"friction of {rubbing}" if rubbing else "friction"
         text = f"{whose} has no answer there, or more than one: the mechanism may jam, or slip"
         hint = "make a coefficient smaller, or bearings longer"
         return Reason(Status.friction_undecided, "friction-undecided", text, hint)
-    if fault & Fault.SINGULAR_INERTIA or _loses_inertia(response, report):
+    # the steps end as rates grow without bound where an inertia goes to zero
+    loses_inertia = (
+        not fault and _runs_away(response, report) and report.lightest < tolerances.LOST_INERTIA
+    )
+    if fault & Fault.SINGULAR_INERTIA or loses_inertia:
         hint = "give the links that it moves a mass, or drive it"
         return Reason(Status.singular_inertia, "singular-inertia", "", hint)
     if report.branch_point:
@@ -71,14 +79,14 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
     if fault and response.fixed_step is not None:
         return _long_step(free.problem.units, report)
     if fault or report.singular:
-        text = "no step, however short, is told to stay on the branch"
+        text = "no step, however short, surely stays on the branch"
         hint = (
-            "this may be a special position where the smooth continuation is not told apart from "
-            "other branches: end the response before it"
+            "this may be a special position where the smooth continuation cannot be distinguished "
+            "from other branches: end the response before it"
         )
         return Reason(Status.branch_lost, "branch-lost", text, hint)
     if report.joints:
-        text = f"{_rubbing(free, report)} starts to slip in a direction that no step tells"
+        text = f"{_rubbing(free, report)} starts to slip in a direction that no step determines"
         hint = "make its static coefficient a little larger than that of sliding"
         return Reason(Status.friction_undecided, "friction-undecided", text, hint)
     return _tolerance(response, report)
@@ -107,7 +115,7 @@ def _branch_point(response: ResponseProblem) -> Reason:
 def _step_limit(free: Session, report: MotionReport) -> Reason:
     count, units = report.steps + report.rejections, free.problem.units
     text = f"{count} steps were not enough"
-    measured = f"{report.rejections} of them refused, the last {_length(units, report.step)} long"
+    measured = f"{report.rejections} of them refused, the last {_time(units, report.step)} long"
     law = _law(free, report.which)
     if law is not None and report.met > tolerances.MANY_KINKS * report.steps:
         text += f": {report.met} end where {_words(law)} bends or jumps"
@@ -136,30 +144,6 @@ def _held(free: Session, report: MotionReport) -> Reason:
     return Reason(Status.friction_undecided, "held-at-jump", text, hint, "", law.place)
 
 
-def _rounding(law: LoadLaw, report: MotionReport) -> Reason:
-    """A jump whose side rounding chooses, of a load that moves something."""
-    text = f"{_words(law)} jumps with the sign of what is zero all along but for rounding"
-    hint = "leave the jump out: what it asks for does not move"
-    measured = f"at most {report.value:.1e}"
-    return Reason(Status.friction_undecided, "held-at-jump", text, hint, measured, law.place)
-
-
-def _undefined_stop(response: ResponseProblem, report: MotionReport) -> Reason:
-    stop = response.stops[report.stop]
-    text = f"the value of the stop {stop.words} is not defined there"
-    hint = "write a value that is defined along the motion"
-    return Reason(Status.step_limit, "stop-undefined", text, hint, "", stop.place)
-
-
-def _loses_inertia(response: ResponseProblem, report: MotionReport) -> bool:
-    """Whether the steps end as rates grow without bound where an inertia goes to zero."""
-    return (
-        not report.fault
-        and _runs_away(response, report)
-        and report.lightest < tolerances.LOST_INERTIA
-    )
-
-
 def _runs_away(response: ResponseProblem, report: MotionReport) -> bool:
     moments = response.moments.values
     duration = float(moments[-1] - moments[0])
@@ -168,8 +152,8 @@ def _runs_away(response: ResponseProblem, report: MotionReport) -> bool:
 
 def _long_step(units: UnitSystem, report: MotionReport) -> Reason:
     text = (
-        f"a fixed step of {_length(units, report.step)} is too long there: its stages are not told "
-        "to stay on the branch"
+        f"a fixed step of {_time(units, report.step)} is too long there: its stages may leave the "
+        "branch"
     )
     hint = (
         "write a shorter fixed_step, or a tolerance in its place, which chooses the steps; if that "
@@ -181,8 +165,8 @@ def _long_step(units: UnitSystem, report: MotionReport) -> Reason:
 def _tolerance(response: ResponseProblem, report: MotionReport) -> Reason:
     if not _runs_away(response, report):
         text = "no step, however short, keeps the tolerance"
-        asked = f"{response.tolerance:g}"
-        return Reason(Status.step_limit, "step-limit", text, "widen the tolerance", limit=asked)
+        limit = f"{response.tolerance:g}"
+        return Reason(Status.step_limit, "step-limit", text, "widen the tolerance", limit=limit)
     growth = f"rates grow by themselves in {1.0 / report.growth:.1e} s"
     if response.driven:
         names = ", ".join(f"{d.joint}.{d.coordinate}" for d in response.driven)
@@ -206,12 +190,9 @@ def _words(law: LoadLaw) -> str:
     return "a load's table" if law.expression is None else f'the load "{law.expression.text}"'
 
 
-def _length(units: UnitSystem, step: float) -> str:
-    return f"{float(units.from_si(step, TIME)):.6g} {units.label(TIME)}"
+def _time(units: UnitSystem, time: float) -> str:
+    return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"
 
-
-# Which freedom has no inertia: the independent coordinates that move along the motion with the
-# least kinetic energy, for a message.
 
 _TAKES_PART = 0.3
 """A coordinate is named if it moves by so much of the one that moves most; lengths in parts of the
@@ -219,7 +200,8 @@ size."""
 
 
 def weakest_coordinates(session: Session, response: ResponseProblem, state: Floats) -> list[str]:
-    """Names of the independent coordinates that move with least inertia at `state` (states,).
+    """Names of the independent coordinates that move with least inertia at `state` (states,), for a
+    message.
 
     `session` has the independent coordinates as inputs, then the driven ones. The inertias follow
     from the kinetic energies T at unit rates: m_ij = T(i and j) - T(i) - T(j).
@@ -232,7 +214,14 @@ def weakest_coordinates(session: Session, response: ResponseProblem, state: Floa
     rates[range(free), range(free)] = 1.0
     for column, pair in enumerate(pairs, free):
         rates[list(pair), column] = 1.0
-    energies = _energies(session, state, rates)
+    wanted = session.problem.quantities()["row.kinetic_energy"]
+    readout = session.readout([wanted])
+    cases = np.zeros(rates.shape[1], dtype=np.intp)
+    places = [session.layout.state(edge, freedom) for edge, freedom in session.graph.inputs]
+    rows = RowInputs(state[places][:, None][:, cases], state[:, None][:, cases], rates)
+    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
+    assert batch.outputs is not None
+    energies = batch.outputs[readout.slots[wanted.name].first]
     inertia = np.diag(2.0 * energies[:free])
     for energy, (i, j) in zip(energies[free:], pairs, strict=True):
         inertia[i, j] = inertia[j, i] = energy - energies[i] - energies[j]
@@ -246,34 +235,22 @@ def weakest_coordinates(session: Session, response: ResponseProblem, state: Floa
     ]
 
 
-def _energies(session: Session, state: Floats, rates: Floats) -> Floats:
-    """Kinetic energy at rates (inputs, cases) of the inputs."""
-    wanted = session.problem.quantities()["row.kinetic_energy"]
-    readout = session.readout([wanted])
-    cases = np.zeros(rates.shape[1], dtype=np.intp)
-    places = [session.layout.state(edge, freedom) for edge, freedom in session.graph.inputs]
-    rows = RowInputs(state[places][:, None][:, cases], state[:, None][:, cases], rates)
-    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
-    assert batch.outputs is not None
-    found: Floats = batch.outputs[readout.slots[wanted.name].first]
-    return found
-
-
 def ending(
     session: Session, free: Session, response: ResponseProblem, report: MotionReport, last: Floats
 ) -> tuple[Status, list[Diagnostic]]:
-    """The verdict of rows that were not reached, and what is to say about the motion; `last`
-    (states,) is the last place of it, `free` the session that moved."""
-    notes = []
+    """The verdict of rows that were not reached, and notes on the motion; `last` (states,) is the
+    last place of it, `free` the session that moved."""
+    notes, units = [], session.problem.units
     if report.crossings:
-        notes.append(_passed(session, response, report))
+        passed = [place_numbers(session, np.array(state)) for _, state in report.crossings]
+        notes.append(passed_straight_on("motion", passed, response.place))
     if report.stiff:
-        text = f"from {_moment(session, report.stiff_from)} on the motion is stiff"
+        text = f"from {_time(units, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
-    at = _moment(session, report.time)
+    at = _time(units, report.time)
     why = reason(free, response, report)
     text = why.text
     if why.status is Status.singular_inertia:
@@ -304,12 +281,6 @@ def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:
     return input_numbers(session.problem, session.layout, np.array(values))
 
 
-def _passed(session: Session, response: ResponseProblem, report: MotionReport) -> Diagnostic:
-    """The branch points that a motion passed straight on."""
-    places = [place_numbers(session, np.array(state)) for _, state in report.crossings]
-    return passed_straight_on("motion", places, response.place)
-
-
 def _without_inertia(names: list[str]) -> str:
     if not names:
         whose = "some freedom has"
@@ -318,8 +289,3 @@ def _without_inertia(names: list[str]) -> str:
     else:
         whose = f"a motion of {', '.join(names[:-1])} and {names[-1]} together has"
     return f"{whose} no inertia, so that no acceleration follows from the forces"
-
-
-def _moment(session: Session, time: float) -> str:
-    units = session.problem.units
-    return f"{float(units.from_si(time, TIME)):.6g} {units.label(TIME)}"

@@ -1,5 +1,7 @@
-"""A session of what moves freely: its plan has a chart in place of the free inputs, and the
-kernel integrates its motion (kernel/core/response/charted_motion.hpp).
+"""A session of a free motion, and its integration by the kernel (kernel/src/charted_motion.hpp).
+
+The plan of a free motion has a chart in place of the free inputs (`free_session`); coordinates that
+are driven along it go by their laws of time (`driven_laws`).
 """
 
 from __future__ import annotations
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
     from mechkin_cli.mechanism import Problem, ResponseProblem
+    from mechkin_cli.response.start import Beginning
     from mechkin_cli.show import Floats
 
 
@@ -60,16 +63,28 @@ class Fault(IntEnum):
 
 
 class MotionReport(NamedTuple):
-    """What a motion came to: the stop that ended it or that had no value where it ended (-1: none),
-    the largest kinetic energy at the ends of its steps (kg, length units, s), the least inertia at
-    the last of them in parts of that at the start, the accelerations there in parts of the rates
-    (1/s), how often the switch `which` was met, the last step in s and the
-    largest value of that switch, its end, the fault of the last
-    refused step, the switch that held it or that was met most often when steps ran out, whether and
-    from when the implicit method took over, the last time in s, the counts of rows, evaluations,
-    steps and rejections, the last states, the branch points that were passed (time in s, states),
-    the states at the one that it has ended next to (none: empty), whether short steps were
-    refused there as off the branch, and the numbers of the frictions that it ended by."""
+    """How a motion ended.
+
+    Attributes:
+        stop: that ended it, or that had no value where it ended; -1: none.
+        joints: numbers of the frictions that it ended by.
+        energy: largest kinetic energy at the ends of its steps (kg, length units, s).
+        lightest: least inertia at the last of them, in parts of that at the start.
+        growth: accelerations there, in parts of the rates (1/s).
+        met: how often the switch `which` was met.
+        step: the last one, s.
+        value: largest of that switch.
+        end: the kernel's verdict.
+        fault: of the last refused step.
+        which: the switch that held it, or that was met most often when steps ran out.
+        stiff, stiff_from: whether and from when (s) the implicit method took over.
+        time: the last one, s.
+        rows, evaluations, steps, rejections: their counts.
+        last: the last states.
+        crossings: the branch points that were passed (time in s, states).
+        branch_point: the states at the one that it has ended next to; empty: none.
+        singular: whether short steps were refused there as off the branch.
+    """
 
     stop: int
     joints: list[int]
@@ -115,10 +130,10 @@ class MotionRows:
 
 
 class WatchedStop(NamedTuple):
-    """What ends a motion, by a value that is watched: 0 it crosses `at`, upwards (1), downwards
-    (-1) or either way (0); 1 it changes its sign for the `times`th time; 2 it lies `times` turns
-    from where it began. `lengths` and `rates` are the powers of length and 1/time in the value's
-    dimension, which tell what of it is rounding; `rates` -1: not known."""
+    """What ends a motion, by a value that is watched. `kind` 0: it crosses `at`, upwards (1),
+    downwards (-1) or in either direction (0); 1: it changes its sign for the `times`th time; 2: it
+    lies `times` turns from where it began. `lengths` and `rates` are the powers of length and
+    1/time in the value's dimension, by which its rounding is estimated; `rates` -1: not known."""
 
     kind: int
     direction: int
@@ -128,27 +143,16 @@ class WatchedStop(NamedTuple):
     rates: int = -1
 
 
-@dataclass(frozen=True)
-class MotionStart:
-    """Where a motion begins: plan, states (states,), rates (columns,) and free rates (freedoms,
-    columns)."""
-
-    plan: Plan
-    state: Floats
-    first: Floats
-    tangents: Floats
-
-
 def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
     """The session of a problem whose inputs `free` are left to move: the same tree, so the same
     states; residual and condition in parts of the same size."""
-    graph = charted(session.graph, set(free))
+    graph, closed_at, packing = (
+        charted(session.graph, set(free)),
+        session.closed_at,
+        session.packing,
+    )
     other = Session.of(
-        session.problem,
-        graph,
-        driven=graph.driven,
-        closed_at=session.closed_at,
-        packing=session.packing,
+        session.problem, graph, driven=graph.driven, closed_at=closed_at, packing=packing
     )
     return other if session.size is None else other.sized(session.size)
 
@@ -161,7 +165,7 @@ def with_loads(session: Session, problem: Problem) -> Session:
 
 
 def integrate(
-    starts: Sequence[MotionStart],
+    starts: Sequence[tuple[Plan, Beginning]],
     begin: float,
     times: Floats,
     *,
@@ -173,8 +177,8 @@ def integrate(
     packing: Packing,
     method: int = 0,
 ) -> list[MotionRows]:
-    """Integrates motions of plans of one structure, packed into lanes, from time `begin` (s) over
-    the rows' `times` (rows,).
+    """Integrates motions of plans of one structure, each from its beginning, packed into lanes,
+    from time `begin` (s) over the rows' `times` (rows,).
 
     `stops` go with the values that the plans watch, in order; `driven` with their inputs;
     `straight`: branch points are passed along the smooth continuation.
@@ -183,10 +187,10 @@ def integrate(
         ValueError: times that do not rise from `begin` on.
     """
     reports, *arrays = _kernel.respond(
-        plans=[start.plan for start in starts],
-        state=np.ascontiguousarray([start.state for start in starts]),
-        first=np.ascontiguousarray([start.first for start in starts]),
-        tangent=np.ascontiguousarray([start.tangents.ravel() for start in starts]),
+        plans=[plan for plan, _ in starts],
+        state=np.ascontiguousarray([start.state for _, start in starts]),
+        first=np.ascontiguousarray([start.first for _, start in starts]),
+        tangent=np.ascontiguousarray([start.tangents.ravel() for _, start in starts]),
         begin=begin,
         times=np.ascontiguousarray(times),
         stops=[(s.kind, s.direction, s.times, s.at, s.lengths, s.rates) for s in stops],
@@ -201,26 +205,17 @@ def integrate(
         jump=tolerances.JUMP_LIMIT,
         radius=tolerances.SPECTRAL_RADIUS,
         straight=straight,
-        lanes=_lanes(packing, len(starts)),
+        # one motion needs no more than the narrowest packs
+        lanes=width(packing.lanes) if packing.lanes or len(starts) > 2 else 2,
         threads=threads_for(len(starts), packing.threads),
     )
-    found = []
-    for number, told in enumerate(reports):
-        states, direction, rates, seconds, turns, told_of, work, flags = (a[number] for a in arrays)
-        report = MotionReport(**{**told, "end": MotionEnd(told["end"])})
-        chart = Chart(direction, rates, seconds, told_of)
-        found.append(MotionRows(report, states, chart, turns, work, flags))
-    return found
-
-
-def _lanes(packing: Packing, count: int) -> int:
-    """One motion needs no more than the narrowest packs."""
-    if packing.lanes or count > 2:
-        return width(packing.lanes)
-    return 2
-
-
-# Coordinates that are driven along a motion, by their laws of time, as the kernel takes them.
+    motions = []
+    for number, fields in enumerate(reports):
+        states, direction, rates, seconds, turns, fourth, work, flags = (a[number] for a in arrays)
+        report = MotionReport(**{**fields, "end": MotionEnd(fields["end"])})
+        chart = Chart(direction, rates, seconds, fourth)
+        motions.append(MotionRows(report, states, chart, turns, work, flags))
+    return motions
 
 
 def driven_laws(session: Session, response: ResponseProblem) -> _kernel.DrivenLaws | None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.assembly import mode_letter
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
@@ -33,39 +34,37 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
-# The rows of a response as if the start's coordinates were driven through them.
-
-
 def driven_rows(response: ResponseResult) -> Result:
-    """A sweep with the states, rates and accelerations of a response, on the same tree."""
+    """The rows of a response as if the start's coordinates were driven through them: a sweep with
+    its states, rates and accelerations, on the same tree."""
     own, moving = response.row_states, response.problem.motion
-    free = [_driven(response, *at) for at in response.response.independent]
+    free = [_as_input(response, *at) for at in response.response.independent]
     motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
     session = response.chosen.moved(replace(response.chosen.problem, motion=motion))
     rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
     rows.states, rows.reached, rows.status = own.states, own.reached, own.status
-    # closing joints have the same turns; the tree's angles have theirs in the states
+    # cut joints have the same turns; the tree's angles have theirs in the states
     closing = own.turns[: own.turns.shape[0] - len(response.session.turn_slots.tree)]
     still = np.zeros((len(session.turn_slots.tree), moving.rows))
     rows.turns = np.concatenate([closing, still])
     return Result(session, response.start, rows)
 
 
-def _driven(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
-    name, units, rows = f"{joint}.{coordinate}", response.units, response.rows
-    orders = [_numbers(response, name + ORDERS[order]) for order in range(3)] + [np.zeros(rows)]
-    dimension = dimension_of(coordinate)
+def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
+    """A coordinate with its rates and accelerations, zero in rows without a solution."""
+    rows, dimension, orders = response.rows, dimension_of(coordinate), []
+    for suffix in ORDERS[:3]:
+        quantity = response.quantity(f"{joint}.{coordinate}{suffix}")
+        value = np.asarray(quantity.value, dtype=np.float64)
+        orders.append(np.where(response.solved, np.broadcast_to(value, (rows,)), 0.0))
+    values, rates, accelerations, jerks = *orders, np.zeros(rows)
     written = np.array(
-        [units.from_si(found.copy(), dimension / TIME**order) for order, found in enumerate(orders)]
+        [
+            response.units.from_si(numbers.copy(), dimension / TIME**order)
+            for order, numbers in enumerate((values, rates, accelerations, jerks))
+        ]
     )
-    values, rates, accelerations, jerks = orders
     return DrivenInput(joint, coordinate, values, rates, accelerations, jerks, written)
-
-
-def _numbers(response: ResponseResult, name: str) -> Floats:
-    """A quantity over the rows in SI, zero where there is none."""
-    value = np.asarray(response.quantity(name).value, dtype=np.float64)
-    return np.where(response.solved, np.broadcast_to(value, (response.rows,)), 0.0)
 
 
 ENERGIES = ("row.kinetic_energy", "row.potential_energy")
@@ -80,8 +79,8 @@ class ResponseResult(Result):
         rows: the rows.
         chart: about each row.
         work: put in and lost up to each row (2, rows), J.
-        events: what each row is reached by, empty for a moment asked for.
-        response: what was asked for.
+        events: the stop that each row is at, empty for a moment of the file.
+        response: the file's.
         report: how the motion ended.
     """
 
@@ -99,12 +98,8 @@ class ResponseResult(Result):
         report: MotionReport | None,
     ) -> None:
         super().__init__(session, start, rows)
-        self.chosen = chosen
-        self.chart = chart
-        self.exchanged = work
-        self.events = tuple(events)
-        self.response = response
-        self.report = report
+        self.chosen, self.chart, self.exchanged = chosen, chart, work
+        self.events, self.response, self.report = tuple(events), response, report
 
     @cached_property
     def solved(self) -> Bools:
@@ -115,15 +110,11 @@ class ResponseResult(Result):
     def mode(self) -> str:
         """The letter of the first assembly where a short search proves it; else `near` or
         `home`."""
-        from mechkin_cli.assembly import mode_letter
-
         return mode_letter(self.chosen, self.start, thorough=False)
 
     @cached_property
     def letter(self) -> str:
         """The letter of the first assembly, searched for if it is not known yet."""
-        from mechkin_cli.assembly import mode_letter
-
         return mode_letter(self.chosen, self.start)
 
     def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
@@ -131,25 +122,25 @@ class ResponseResult(Result):
 
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:
-        """As of a sweep; and the start's coordinates, which the first row has as they were
-        given."""
-        found = dict(super().input_rates)
+        """As of a sweep; and the start's coordinates, which the first row has as the file writes
+        them."""
+        rates = dict(super().input_rates)
         if not self.solved[:1].all():
-            return found
+            return rates
         for one in self.response.start:
-            for name, given in ((one.name, one.value), (one.name + ORDERS[1], one.rate)):
-                if given is not None:
-                    found[name] = self._as_given(name, given)
-        return found
+            for name, first in ((one.name, one.value), (one.name + ORDERS[1], one.rate)):
+                if first is not None:
+                    rates[name] = self._as_written(name, first)
+        return rates
 
-    def _as_given(self, name: str, given: float) -> Floats:
-        """A quantity in the file's units, its first value the shortest number that is `given` in
+    def _as_written(self, name: str, first: float) -> Floats:
+        """A quantity in the file's units, its first value the shortest number that is `first` in
         SI."""
         quantity, units = self.quantity(name), self.units
         rows = np.array(np.broadcast_to(np.asarray(quantity.value, dtype=np.float64), (self.rows,)))
         column = np.array(units.from_si(rows, quantity.dimension), dtype=np.float64)
         short = float(f"{column[0]:.15g}")
-        if float(units.to_si(short, quantity.dimension)) == given:
+        if float(units.to_si(short, quantity.dimension)) == first:
             column[0] = short
         return column
 
@@ -171,10 +162,8 @@ class ResponseResult(Result):
         wanted = self.problem.quantities().get(name)
         if wanted is not None and wanted.kind in COEFFICIENT_KINDS:
             return self.as_driven.quantity(name)
-        if wanted is not None and wanted.kind == "effort":
-            given = self._given_effort(wanted)
-            if given is not None:
-                return Quantity(given, wanted.dimension)
+        if wanted is not None and self.is_given(wanted):
+            return Quantity(self._effort(wanted), wanted.dimension)
         return super().quantity(name)
 
     def read(self, wanted: Iterable[Wanted]) -> None:
@@ -189,26 +178,27 @@ class ResponseResult(Result):
         )
 
     def is_given(self, quantity: Wanted) -> bool:
-        """Whether a quantity is an effort that the response gives."""
+        """Whether a quantity is one of the response's efforts."""
         return quantity.kind == "effort" and bool(self._amounts(quantity))
 
     @property
     def work(self) -> Floats:
         """Work put in up to each row, J (rows,)."""
-        put: Floats = self.exchanged[0]
-        return put
+        return np.asarray(self.exchanged[0])
 
     @property
     def dissipated(self) -> Floats:
         """What was lost up to each row, J (rows,)."""
-        lost: Floats = self.exchanged[1]
-        return lost
+        return np.asarray(self.exchanged[1])
 
     @cached_property
     def energy_error(self) -> Floats:
         """|T + V - T0 - V0 - work + dissipated| beyond the rounding of V, in parts of the largest
         of them over all rows and of T between them (rows,); nan where nothing moves or works."""
-        kinetic, potential = (self._energy(name) for name in ENERGIES)
+        kinetic, potential = (
+            np.asarray(super(ResponseResult, self).quantity(name).value, dtype=np.float64)
+            for name in ENERGIES
+        )
         work, lost = self.exchanged
         solved = np.flatnonzero(self.solved)
         if not solved.size:
@@ -226,22 +216,14 @@ class ResponseResult(Result):
         error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
         return error
 
-    def _energy(self, name: str) -> Floats:
-        value: Floats = np.asarray(super().quantity(name).value, dtype=np.float64)
-        return value
-
     def _amounts(self, wanted: Wanted) -> list[Amount]:
         at = (wanted.owner, wanted.coordinate)
         return [e.amount for e in self.response.efforts if (e.joint, e.coordinate) == at]
 
-    def _given_effort(self, wanted: Wanted) -> Floats | None:
-        """The sum of the response's efforts along a coordinate over the rows; None where it is
-        driven."""
-        given = self._amounts(wanted)
-        if not given:
-            return None
+    def _effort(self, wanted: Wanted) -> Floats:
+        """The sum of the response's efforts along a coordinate over the rows."""
         total = np.zeros(self.rows)
-        for amount in given:
+        for amount in self._amounts(wanted):
             if isinstance(amount, Varying):
                 law = self.problem.load_laws[amount.number]
                 total = total + law_value(law, self.quantity, self.rows)

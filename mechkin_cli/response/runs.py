@@ -1,4 +1,6 @@
-"""From a response's start to its rows: assembly, integration, a verdict per row."""
+"""From a response's start to its rows: the moments and what is driven at them, assembly,
+integration, a verdict per row.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,6 @@ from mechkin_cli.response.endings import ending
 from mechkin_cli.response.integration import (
     MotionEnd,
     MotionRows,
-    MotionStart,
     WatchedStop,
     driven_laws,
     free_session,
@@ -54,17 +55,13 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension
 
-
-# The moments of a response's rows, with what is driven at them, and its stops as the kernel has
-# them.
-
-_WAYS = {"up": 1, "down": -1, "any": 0}
+_DIRECTIONS = {"up": 1, "down": -1, "any": 0}
 
 
 def watched_stop(stop: Stop) -> WatchedStop:
     """A stop as the kernel takes it."""
     if isinstance(stop, CrossingEnd):
-        return WatchedStop(0, _WAYS[stop.direction], 1, stop.at, *_powers(stop.dimension))
+        return WatchedStop(0, _DIRECTIONS[stop.direction], 1, stop.at, *_powers(stop.dimension))
     if isinstance(stop, DeadCentreEnd):
         rate = dimension_of(stop.coordinate) / TIME
         return WatchedStop(1, 0, stop.count, 0.0, *_powers(rate))
@@ -80,20 +77,18 @@ def _powers(dimension: Dimension) -> tuple[int, int]:
 
 
 def rows_problem(
-    free: Session, response: ResponseProblem, laws: DrivenLaws | None, found: MotionRows, count: int
+    free: Session, response: ResponseProblem, laws: DrivenLaws | None, moved: MotionRows, count: int
 ) -> Problem:
     """The problem whose motion has the first `count` rows, a stop's moment among them."""
-    asked = response.moments
-    if count <= found.report.rows or found.count <= found.report.rows:
-        moments = Moments(asked.values[:count], asked.written[:count])
+    every = response.moments
+    if count <= moved.report.rows or moved.count <= moved.report.rows:
+        moments = Moments(every.values[:count], every.written[:count])
         driven = tuple(_part(item, count) for item in response.driven)
     else:
-        end = found.report.time
+        end = moved.report.time
         written = float(free.problem.units.from_si(end, TIME))
-        moments = Moments(
-            np.append(asked.values[: count - 1], end),
-            np.append(asked.written[: count - 1], written),
-        )
+        values = np.append(every.values[: count - 1], end)
+        moments = Moments(values, np.append(every.written[: count - 1], written))
         at = [] if laws is None else laws.at(end)
         driven = tuple(
             _stopped(free, _part(item, count - 1), at[number])
@@ -145,18 +140,17 @@ def _part(item: DrivenInput, count: int) -> DrivenInput:
 def _stopped(free: Session, item: DrivenInput, at: tuple[float, float, float]) -> DrivenInput:
     """With one row more, where the motion was stopped; `at` in kernel units."""
     unit, units = input_unit(free.layout, item), free.problem.units
-    found = [value * unit for value in at] + [nan]
+    last = [value * unit for value in at] + [nan]
     dimension = dimension_of(item.coordinate)
     written = [
-        float(units.from_si(value, dimension / TIME**order)) for order, value in enumerate(found)
+        float(units.from_si(value, dimension / TIME**order)) for order, value in enumerate(last)
     ]
-    arrays = (item.values, item.rates, item.accelerations, item.jerks)
-    values, rates, accelerations, jerks = (
-        np.append(array, value) for array, value in zip(arrays, found, strict=True)
-    )
-    orders = np.concatenate([item.written_orders, np.array(written)[:, None]], axis=1)
-    return DrivenInput(
-        item.joint, item.coordinate, values, rates, accelerations, jerks, orders, item.follows
+    return item._replace(
+        values=np.append(item.values, last[0]),
+        rates=np.append(item.rates, last[1]),
+        accelerations=np.append(item.accelerations, last[2]),
+        jerks=np.append(item.jerks, last[3]),
+        written_orders=np.concatenate([item.written_orders, np.array(written)[:, None]], axis=1),
     )
 
 
@@ -171,14 +165,14 @@ def respond(
     packing: Packing = ANY_PACKING,
     session: Session | None = None,
 ) -> ResponseResult:
-    """Integrates a response and reads the quantities asked for.
+    """Integrates a response and reads some quantities.
 
     Args:
         problem: of the file.
         response: one of its responses.
         quantities: names out of `response_problem(problem, response).quantities()`.
         packing: how variants and rows are packed.
-        session: of that problem, where there is one; it keeps what is found of the start.
+        session: of that problem, where there is one; it remembers the start.
 
     Raises:
         UnsolvableGraph: the start names too few or too many coordinates, or such that do not fix
@@ -217,8 +211,8 @@ def prepare(
     """
     if session is None:
         session = Session.of(response_problem(problem, response))
-    found = _prepared(session, response)
-    return replace(found, chosen=found.chosen.packed(packing), free=found.free.packed(packing))
+    one = _prepared(session, response)
+    return replace(one, chosen=one.chosen.packed(packing), free=one.free.packed(packing))
 
 
 @remembered
@@ -241,24 +235,24 @@ def _prepared(chosen: Session, response: ResponseProblem) -> Prepared:
 
 def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseResult]:
     """The rows of variants of one response, before anything is read; those that share what the
-    kernel takes once march together in lanes."""
-    found: dict[int, ResponseResult] = {}
+    kernel takes once are integrated together in lanes."""
+    results: dict[int, ResponseResult] = {}
     groups: dict[object, list[int]] = {}
     for number, one in enumerate(variants):
         if one.begun is None:
-            found[number] = _nothing(one)
+            results[number] = _nothing(one)
         else:
             groups.setdefault(_shared(one, number), []).append(number)
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            found[number] = rows_of(variants[number], rows)
-    return [found[number] for number in range(len(variants))]
+            results[number] = rows_of(variants[number], rows)
+    return [results[number] for number in range(len(variants))]
 
 
 def _shared(one: Prepared, number: int) -> object:
-    """Equal for variants that the kernel takes in one call: it is given laws of drives, stops and
-    moments once, and plans of one structure."""
+    """Equal for variants that the kernel takes in one call: with the same laws of drives, stops and
+    moments, and plans of one structure."""
     if one.driven is not None:
         return number
     response, plan = one.response, one.free.plan
@@ -280,7 +274,7 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         if one is not first:
             # of the same structure: plans of one call share it
             plan = plan.with_constants(one.free.plan.constants).with_size(one.free.plan.size)
-        starts.append(MotionStart(plan, one.begun.state, one.begun.first, one.begun.tangents))
+        starts.append((plan, one.begun))
     return integrate(
         starts,
         float(times[0]),
@@ -294,47 +288,41 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
     )
 
 
-def rows_of(one: Prepared, found: MotionRows) -> ResponseResult:
-    """The rows with their verdicts, before anything is read: those asked for, or up to a stop."""
-    response, chosen, free = one.response, one.chosen, one.free
-    stopped = found.report.end is MotionEnd.STOPPED
-    count = found.count if stopped else response.rows
-    if stopped and _stops_at_row(response, found):
-        count -= 1
+def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
+    """The rows with their verdicts, before anything is read: all of them, or up to a stop."""
+    response, chosen, free, report = one.response, one.chosen, one.free, moved.report
+    stopped = report.end is MotionEnd.STOPPED
+    count = moved.count if stopped else response.rows
+    if stopped and report.rows:
+        # a stop at the moment of the last row before it has that row
+        row = float(response.moments.values[report.rows - 1])
+        count -= abs(report.time - row) <= tolerances.SAME_MOMENT * abs(row)
     part = slice(0, count)
-    reached = np.arange(count) < found.count
+    reached = np.arange(count) < moved.count
     rows = SweepRows.without_guesses(free.layout.states, 0, count)
-    rows.states = np.where(reached, found.states[:, part], 0.0)
-    rows.reached, rows.nodes = reached, found.report.steps
-    rows.turns = _all_turns(free, found.turns[:, part])
-    last = np.array(found.report.last)
-    status, notes = ending(chosen, free, response, found.report, last)
+    rows.states = np.where(reached, moved.states[:, part], 0.0)
+    rows.reached, rows.nodes = reached, report.steps
+    # no whole turns of the tree's angles, whose states have them
+    tree = np.zeros((len(free.turn_slots.tree), count))
+    rows.turns = np.concatenate([moved.turns[:, part], tree])
+    status, notes = ending(chosen, free, response, report, np.array(report.last))
     rows.status[~reached] = status
     rows.diagnostics += notes
     energy = free.layout.length * free.layout.length
     events = [""] * count
     if stopped:
-        events[-1] = response.stops[found.report.stop].words
-    chart = found.chart.at(part)
+        events[-1] = response.stops[report.stop].words
     return ResponseResult(
-        free.moved(rows_problem(free, response, one.driven, found, count)),
+        free.moved(rows_problem(free, response, one.driven, moved, count)),
         one.start,
         rows,
         chosen=chosen,
-        chart=Chart(*(np.where(reached, array, 0.0) for array in chart)),
-        work=np.where(reached, energy * found.work[:, part], np.nan),
+        chart=Chart(*(np.where(reached, array, 0.0) for array in moved.chart.at(part))),
+        work=np.where(reached, energy * moved.work[:, part], np.nan),
         events=events,
         response=response,
-        report=found.report,
+        report=report,
     )
-
-
-def _stops_at_row(response: ResponseProblem, found: MotionRows) -> bool:
-    """Whether the stop's moment is that of the last row before it, which then is its row."""
-    if not found.report.rows:
-        return False
-    row = float(response.moments.values[found.report.rows - 1])
-    return abs(found.report.time - row) <= tolerances.SAME_MOMENT * abs(row)
 
 
 def _nothing(one: Prepared) -> ResponseResult:
@@ -347,36 +335,27 @@ def _nothing(one: Prepared) -> ResponseResult:
     directions = np.zeros((charts * free.plan.columns, count))
     chart = Chart(directions, zeros, zeros, np.zeros((0, count)))
     motion = MotionInputs(response.driven, count, response.moments, response.course)
-    session = free.moved(replace(free.problem, motion=motion))
-    lost = np.full((2, count), np.nan)
-    events = [""] * count
     return ResponseResult(
-        session,
+        free.moved(replace(free.problem, motion=motion)),
         start,
         rows,
         chosen=one.chosen,
         chart=chart,
-        work=lost,
-        events=events,
+        work=np.full((2, count), np.nan),
+        events=[""] * count,
         response=response,
         report=None,
     )
 
 
-def _all_turns(free: Session, closing: Floats) -> Floats:
-    """Turns of closing joints, and no whole turns of the tree's angles, whose states have them."""
-    tree = np.zeros((len(free.turn_slots.tree), closing.shape[1]))
-    return np.concatenate([closing, tree])
-
-
 def read(result: ResponseResult, quantities: Iterable[str]) -> None:
-    """Closes the rows once more, judges them, and reads what is asked for."""
+    """Closes the rows once more, judges them, and reads some quantities."""
     known = result.problem.quantities()
-    asked: list[Wanted] = [known[name] for name in read_for(quantities, known)]
+    requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]
     rows = result.row_states
     if rows.reached.any():
         energies = [known[name] for name in ENERGIES]
-        wanted, demand = at_once(result.session, [*asked, *energies], verdicts=True)
+        wanted, demand = at_once(result.session, [*requested, *energies], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
         ask = Ask(demand, result.session.readout(wanted) if wanted else None)
@@ -388,7 +367,6 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         rows.reached &= ~failed
         judge_condition(result.session, rows, batch)
         result.keep(batch, ask)
-        result.read(asked)
-    result.row_states.diagnostics += row_notes(
-        result, asked, rests_on_reactions=rest_on_reactions(result.problem, asked)
-    )
+        result.read(requested)
+    on_reactions = rest_on_reactions(result.problem, requested)
+    rows.diagnostics += row_notes(result, requested, rests_on_reactions=on_reactions)

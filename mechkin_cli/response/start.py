@@ -1,7 +1,7 @@
 """The first moment of a response: the assembly, and how it moves there.
 
 The start's coordinates and the driven ones are inputs of a session of their own, whose assembly is
-chosen as a sweep's first row is.
+chosen as a sweep's first row is. Rates may be those of other coordinates, too (`solve_rates`).
 """
 
 from __future__ import annotations
@@ -15,10 +15,9 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.sweep import lost_rates
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from mechkin_cli.mechanism import ResponseProblem
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
@@ -46,7 +45,10 @@ def beginning(session: Session, response: ResponseProblem, state: Floats) -> Beg
     # the whole turns of an angle that the file names stay in its state
     for number, (edge, freedom) in enumerate(session.graph.inputs):
         begin[layout.state(edge, freedom)] = session.inputs.values[number, 0]
-    return Beginning(begin, _combined(rates, moved), moved[:free])
+    first = np.zeros(moved.shape[1])
+    for rate, row in zip(rates, moved, strict=True):
+        first = first + rate * row
+    return Beginning(begin, first, moved[:free])
 
 
 def _unit_rates(session: Session, state: Floats) -> Floats:
@@ -60,45 +62,24 @@ def _unit_rates(session: Session, state: Floats) -> Floats:
     return np.ascontiguousarray(batch.first.T)
 
 
-def _combined(factors: Sequence[float] | Floats, rows: Floats) -> Floats:
-    """Sum of rows with their factors, in order."""
-    total = np.zeros(rows.shape[1])
-    for factor, row in zip(factors, rows, strict=True):
-        total = total + factor * row
-    return total
-
-
 def _rates(
     session: Session, response: ResponseProblem, state: Floats, moved: Floats
 ) -> Floats | Diagnostic:
     """Rates of all inputs in kernel units: the driven ones by their laws, the independent ones so
     that the coordinates named with a rate have it."""
-    inputs = session.inputs
-    rates: Floats = inputs.rates[:, 0].copy()
+    rates: Floats = session.inputs.rates[:, 0].copy()
     independent = set(response.independent)
-    others = [
-        one
+    if any(
+        one.rate is not None and (one.joint, one.coordinate) not in independent
         for one in response.start
-        if one.rate is not None and (one.joint, one.coordinate) not in independent
-    ]
-    if not others:
-        return _known(session, response, state, rates)
-
-    return solve_rates(session, response, state, rates, len(moved))
-
-
-def _known(
-    session: Session, response: ResponseProblem, state: Floats, rates: Floats
-) -> Floats | Diagnostic:
-    """The rates, or why they say nothing: at its dead centre a coordinate has no rate, and any
-    that it is given stands for infinite ones of others."""
-    from mechkin_cli.sweep import lost_rates
-
+    ):
+        return solve_rates(session, response, state, rates, len(moved))
     if not rates.any():
         return rates
+    # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
     lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
     inputs = session.problem.motion.inputs
-    named = [one.name for one, given in zip(inputs, lost & (rates != 0.0), strict=True) if given]
+    named = [one.name for one, wrong in zip(inputs, lost & (rates != 0.0), strict=True) if wrong]
     if not named:
         return rates
     return Diagnostic(
@@ -110,22 +91,19 @@ def _known(
     )
 
 
-# Rates at the first moment that are given for coordinates other than the independent ones.
-
-
 def solve_rates(
     session: Session, response: ResponseProblem, state: Floats, rates: Floats, count: int
 ) -> Floats | Diagnostic:
     """Rates of all inputs (inputs,), kernel units, with which the coordinates named in the start
-    have the rates that they are given.
+    have their rates there.
 
     Linear in the independent rates: the named rates are read at unit rates of one input after the
     other. `rates` holds those of the driven inputs behind the independent ones.
     """
     free = len(response.independent)
-    given = [one for one in response.start if one.rate is not None]
+    with_rate = [one for one in response.start if one.rate is not None]
     known = session.problem.quantities()
-    wanted = [known[f"{one.name}_dot"] for one in given]
+    wanted = [known[f"{one.name}_dot"] for one in with_rate]
     readout = session.readout(wanted)
     repeated = np.zeros(count, dtype=np.intp)
     reduced = session.inputs.reduced[:, repeated]
@@ -133,12 +111,12 @@ def solve_rates(
     batch = session.run(rows, Ask(Demand.VELOCITY, readout))
     assert batch.outputs is not None
     by_rate = np.array([batch.outputs[readout.slots[quantity.name].first] for quantity in wanted])
-    right = np.array([one.rate or 0.0 for one in given])
+    right = np.array([one.rate or 0.0 for one in with_rate])
     for number in range(free, count):
         right = right - by_rate[:, number] * rates[number]
-    found = _solved(by_rate[:, :free], right)
-    if found is None:
-        names = ", ".join(f"{one.name}_dot" for one in given)
+    solved = _solved(by_rate[:, :free], right)
+    if solved is None:
+        names = ", ".join(f"{one.name}_dot" for one in with_rate)
         return Diagnostic(
             "start-rates",
             "error",
@@ -147,7 +125,7 @@ def solve_rates(
             hint="give the rates of the coordinates that start names, or of others that move "
             "with each of them",
         )
-    return np.array([*found, *rates[free:]])
+    return np.array([*solved, *rates[free:]])
 
 
 def _solved(matrix: Floats, right: Floats) -> list[float] | None:
@@ -168,10 +146,10 @@ def _solved(matrix: Floats, right: Floats) -> list[float] | None:
         for i in range(k + 1, size):
             factor = rows[i][k] / rows[k][k]
             rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    found = [0.0] * size
+    values = [0.0] * size
     for k in reversed(range(size)):
         rest = rows[k][size]
         for j in range(k + 1, size):
-            rest -= rows[k][j] * found[j]
-        found[k] = rest / rows[k][k]
-    return found
+            rest -= rows[k][j] * values[j]
+        values[k] = rest / rows[k][k]
+    return values

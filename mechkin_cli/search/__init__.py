@@ -1,6 +1,6 @@
-"""All assemblies of a structure at given inputs: block by block, by random starts or by polynomial.
+"""All assemblies of a structure at some inputs, block by block from random starts.
 
-Hides which loops have closed equations and when a search may stop.
+Hides for which loops an equation proves their number, and when a search may stop.
 """
 
 from __future__ import annotations
@@ -9,7 +9,11 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.search.clusters import pose_keys as pose_keys, same_poses as same_poses
+    from mechkin_cli.search.clusters import (
+        pose_keys as pose_keys,
+        pose_number as pose_number,
+        same_poses as same_poses,
+    )
     from mechkin_cli.search.search import (
         Assemblies as Assemblies,
         all_assemblies as all_assemblies,
@@ -21,7 +25,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "clusters": ["pose_keys", "same_poses"],
+        "clusters": ["pose_keys", "pose_number", "same_poses"],
         "search": ["Assemblies", "all_assemblies", "single_assembly", "with_assemblies"],
         "starts": ["Within", "is_in_reach"],
     },

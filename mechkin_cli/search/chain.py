@@ -1,9 +1,24 @@
-"""A loop at given upstream states as a chain of elementary motions about fixed axes.
+"""A loop at known upstream states as a chain of elementary motions, and the proven bounds of its
+number of assemblies.
 
-With the block's unknowns at zero the axes of its freedoms stand at known places; going round the
-loop from the closing joint's first link to its second, the loop closes where the product of the
+Chain: with the block's unknowns at zero the axes of its freedoms stand at known places. Going round
+the loop from the cut joint's first link to its second, the loop closes where the product of the
 motions about these axes (product of exponentials) carries what is drawn on the second link onto
 what is drawn on the first.
+
+Bounds, by the pairs alone: what is left of a loop at fixed inputs closes in six freedoms, turns R,
+slides P, and at most one sphere S (C is R P, U is R R, E is P P R, Sp is S P P, Sg is S P; a driven
+freedom is gone). Their order does not matter. The bounds hold for isolated assemblies:
+
+- one S and three others (Pieper 1968): the centre's curve on one link, a line or a circle, meets
+  its surface on the other. Line and plane 1; with one turn circle and plane, or line and quadric,
+  2; with two circle and quadric, or line and torus, 4; circle and torus 4, since four of their
+  eight intersections lie on the circle at infinity;
+- no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16;
+- a leg and one other freedom: circle or line and sphere, 2. A body on six legs: 40 (Ronga, Vust
+  1995).
+
+Loops that are drawn planar or spherical have fewer (`loop_equation`).
 """
 
 from __future__ import annotations
@@ -11,6 +26,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import GROUND, Frame, Vector, add, cross, dot, scale
 from mechkin_cli.plan import Carrier, Layout
@@ -31,8 +47,8 @@ class ChainMotion(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """The unknown motions in the order of the loop, and the closing joint's frames on the first
-    and the second link, all in the kernel's lengths; `distance` is the length that it keeps."""
+    """The unknown motions in the order of the loop, and the cut joint's frames on its first and its
+    second link, in kernel lengths; `distance` is the length that it keeps."""
 
     joint: Joint
     motions: tuple[ChainMotion, ...]
@@ -42,63 +58,53 @@ class Chain(NamedTuple):
 
 
 def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
-    """The chain of a block with one closing joint, upstream states as in `base` (states,); None
-    where an unknown is a thread or a ball, or the loop passes a hung link."""
+    """The chain of a block with one cut joint, upstream states as in `base` (states,); None where
+    an unknown is a thread or a ball, or the loop passes a hung link."""
     graph = layout.graph
     block = graph.blocks[number]
     if len(block.closings) != 1:
         return None
     closing = graph.closings[block.closings[0]]
-    unknown = {layout.state(e, f): None for e, f in block.unknowns if not _is_other(layout, e, f)}
-    if len(unknown) != len(block.unknowns):
+    kinds = [layout.carriers[layout.carrier_of(e, f)[0]].part.type for e, f in block.unknowns]
+    if any(kind.is_ball or kind.is_thread for kind in kinds):
         return None
+    unknown = {layout.state(e, f) for e, f in block.unknowns}
     constraint = closing.constraint
     if constraint.slides:
         return None
     ends = (constraint.first, constraint.second)
     paths = [_path(layout, layout.link_number[link]) for link in ends]
     shared = set(paths[0]) & set(paths[1])
-    around = [*(k for k in paths[0] if k not in shared), *reversed(paths[1])]
-    around = [k for k in around if k not in shared]
+    around = [k for k in (*paths[0], *reversed(paths[1])) if k not in shared]
     states = [float(x) for x in base]
     for state in unknown:
         states[state] = 0.0
-    places = _ChainFrames(layout, states)
+    frames = _ChainFrames(layout, states)
     motions = []
     for k in around:
-        if graph.edges[layout.carriers[k].edge].hung:
+        carrier = layout.carriers[k]
+        if graph.edges[carrier.edge].hung:
             return None
-        motions += _motions(layout.carriers[k], set(unknown), places.before(k))
+        before = frames.before(k)
+        for state, slide in enumerate(carrier.part.type.slides, start=carrier.state):
+            if state in unknown:
+                motions.append(ChainMotion(slide, before.z, before.o))
     if len(motions) != len(unknown):
         return None
     first, second = (
-        places.on_link(link, frame) for link, frame in zip(ends, constraint.frames, strict=True)
+        frames.on_link(link, frame) for link, frame in zip(ends, constraint.frames, strict=True)
     )
     distance = None if constraint.length is None else constraint.length / layout.length
     return Chain(closing.joint, tuple(motions), first, second, distance)
 
 
-def _is_other(layout: Layout, edge: int, freedom: int) -> bool:
-    """Whether a freedom is that of a ball or a thread."""
-    kind = layout.carriers[layout.carrier_of(edge, freedom)[0]].part.type
-    return kind.is_ball or kind.is_thread
-
-
 def _path(layout: Layout, body: int) -> list[int]:
     """The kernel's joints from a body to ground."""
-    found = []
+    path = []
     while body >= 0:
-        found.append(body)
+        path.append(body)
         body = layout.carriers[body].parent
-    return found
-
-
-def _motions(carrier: Carrier, unknown: set[int], before: Frame) -> list[ChainMotion]:
-    return [
-        ChainMotion(slide, before.z, before.o)
-        for local, slide in enumerate(carrier.part.type.slides)
-        if carrier.state + local in unknown
-    ]
+    return path
 
 
 class _ChainFrames:
@@ -109,40 +115,26 @@ class _ChainFrames:
         self._bodies: dict[int, Frame] = {-1: GROUND}
 
     def body(self, number: int) -> Frame:
-        """The frame of a body."""
         if number not in self._bodies:
             carrier = self.layout.carriers[number]
             moved = _displacement(self.layout, carrier, self.states)
-            self._bodies[number] = carried(self.before(number), moved)
+            self._bodies[number] = self.before(number).carry(moved)
         return self._bodies[number]
 
     def before(self, number: int) -> Frame:
         """The frame on the parent about which a body moves."""
         carrier = self.layout.carriers[number]
         inner = self.layout.frame_on(carrier.parent, carrier.part.before)
-        return carried(self.body(carrier.parent), _frame(inner))
+        return self.body(carrier.parent).carry(_frame(inner))
 
     def on_link(self, link: str, frame: Frame) -> Frame:
-        """A frame drawn on a link."""
         number = self.layout.link_number[link]
-        return carried(self.body(number), _frame(self.layout.frame_on(number, frame)))
+        return self.body(number).carry(_frame(self.layout.frame_on(number, frame)))
 
 
 def _frame(numbers: list[float]) -> Frame:
     x, y, z, o = ((numbers[i], numbers[i + 1], numbers[i + 2]) for i in range(0, len(numbers), 3))
     return Frame(x, y, z, o)
-
-
-def carried(outer: Frame, inner: Frame) -> Frame:
-    """A frame given in another one's axes, in the axes that one is given in."""
-    (a, b, c), (d, e, f), (g, h, i), _ = outer
-
-    def turned(v: Vector) -> Vector:
-        x, y, z = v
-        return (x * a + y * d + z * g, x * b + y * e + z * h, x * c + y * f + z * i)
-
-    place = add(outer.o, turned(inner.o))
-    return Frame(turned(inner.x), turned(inner.y), turned(inner.z), place)
 
 
 def _displacement(layout: Layout, carrier: Carrier, states: list[float]) -> Frame:
@@ -173,28 +165,11 @@ def square_to(axis: Vector, vector: Vector) -> Vector:
     return add(vector, scale(-dot(axis, vector), axis))
 
 
-def are_parallel(a: Vector, b: Vector, limit: float) -> bool:
-    """Whether two unit vectors are parallel but for `limit`."""
+def are_parallel(a: Vector, b: Vector) -> bool:
+    """Whether two unit vectors are parallel to `tolerances.PARALLEL`."""
     c = cross(a, b)
-    return dot(c, c) < limit * limit
+    return dot(c, c) < tolerances.PARALLEL * tolerances.PARALLEL
 
-
-# Proven numbers of assemblies of a loop at fixed inputs, by its pairs alone.
-#
-# What is left of a loop when its inputs are fixed closes in six freedoms: turns R, slides P, and at
-# most one sphere S (C is R P, U is R R, E is P P R, Sp is S P P, Sg is S P; a driven freedom is
-# gone). The order does not matter. The bounds hold where the assemblies are isolated.
-#
-# - one S and three others (Pieper 1968): the centre's curve on one link, a line or a circle, meets
-#   its surface on the other. Line and plane 1; with one turn circle and plane, or line and quadric,
-#   2; with two circle and quadric, or line and torus, 4; circle and torus 4, since four of their
-#   eight intersections lie on the circle at infinity.
-# - no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16.
-#
-# - a distance and one other freedom: circle or line and sphere, 2. A body at six distances: 40
-#   (Ronga, Vust 1995).
-#
-# Loops that are planar or spherical as they are drawn have less (`loop_count`).
 
 WITH_SPHERE = {0: 1, 1: 2, 2: 4, 3: 4}
 """Bound by the number of turns beside the sphere."""
@@ -210,25 +185,24 @@ AT_SIX_DISTANCES = 40
 def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
     if all(graph.closings[c].constraint.length is not None for c in block.closings):
-        return _of_distances(graph, block)
+        return _bound_of_distances(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
         return None
     freedoms = list(graph.closings[block.closings[0]].joint.type.chain)
     for number, freedom in block.unknowns:
         freedoms.append(graph.edges[number].joint.type.chain[freedom])
-    found = Counter(freedom.motion for freedom in freedoms)
-    turns, slides, spheres = found["turn"], found["slide"], found["ball"] // 3
+    count = Counter(freedom.motion for freedom in freedoms)
+    turns, slides, spheres = count["turn"], count["slide"], count["ball"] // 3
     if len(freedoms) != 6 or turns + slides + 3 * spheres != 6:
         return None
     return (WITHOUT_SPHERE, WITH_SPHERE)[spheres].get(turns) if spheres <= 1 else None
 
 
-def _of_distances(graph: SolverGraph, block: Block) -> int | None:
+def _bound_of_distances(graph: SolverGraph, block: Block) -> int | None:
     joints = [graph.edges[number].joint for number, _ in block.unknowns]
     alone = len(joints) == len(block.closings) == 1
     if alone and [f.motion for f in joints[0].type.chain] in (["turn"], ["slide"]):
         return 2
-    held = {joint.name for joint in joints}
-    if len(block.closings) == 6 and len(held) == 1 and joints[0].type.is_free:
-        return AT_SIX_DISTANCES
-    return None
+    one_joint = len({joint.name for joint in joints}) == 1
+    six = len(block.closings) == 6 and one_joint and joints[0].type.is_free
+    return AT_SIX_DISTANCES if six else None

@@ -1,4 +1,7 @@
-"""Which end points of a search are the same assembly, and how many may still be unknown."""
+"""Which end points of a search are the same assembly, and how many may still be unknown.
+
+`Clusters` sorts end points; `pose_keys`, `same_poses` and their kin compare poses.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +20,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.show import Bools, Floats
 
-
-if TYPE_CHECKING:
     Isolated = Callable[[Floats], tuple[Floats, Bools, Floats, int]]
     """From end points (columns) to the points closed as well as possible, which of them are
     isolated assemblies, their conditions, and how many are assemblies but not isolated."""
@@ -58,7 +59,7 @@ class Clusters:
 
     @property
     def number(self) -> int:
-        """Number of assemblies."""
+        """Of assemblies."""
         return int(self.met.size)
 
     def add(self, states: Floats, isolated: Isolated) -> None:
@@ -66,8 +67,8 @@ class Clusters:
         are not known yet as `isolated` leaves them."""
         keys = pose_keys(self.layout, states, self.carriers)
         unknown = self._left(keys)
-        given = states[:, unknown]
-        ended, good, condition, free = isolated(given)
+        fresh = states[:, unknown]
+        ended, good, condition, free = isolated(fresh)
         if self.folds:
             singular = _near_singular(condition)
             free += int(np.count_nonzero(good & singular))
@@ -77,7 +78,7 @@ class Clusters:
         order = self.closed + np.cumsum(closing)
         self.closed += int(np.count_nonzero(closing))
         self.free += free
-        moved = ended is not given
+        moved = ended is not fresh
         keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
         self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
         if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
@@ -86,7 +87,7 @@ class Clusters:
     def _take(
         self, states: Floats, keys: Floats, order: NDArray[np.int64], condition: Floats
     ) -> None:
-        """Takes in those that are still not known, each after those of them that it is."""
+        """Takes in those that are still not known, each once."""
         rest = self._left(keys, condition)
         chosen, met = [], []
         while rest.size:
@@ -110,7 +111,7 @@ class Clusters:
         that of middle condition, neither the farthest off nor one that has no tangent."""
         assert self.keys is not None
         left = np.flatnonzero(_near_singular(self.condition))
-        kept = np.ones(self.number, dtype=bool)
+        keep = np.ones(self.number, dtype=bool)
         folds: list[int] = []
         left = left[np.argsort(self.condition[left], kind="stable")]
         while left.size:
@@ -120,27 +121,26 @@ class Clusters:
             own = left[same]
             middle = own[own.size // 2]
             self.met[middle] = int(np.add.reduce(self.met[own]))
-            kept[own] = own == middle
+            keep[own] = own == middle
             folds.append(int(middle))
             left = left[~same]
         if len(folds) > tolerances.SEARCH_MOST_FOLDS:
             self._free_singular()
             return
         self.is_fold[folds] = True
-        self._keep(kept)
+        self._select(keep)
 
-    def _keep(self, kept: Bools) -> None:
+    def _select(self, keep: Bools) -> None:
         assert self.keys is not None
-        self.states, self.keys = self.states[:, kept], self.keys[:, kept]
-        self.met, self.condition = self.met[kept], self.condition[kept]
-        self.is_fold = self.is_fold[kept]
+        self.states, self.keys = self.states[:, keep], self.keys[:, keep]
+        self.met, self.condition = self.met[keep], self.condition[keep]
+        self.is_fold = self.is_fold[keep]
 
     def _free_singular(self) -> None:
         """Leaves out those that are near singular; the wait for a new one begins again."""
-        assert self.keys is not None
-        kept = ~_near_singular(self.condition)
-        left_out = int(np.add.reduce(self.met[~kept]))
-        self._keep(kept)
+        keep = ~_near_singular(self.condition)
+        left_out = int(np.add.reduce(self.met[~keep]))
+        self._select(keep)
         self.closed = max(self.closed - left_out, self.number)
         self.newest, self.free, self.folds = self.closed, self.free + left_out, True
 
@@ -169,18 +169,18 @@ class Clusters:
         waited = self.closed - self.newest if self.closed else self.tried
         if not waited:
             return 1.0
-        ways = max(self.number * (self.number + 1), 1)
-        return min(1.0, float(functions.log(ways / doubt)) / waited)
+        pairs = max(self.number * (self.number + 1), 1)
+        return min(1.0, float(functions.log(pairs / doubt)) / waited)
 
 
 def _near_singular(condition: Floats) -> Bools:
-    found: Bools = ~(condition < tolerances.CONDITION_NEAR_SINGULAR)
-    return found
+    singular: Bools = ~(condition < tolerances.CONDITION_NEAR_SINGULAR)
+    return singular
 
 
 def _scatter(known: Floats, others: Floats) -> Floats:
     """By how much poses on one fold may differ, of some conditions (known, others): these go as the
-    inverse of the distance from it, which tells a fold from a motion that hardly ends."""
+    inverse of the distance from it, unlike along a motion that hardly ends."""
     apart: Floats = tolerances.FOLD_CONDITION * (1.0 / known[:, None] + 1.0 / others[None, :])
     return apart
 
@@ -191,24 +191,30 @@ def pose_keys(
     carriers: Sequence[Carrier] | None = None,
     left_out: Collection[tuple[int, int]] = (),
 ) -> Floats:
-    """What tells assemblies apart: cosines and sines of turns, slides, products of quaternions, of
-    some of the kernel's joints (None: all).
+    """Numbers (keys, columns) that differ between assemblies: cosines and sines of turns, slides,
+    products of quaternions, of some of the kernel's joints (None: all).
 
     `left_out` are freedoms (tree edge, number) that do not matter.
     """
-    kept = [
+    used = [
         carrier
         for carrier in (layout.carriers if carriers is None else carriers)
         if (carrier.edge, carrier.first_freedom) not in left_out
     ]
-    told = _told_poses(layout, kept)
-    turns = _cosines_and_sines(states, kept)
+    triples = _turn_triples(layout, used)
+    turns = _cosines_and_sines(states, used)
     keys: list[Floats] = []
-    for turn in told:
-        keys.extend(_rotation_keys(states, turn))
-    for carrier in kept:
+    for triple in triples:
+        (cz, sz), (cy, sy), (cx, sx) = (
+            (functions.cos(states[n]), functions.sin(states[n])) for n in triple
+        )
+        # the rotation about z, y and x, one after the other
+        keys += [cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx]
+        keys += [sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx]
+        keys += [-sy, cy * sx, cy * cx]
+    for carrier in used:
         state = carrier.state
-        if any(state in turn for turn in told):
+        if any(state in triple for triple in triples):
             continue
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
@@ -219,32 +225,20 @@ def pose_keys(
     return np.array(keys) if keys else np.zeros((0, states.shape[1]))
 
 
-def _told_poses(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]]:
-    """States of three turns rz, ry, rx that tell an orientation: two sets of them tell the same."""
-    found: dict[int, list[int]] = {}
+def _turn_triples(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]]:
+    """States of three turns rz, ry, rx that make an orientation: two triples make the same one."""
+    triples: dict[int, list[int]] = {}
     for carrier in sorted(carriers, key=lambda carrier: carrier.first_freedom):
         turns = any(freedom.is_cyclic for freedom in carrier.part.type.freedoms)
         if turns and layout.graph.edges[carrier.edge].joint.type.is_free:
-            found.setdefault(carrier.edge, []).append(carrier.state)
-    return [turns for turns in found.values() if len(turns) == 3]
-
-
-def _rotation_keys(states: Floats, turns: Sequence[int]) -> list[Floats]:
-    """Entries of the rotation that turns about z, y and x make, one after the other."""
-    (cz, sz), (cy, sy), (cx, sx) = (
-        (functions.cos(states[n]), functions.sin(states[n])) for n in turns
-    )
-    return [
-        *(cz * cy, cz * sy * sx - sz * cx, cz * sy * cx + sz * sx),
-        *(sz * cy, sz * sy * sx + cz * cx, sz * sy * cx - cz * sx),
-        *(-sy, cy * sx, cy * cx),
-    ]
+            triples.setdefault(carrier.edge, []).append(carrier.state)
+    return [turns for turns in triples.values() if len(turns) == 3]
 
 
 def _cosines_and_sines(
     states: Floats, carriers: Sequence[Carrier]
 ) -> dict[int, tuple[Floats, Floats]]:
-    """Of the turns of some joints, by state; all in one call."""
+    """Of the turns of some joints, by state."""
     cyclic = [
         number
         for carrier in carriers
@@ -266,10 +260,19 @@ def same_poses(
         near = np.abs(known[:, :, None] - keys[:, None, :]) < limit
         few: NDArray[np.bool_] = np.logical_and.reduce(near, axis=0)
         return few
-    found = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
+    same = np.ones((known.shape[1], keys.shape[1]), dtype=bool)
     for one, other in zip(known, keys, strict=True):
-        found &= np.abs(one[:, None] - other[None, :]) < limit
-    return found
+        same &= np.abs(one[:, None] - other[None, :]) < limit
+    return same
+
+
+def pose_number(
+    layout: Layout, states: Floats, state: Floats, limit: float = tolerances.SAME_MODE
+) -> int | None:
+    """Which of some assemblies (states, number) a state (states,) is; None if none of them."""
+    keys = pose_keys(layout, states), pose_keys(layout, state[:, None])
+    same = same_poses(*keys, limit)[:, 0]
+    return int(np.argmax(same)) if same.any() else None
 
 
 def first_of_each(keys: Floats) -> NDArray[np.int64]:

@@ -1,14 +1,27 @@
-"""The one equation to which a small loop is reduced, each of its roots one assembly.
+"""The proven number of assemblies of a small loop: its equation, and the number of its roots.
 
-- A sphere and three motions: `sphere_loop`.
+Roots: the real roots of a trigonometric polynomial of low degree,
+
+    g(q) = a0 + a1 cos q + b1 sin q + a2 cos 2q + b2 sin 2q,
+
+are counted by splitting the circle into intervals until Taylor's formula about each middle shows
+that g has no root there, or that g' has none (then the signs at the ends decide). What errors of
+the coefficients leave open stays undecided. A polynomial in a length is one in tan(q/2).
+
+Equations, each of their roots one assembly:
+
+- A sphere and three other motions x1 x2 x3 (Pieper 1968). x2 carries the place y of the sphere
+  after x3 to the place w before x1. A turn keeps its height along the axis and its distance from a
+  point of the axis, a slide two heights: two equations affine in (cos, sin) of x1 and of x3, or in
+  (s, s^2). Solved for those of x1, cos^2 + sin^2 = 1, or s^2 = s s, is of fourth degree in x3.
 - A distance and one motion: the distance of two points, of second degree.
-- Two motions in a plane and a turn square to it at the closing joint: the first keeps the distance
-  of that joint's point from its axis, or line; of second degree.
-- Two parallel turns and a slide square to them at the closing joint: the sum of the turns is given,
-  so that the offset from the slide's line is of first degree in (cos, sin) of one of them.
-- A turn through the centre of two crossed axes at the closing joint (Hooke): their angle.
-- Two turns and a turn at the closing joint, axes through one point, or with slides along every axis
-  (RCCC): the direction of the closing axis, R(t1) R(t2) z2 = z1, hence z_t1 . R(t2) z2 =
+- Two motions in a plane and a turn square to it at the cut joint: the first keeps the distance of
+  that joint's point from its axis, or line; of second degree.
+- Two parallel turns and a slide square to them at the cut joint: the sum of the turns is known, so
+  that the offset from the slide's line is of first degree in (cos, sin) of one of them.
+- A turn through the centre of two crossed axes at the cut joint (Hooke): their angle.
+- Two turns and a turn at the cut joint, axes through one point, or with slides along every axis
+  (RCCC): the direction of the cut joint's axis, R(t1) R(t2) z2 = z1, hence z_t1 . R(t2) z2 =
   z_t1 . z1, of first degree in (cos, sin).
 """
 
@@ -21,7 +34,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
-from mechkin_cli.mechanism import Vector, add, cross, dot, norm, scale, subtract, unit
+from mechkin_cli.mechanism import Vector, cross, dot, norm, scale, subtract, unit
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import (
     WITH_SPHERE,
@@ -33,18 +46,9 @@ from mechkin_cli.search.chain import (
 )
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Frame
     from mechkin_cli.plan import Layout
     from mechkin_cli.show import Floats
 
-
-# How many real roots a trigonometric polynomial of low degree has, proven.
-#
-#     g(q) = a0 + a1 cos q + b1 sin q + a2 cos 2q + b2 sin 2q
-#
-# The circle is split into intervals until Taylor's formula about each middle shows that g has no
-# root there, or that g' has none (then the signs at the ends decide). What errors of the
-# coefficients leave open stays undecided. A polynomial in a length is one in tan(q/2).
 
 FIRST_INTERVALS = 16
 """Intervals to begin with: eight to each of the most roots would settle most of them at once."""
@@ -132,8 +136,8 @@ def count_polynomial_roots(
         high = power // 2 if degree > 2 else 0
         term = parts[high].times(parts[power - high]) if degree > 2 else parts[power]
         g = g.plus(term, c)
-    found = count_roots(g, error)
-    return None if found is None else found - degree % 2
+    count = count_roots(g, error)
+    return None if count is None else count - degree % 2
 
 
 def _at(g: Trigonometric, angles: Floats) -> tuple[Floats, Floats]:
@@ -145,27 +149,16 @@ def _at(g: Trigonometric, angles: Floats) -> tuple[Floats, Floats]:
     return value, slope
 
 
-# The polynomial of a loop of a sphere and three other motions x1 x2 x3 (Pieper 1968).
-#
-# x2 carries the place y of the sphere after x3 to the place w before x1. A turn keeps its height
-# along the axis and its distance from a point of the axis, a slide two heights: two equations
-# affine in (cos, sin) of x1 and of x3, or in (s, s^2). Solved for those of x1, cos^2 + sin^2 = 1,
-# or s^2 = s s, is of fourth degree in x3.
-
 Row = tuple[float, float, float]
 """Coefficients of 1, f1, f2: f = (cos, sin) of a turn, (s, s^2) of a slide."""
 
 
-class Reduced(NamedTuple):
-    """The polynomial (in a slide: its coefficients, lowest power first), how regular its derivation
-    was (0 to 1), the most assemblies."""
-
-    polynomial: Trigonometric | tuple[float, ...] | None
-    regularity: float
-    most: int
+Equation = tuple[Trigonometric | tuple[float, ...] | None, float, int]
+"""The polynomial of a loop (in a slide: its coefficients, lowest power first), how regular its
+derivation was (0 to 1), and the most assemblies."""
 
 
-def with_sphere(motions: tuple[ChainMotion, ...], chain: Chain) -> Reduced | None:
+def _with_sphere(motions: tuple[ChainMotion, ...], chain: Chain) -> Equation | None:
     """The equation of three motions between the sphere's places on the chain's ends."""
     if len(motions) != 3:
         return None
@@ -173,24 +166,19 @@ def with_sphere(motions: tuple[ChainMotion, ...], chain: Chain) -> Reduced | Non
     most = WITH_SPHERE[sum(not x.slide for x in motions)]
     before, after = _invariants(x2, x1, chain.first.o), _invariants(x2, x3, chain.second.o)
     options = [(x3, after, x1, before), (x1, before, x3, after)]
-    keep = max(options, key=lambda option: _regularity(option[3]))
-    regularity = _regularity(keep[3])
-    return Reduced(_eliminated(*keep) if regularity > 0.0 else None, regularity, most)
+    best = max(options, key=lambda option: _regularity(option[3]))
+    regularity = _regularity(best[3])
+    return _eliminated(*best) if regularity > 0.0 else None, regularity, most
 
 
 def _invariants(middle: ChainMotion, x: ChainMotion, point: Vector) -> tuple[Row, Row]:
     """What the middle motion keeps of a point moved by x."""
     if middle.slide:
-        one = _square_direction(middle.axis)
-        other = cross(middle.axis, one)
-        return heights(x, point, one), heights(x, point, other)
-    return heights(x, point, middle.axis), squares(x, point, middle.point)
-
-
-def _square_direction(axis: Vector) -> Vector:
-    smallest = min(range(3), key=lambda i: abs(axis[i]))
-    ground = (float(smallest == 0), float(smallest == 1), float(smallest == 2))
-    return unit(square_to(axis, ground))
+        smallest = min(range(3), key=lambda i: abs(middle.axis[i]))
+        ground = (float(smallest == 0), float(smallest == 1), float(smallest == 2))
+        one = unit(square_to(middle.axis, ground))
+        return _heights(x, point, one), _heights(x, point, cross(middle.axis, one))
+    return _heights(x, point, middle.axis), _squares(x, point, middle.point)
 
 
 def _moved(x: ChainMotion, point: Vector) -> tuple[Vector, Vector, Vector]:
@@ -201,13 +189,13 @@ def _moved(x: ChainMotion, point: Vector) -> tuple[Vector, Vector, Vector]:
     return subtract(point, arm), arm, cross(x.axis, arm)
 
 
-def heights(x: ChainMotion, point: Vector, direction: Vector) -> Row:
+def _heights(x: ChainMotion, point: Vector, direction: Vector) -> Row:
     """The height along a direction of a point moved by x."""
     y0, y1, y2 = _moved(x, point)
     return dot(direction, y0), dot(direction, y1), dot(direction, y2)
 
 
-def squares(x: ChainMotion, point: Vector, centre: Vector) -> Row:
+def _squares(x: ChainMotion, point: Vector, centre: Vector) -> Row:
     """The squared distance of the place from `centre`."""
     y0, y1, y2 = _moved(x, point)
     away = subtract(y0, centre)
@@ -228,17 +216,17 @@ def _regularity(rows: tuple[Row, Row]) -> float:
 
 
 def _eliminated(
-    kept: ChainMotion, known: tuple[Row, Row], solved: ChainMotion, unknown: tuple[Row, Row]
+    left: ChainMotion, known: tuple[Row, Row], solved: ChainMotion, unknown: tuple[Row, Row]
 ) -> Trigonometric | tuple[float, ...]:
-    """The constraint between f1 and f2 of the motion solved for, in the motion kept: 1 = f1^2 +
-    f2^2 of a turn, f2 = f1^2 of a slide."""
+    """The constraint between f1 and f2 of the motion solved for, in the one that is left: 1 = f1^2
+    + f2^2 of a turn, f2 = f1^2 of a slide."""
     determinant = _determinant(unknown)
     (e, a, b), (f, c, d) = unknown
     p = (known[0][0] - e, *known[0][1:])
     q = (known[1][0] - f, *known[1][1:])
     f1 = [(d * x - b * y) / determinant for x, y in zip(p, q, strict=True)]
     f2 = [(a * y - c * x) / determinant for x, y in zip(p, q, strict=True)]
-    if kept.slide:
+    if left.slide:
         first, second = _product(f1, f1), _product(f2, f2)
         if solved.slide:
             return tuple(x - y for x, y in zip(first, (*f2, 0.0, 0.0), strict=True))
@@ -252,11 +240,11 @@ def _eliminated(
 
 def _product(p: list[float], q: list[float]) -> tuple[float, ...]:
     """Coefficients of the product of two polynomials of second degree."""
-    found = [0.0] * 5
+    product = [0.0] * 5
     for i, x in enumerate(p):
         for j, y in enumerate(q):
-            found[i + j] += x * y
-    return tuple(found)
+            product[i + j] += x * y
+    return tuple(product)
 
 
 MOST_OF_A_PLANE_LOOP = 2
@@ -266,14 +254,22 @@ MOST_BY_DIRECTION = 2
 """Two roots of the direction's equation."""
 
 
-def reduced(chain: Chain) -> Reduced | None:
+def _equation_of(chain: Chain) -> Equation | None:
     """The equation of a chain; None for loops of other kinds."""
     if chain.distance is not None:
-        return _of_distance(chain)
+        # |x p - a|^2 = distance^2
+        if len(chain.motions) != 1:
+            return None
+        (x,) = chain.motions
+        constant, first, second = _squares(x, chain.second.o, chain.first.o)
+        row = (constant - chain.distance * chain.distance, first, second)
+        return row if x.slide else Trigonometric(*row), 1.0, 2
     motions = [freedom.motion for freedom in chain.joint.type.chain]
     if motions[:3] == ["ball"] * 3:
-        slides = _slides(chain, len(motions) - 3)
-        return with_sphere((*chain.motions, *slides), chain)
+        frame = chain.second
+        axes = {0: (), 1: (frame.z,), 2: (frame.x, frame.y)}[len(motions) - 3]
+        slides = (ChainMotion(True, axis, frame.o) for axis in axes)
+        return _with_sphere((*chain.motions, *slides), chain)
     if motions == ["turn"] and len(chain.motions) == 2 and _is_planar(chain):
         return _in_plane(chain)
     if motions == ["turn"] and len(chain.motions) == 2 and _is_spherical(chain):
@@ -287,38 +283,21 @@ def reduced(chain: Chain) -> Reduced | None:
     return None
 
 
-def _slides(chain: Chain, count: int) -> tuple[ChainMotion, ...]:
-    """The closing joint's slides beside its sphere."""
-    frame = chain.second
-    axes = {0: (), 1: (frame.z,), 2: (frame.x, frame.y)}[count]
-    return tuple(ChainMotion(True, axis, frame.o) for axis in axes)
-
-
-def _of_distance(chain: Chain) -> Reduced | None:
-    """|x p - a|^2 = distance^2."""
-    if len(chain.motions) != 1 or chain.distance is None:
-        return None
-    (x,) = chain.motions
-    constant, first, second = squares(x, chain.second.o, chain.first.o)
-    row = (constant - chain.distance * chain.distance, first, second)
-    return Reduced(row if x.slide else Trigonometric(*row), 1.0, 2)
-
-
 def _is_planar(chain: Chain) -> bool:
-    """Whether all turns are about, and all slides square to, the closing joint's axis, and its two
+    """Whether all turns are about, and all slides square to, the cut joint's axis, and its two
     halves lie in one plane."""
     normal, limit = chain.first.z, tolerances.PARALLEL
-    if dot(normal, chain.second.z) < 0.0 or not are_parallel(normal, chain.second.z, limit):
+    if dot(normal, chain.second.z) < 0.0 or not are_parallel(normal, chain.second.z):
         return False
     if abs(dot(normal, subtract(chain.first.o, chain.second.o))) > limit:
         return False
     if any(x.slide and abs(dot(x.axis, normal)) > limit for x in chain.motions):
         return False
-    return all(x.slide or are_parallel(x.axis, normal, limit) for x in chain.motions)
+    return all(x.slide or are_parallel(x.axis, normal) for x in chain.motions)
 
 
 def _is_spherical(chain: Chain) -> bool:
-    """Whether the turns' axes and both halves of the closing joint meet in one point."""
+    """Whether the turns' axes and both halves of the cut joint meet in one point."""
     if any(x.slide for x in chain.motions):
         return False
     one, other = chain.motions
@@ -329,34 +308,30 @@ def _is_spherical(chain: Chain) -> bool:
     between = subtract(other.point, one.point)
     along = dot(cross(between, other.axis), across) / square
     centre = subtract(one.point, scale(-along, one.axis))
-    limit = tolerances.PARALLEL
+    first, second = chain.first, chain.second
     heights = []
-    for axis, point in (
-        (other.axis, other.point),
-        (chain.first.z, chain.first.o),
-        (chain.second.z, chain.second.o),
-    ):
+    for axis, point in ((other.axis, other.point), (first.z, first.o), (second.z, second.o)):
         arm = subtract(point, centre)
         heights.append(dot(arm, axis))
-        if norm(square_to(axis, arm)) > limit:
+        if norm(square_to(axis, arm)) > tolerances.PARALLEL:
             return False
-    return abs(heights[1] - heights[2]) < limit
+    return abs(heights[1] - heights[2]) < tolerances.PARALLEL
 
 
-def _in_plane(chain: Chain) -> Reduced:
-    """The first motion keeps the distance from its axis, or from its line, of the closing point."""
+def _in_plane(chain: Chain) -> Equation:
+    """The first motion keeps the cut joint's point at its distance from the axis, or the line."""
     x1, x2 = chain.motions
     if x1.slide:
         across = cross(chain.first.z, x1.axis)
-        constant, *turned = heights(x2, chain.second.o, across)
+        constant, *turned = _heights(x2, chain.second.o, across)
         constant -= dot(across, chain.first.o)
     else:
-        constant, *turned = squares(x2, chain.second.o, x1.point)
+        constant, *turned = _squares(x2, chain.second.o, x1.point)
         arm = subtract(chain.first.o, x1.point)
         constant -= dot(arm, arm)
     row = (constant, turned[0], turned[1])
     regularity = 1.0 if x1.slide or x2.slide else min(norm(_between(x1, x2)), 1.0)
-    return Reduced(row if x2.slide else Trigonometric(*row), regularity, MOST_OF_A_PLANE_LOOP)
+    return row if x2.slide else Trigonometric(*row), regularity, MOST_OF_A_PLANE_LOOP
 
 
 def _between(x1: ChainMotion, x2: ChainMotion) -> Vector:
@@ -364,8 +339,8 @@ def _between(x1: ChainMotion, x2: ChainMotion) -> Vector:
     return square_to(x1.axis, subtract(x2.point, x1.point))
 
 
-def _directed(chain: Chain) -> Reduced | None:
-    """By the direction of the closing axis."""
+def _directed(chain: Chain) -> Equation | None:
+    """By the direction of the cut joint's axis."""
     turns = [x for x in chain.motions if not x.slide]
     if len(turns) != 2:
         return None
@@ -374,41 +349,36 @@ def _directed(chain: Chain) -> Reduced | None:
     still = dot(other.axis, chain.second.z) * dot(one.axis, other.axis)
     constant = still - dot(one.axis, chain.first.z)
     turned = dot(one.axis, arm), dot(one.axis, cross(other.axis, arm))
-    # sines of the angles between axes: of parallel ones nothing can be told
+    # sines of the angles between axes: parallel ones decide nothing
     sines = arm, square_to(one.axis, chain.first.z), square_to(one.axis, other.axis)
     regularity = min(norm(sine) for sine in sines)
-    return Reduced(Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION)
+    return Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION
 
 
-def _sliding(chain: Chain) -> Reduced | None:
-    """By the offset from the closing slide's line, in a plane."""
+def _sliding(chain: Chain) -> Equation | None:
+    """By the offset from the line of the cut joint's slide, in a plane."""
     if len(chain.motions) != 2 or any(x.slide for x in chain.motions):
         return None
     (one, other), limit = chain.motions, tolerances.PARALLEL
     normal, first, second = one.axis, chain.first, chain.second
     tilt = subtract(first.components(normal), second.components(normal))
     heights = dot(normal, first.z), dot(normal, subtract(first.o, second.o))
-    if not are_parallel(normal, other.axis, limit) or norm(tilt) > limit:
+    if not are_parallel(normal, other.axis) or norm(tilt) > limit:
         return None
     if max(abs(height) for height in heights) > limit:
         return None
     # the second link's orientation is known: where its point is from the other turn's axis
-    arm = _frame_vector(first, second.components(subtract(second.o, other.point)))
+    arm = first.vector(second.components(subtract(second.o, other.point)))
     between = _between(one, other)
     across = cross(normal, first.z)
     constant = dot(across, arm) + dot(across, subtract(one.point, first.o))
     turned = dot(across, between), dot(across, cross(normal, between))
     regularity = min(norm(between), 1.0)
-    return Reduced(Trigonometric(constant, *turned), regularity, MOST_OF_A_PLANE_LOOP)
+    return Trigonometric(constant, *turned), regularity, MOST_OF_A_PLANE_LOOP
 
 
-def _frame_vector(frame: Frame, components: Vector) -> Vector:
-    x, y, z = components
-    return add(add(scale(x, frame.x), scale(y, frame.y)), scale(z, frame.z))
-
-
-def _crossed(chain: Chain) -> Reduced | None:
-    """By the angle between the two axes of the closing joint, about its centre."""
+def _crossed(chain: Chain) -> Equation | None:
+    """By the angle between the two axes of the cut joint, about its centre."""
     if len(chain.motions) != 1 or chain.motions[0].slide:
         return None
     (x,), limit = chain.motions, tolerances.PARALLEL
@@ -422,39 +392,22 @@ def _crossed(chain: Chain) -> Reduced | None:
     constant = still - dot(joint.on_first.z, joint.on_second.z)
     turned = dot(chain.first.z, arm), dot(chain.first.z, cross(x.axis, arm))
     regularity = min(norm(arm), norm(square_to(x.axis, chain.first.z)))
-    return Reduced(Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION)
+    return Trigonometric(constant, *turned), regularity, MOST_BY_DIRECTION
 
 
-# The proven number of assemblies of a small loop at given upstream states.
-#
-# The loop is reduced to one polynomial (`loop_polynomial`), whose real roots are counted
-# (`real_roots`).
-
-
-class Count(NamedTuple):
-    """A loop's number of assemblies at its upstream states, None where rounding leaves it open, and
-    the most that such a loop has."""
-
-    real: int | None
-    most: int
-
-
-def state_error(number: int) -> float:
-    """The error of the upstream states of a block: inputs are given, unknowns are found."""
-    return tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
-
-
-def count_assemblies(layout: Layout, number: int, base: Floats, error: float) -> Count | None:
-    """The count of a block, upstream states as in `base` (states,) but for `error`; None for loops
-    of other kinds."""
+def count_assemblies(layout: Layout, number: int, base: Floats) -> tuple[int | None, int] | None:
+    """A block's number of assemblies, upstream states as in `base` (states,), None where rounding
+    leaves it open, and the most that such a loop has; None for loops of other kinds."""
     chain = chain_of(layout, number, base)
-    found = None if chain is None else reduced(chain)
-    if found is None:
+    equation = None if chain is None else _equation_of(chain)
+    if equation is None:
         return None
-    polynomial, regularity, most = found
+    polynomial, regularity, most = equation
     if polynomial is None or regularity < tolerances.ROOT_REGULAR:
-        return Count(None, most)
+        return None, most
+    # the upstream states of the first block are inputs, those of others are solved for
+    error = tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
     doubt = error / (regularity * regularity)
     if isinstance(polynomial, Trigonometric):
-        return Count(count_roots(polynomial, doubt), most)
-    return Count(count_polynomial_roots(polynomial, doubt), most)
+        return count_roots(polynomial, doubt), most
+    return count_polynomial_roots(polynomial, doubt), most

@@ -1,7 +1,10 @@
-"""All ways of assembling a mechanism at given inputs that random starts find.
+"""All assemblies of a mechanism at some inputs that random starts find, block by block.
 
-Block by block (`block_search`): a block is searched once for each place of the blocks that its
-loops hang from, and blocks that do not depend on each other multiply their assemblies.
+A block is searched once for each *place* of the blocks that its loops hang from, and blocks that do
+not depend on each other multiply their assemblies. The search of a block is Levenberg-Marquardt
+from random starts (fixed seed); the starts of all places share the kernel's calls. A place's search
+ends when all assemblies are proven to be found (`loop_equation`, `chain`), or when the chance that
+one more start finds another is small.
 """
 
 from __future__ import annotations
@@ -16,16 +19,11 @@ from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.search import starts
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import Clusters, first_of_each, pose_keys
-from mechkin_cli.search.starts import (
-    Within,
-    most_turn,
-    randomise,
-    thread_states,
-    unknown_states,
-    upstream_states,
-)
+from mechkin_cli.search.loop_equation import count_assemblies
+from mechkin_cli.search.starts import Within
 from mechkin_cli.session import Ask, RowInputs, Session, Structure, run
 from mechkin_cli.structure import RandomStarts
 
@@ -33,20 +31,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.search.loop_equation import Count
     from mechkin_cli.show import Bools, Floats
 
 
-# The search of one block's assemblies: Levenberg-Marquardt from random starts (fixed seed).
-#
-# A block is searched once for each *place* of the blocks before it, as far as its own loops depend
-# on them; the starts of all places share the kernel's calls. A place's search ends when all
-# assemblies are proven to be found (`loop_count`, `block_bounds`), or when the chance that one more
-# start finds another is small.
-
-
 class BlockSearch(NamedTuple):
-    """What is searched: at `inputs` (inputs,), threads within `turns` to either side of those in
+    """A search at `inputs` (inputs,), threads within `turns` to either side of those in
     `middle` (states,), starts `within` a box; `thorough`: for all assemblies, else for one."""
 
     layout: Layout
@@ -79,20 +68,20 @@ class PlaceSearch:
         self.thorough = thorough
         self.real: int | None = None
 
-    def learn(self, count: Count | None) -> None:
-        """Takes the loop's own number of assemblies."""
+    def learn(self, count: tuple[int | None, int] | None) -> None:
+        """Takes the loop's number of assemblies and the most it may have (`count_assemblies`)."""
         if count is not None:
-            self.real = count.real
-            self.most = count.most if self.most is None else min(count.most, self.most)
+            self.real, most = count
+            self.most = most if self.most is None else min(most, self.most)
 
     @property
     def is_complete(self) -> bool:
         """Whether all assemblies are proven to be found."""
-        found = self.clusters.number
+        number = self.clusters.number
         if self.real is not None:
-            return found == self.real
-        # a motion that is left ends everywhere, but nowhere twice
-        return found == self.most and int(self.clusters.met.min()) > 1
+            return number == self.real
+        # starts on a motion end all along it, but nowhere twice
+        return number == self.most and int(self.clusters.met.min()) > 1
 
     @property
     def rest(self) -> float:
@@ -134,25 +123,26 @@ def search_block(
             states = np.repeat(bases[:, places], share, axis=1)
             search_round(request, number, states, generator, [searches[i] for i in places])
         if not tried and request.within is None:
-            # a box has a part of them, whose number nothing tells
-            _count(request, number, bases, searches)
+            # a box holds some of them, and their number is not known
+            for i, search in enumerate(searches):
+                if not search.is_complete:
+                    search.learn(count_assemblies(request.layout, number, bases[:, i]))
         active = [i for i in active if not searches[i].is_over]
-        if _is_hopeless(searches):
-            break
+        clusters = [search.clusters for search in searches]
+        if any(c.closed + c.free for c in clusters):
+            continue
+        if sum(c.tried for c in clusters) >= searches[0].limits[0]:
+            break  # as many starts as one place alone would have, and none closed
     return searches
-
-
-def _is_hopeless(searches: list[PlaceSearch]) -> bool:
-    """Whether not one start of any place closed, of as many as one place alone would have."""
-    all_clusters = [search.clusters for search in searches]
-    tried = sum(clusters.tried for clusters in all_clusters)
-    return tried >= searches[0].limits[0] and not any(c.closed + c.free for c in all_clusters)
 
 
 def _searches(request: BlockSearch, number: int, doubts: list[float]) -> list[PlaceSearch]:
     layout = request.layout
     block, places = layout.graph.blocks[number], len(doubts)
-    work = tolerances.SEARCH_ITERATIONS * _work(block.equations, len(block.unknowns))
+    equations, unknowns = block.equations, len(block.unknowns)
+    # multiplications of one step of a start, about: normal equations, their solution, screws
+    step = unknowns * (unknowns * equations + unknowns * unknowns / 3.0 + 100.0)
+    work = tolerances.SEARCH_ITERATIONS * step
     none = min(tolerances.SEARCH_HOPELESS_WORK / work, tolerances.SEARCH_HOPELESS_STARTS)
     none = max(none, tolerances.SEARCH_LEAST_HOPELESS_STARTS)
     most: float = tolerances.SEARCH_MOST_QUICK_STARTS
@@ -172,20 +162,6 @@ def _searches(request: BlockSearch, number: int, doubts: list[float]) -> list[Pl
     ]
 
 
-def _work(equations: int, unknowns: int) -> float:
-    """Multiplications of one step of a start, about: normal equations, their solution, screws."""
-    return unknowns * (unknowns * equations + unknowns * unknowns / 3.0 + 100.0)
-
-
-def _count(request: BlockSearch, number: int, bases: Floats, searches: list[PlaceSearch]) -> None:
-    from mechkin_cli.search.loop_equation import count_assemblies, state_error
-
-    error = state_error(number)
-    for i, search in enumerate(searches):
-        if not search.is_complete:
-            search.learn(count_assemblies(request.layout, number, bases[:, i], error))
-
-
 def search_round(
     request: BlockSearch,
     number: int,
@@ -195,11 +171,11 @@ def search_round(
 ) -> None:
     """The same number of starts from each place, columns of `states`, place by place."""
     layout, middle = request.layout, request.middle
-    randomise(layout, number, states, generator, request.turns, middle, request.within)
+    starts.randomise(layout, number, states, generator, request.turns, middle, request.within)
     values = np.repeat(request.inputs[:, None], states.shape[1], axis=1)
     residual, closed = ends(request.plan, number, values, states)
-    threads = thread_states(layout, number)
-    turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
+    threads = starts.thread_states(layout, number)
+    turned = np.abs(states[threads] - middle[threads, None]) <= starts.most_turn(request.turns)
     good = closed & turned.all(axis=0)
     share = states.shape[1] // len(searches)
     for i, search in enumerate(searches):
@@ -255,13 +231,13 @@ class Assemblies(NamedTuple):
 
     `closed` starts of `starts` ended on an assembly; `chance` bounds the chance that one more that
     closes finds a new one (it may fail with `SEARCH_DOUBT`); where none of a block's starts closed,
-    that one more does. `complete` says that there is none, proven by `bound`, the most that such
-    loops have, or by a count of the loops' own real roots. `closest` is the least closing residual
-    of any start of the last block searched; `stopped` tells that the search ended at its most
-    starts. `free` starts ended where the loops still move with the inputs held, or in a singular
-    place: these are no isolated assemblies and are left out. `failed` is the first block of which
-    none of `tried` starts closed, at none of the `places` of the blocks before. `cut`: blocks
-    have more assemblies together than are listed; those nearest to the drawing are.
+    that one more does. `complete`: proven that there is none, by `bound`, the most that such loops
+    have, or by a count of the loops' own real roots. `closest` is the least closing residual of any
+    start of the last block searched; `stopped`: the search ended at its most starts. `free` starts
+    ended where the loops still move with the inputs held, or in a singular place: these are no
+    isolated assemblies and are left out. `failed` is the first block of which none of `tried`
+    starts closed, at none of the `places` of the blocks before. `cut`: blocks have more assemblies
+    together than are listed; those nearest to the drawing are.
     """
 
     states: Floats
@@ -282,7 +258,7 @@ class Assemblies(NamedTuple):
 
     @property
     def number(self) -> int:
-        """Number of assemblies."""
+        """Of assemblies."""
         return int(self.states.shape[1])
 
 
@@ -299,25 +275,23 @@ class _Tally:
         self.tried = self.places = 0
 
     def doubts(self, count: int) -> list[float]:
-        """Shares of `SEARCH_DOUBT` for the next searches; those of all together are all of it."""
+        """Shares of `SEARCH_DOUBT` for the next searches; all of them add up to it."""
         first = self.searches + 1
         self.searches += count
         return [tolerances.SEARCH_DOUBT / (s * (s + 1)) for s in range(first, first + count)]
 
     def cut(self) -> int:
-        """Notes that not all assemblies so far are continued; how many to continue instead, where
-        the next block is to be searched at each."""
+        """Records that not all assemblies so far are continued; gives how many to continue where
+        the next block is searched at each."""
         self.stopped, self.complete = True, False
         self.most_places = tolerances.SEARCH_FEW_PLACES
         return self.most_places
 
     @property
     def is_cut(self) -> bool:
-        """Whether not all were continued."""
         return self.most_places == tolerances.SEARCH_FEW_PLACES
 
     def add(self, number: int, searches: list[PlaceSearch]) -> None:
-        """Takes in a block's searches."""
         all_clusters = [search.clusters for search in searches]
         self.starts += sum(clusters.tried for clusters in all_clusters)
         self.closed += sum(clusters.closed for clusters in all_clusters)
@@ -333,7 +307,6 @@ class _Tally:
             self.complete = proven and not self.is_cut
 
     def multiply(self, bounds: list[int | None]) -> None:
-        """Takes in bounds of blocks, None where none is known."""
         for bound in bounds:
             self.bound = None if self.bound is None or bound is None else self.bound * bound
 
@@ -361,9 +334,9 @@ def assemblies(
     generator, tally = RandomStarts(), _Tally()
     middle = np.zeros(plan.states) if about is None else about
     request = BlockSearch(layout, plan, inputs, turns, middle, within, thorough)
-    partial = _unknown_zero(layout, inputs)
+    partial = _first_place(layout, inputs)
     for number in range(len(layout.graph.blocks)):
-        upstream = upstream_states(layout, number)
+        upstream = starts.upstream_states(layout, number)
         firsts, place = _different(partial[upstream])
         if len(firsts) > tally.most_places:
             partial = partial[:, _nearest_home(layout, partial, tally.cut())]
@@ -406,10 +379,10 @@ def assemblies(
     )
 
 
-def _unknown_zero(layout: Layout, inputs: Floats) -> Floats:
-    """The one place before the first block: inputs as given, unknowns zero, (states, 1)."""
+def _first_place(layout: Layout, inputs: Floats) -> Floats:
+    """The one place before the first block: the inputs, unknowns zero, (states, 1)."""
     state = np.zeros((layout.states, 1))
-    state[_quaternion_scalars(layout), 0] = 1.0
+    state[[c.state for c in layout.carriers if c.part.type.is_ball], 0] = 1.0
     for (edge, freedom), value in zip(layout.graph.inputs, inputs, strict=True):
         if edge >= 0:
             state[layout.state(edge, freedom), 0] = value
@@ -444,10 +417,10 @@ def _continued(
     layout: Layout, number: int, partial: Floats, place: list[int], searches: list[PlaceSearch]
 ) -> Floats:
     """Every assembly so far with each of the block's own there."""
-    own = unknown_states(layout, number)
-    found = [searches[k].clusters for k in place]
-    states = np.repeat(partial, [clusters.number for clusters in found], axis=1)
-    states[own] = np.concatenate([clusters.states[own] for clusters in found], axis=1)
+    own = starts.unknown_states(layout, number)
+    of_places = [searches[k].clusters for k in place]
+    states = np.repeat(partial, [clusters.number for clusters in of_places], axis=1)
+    states[own] = np.concatenate([clusters.states[own] for clusters in of_places], axis=1)
     return states
 
 
@@ -456,12 +429,8 @@ def single_assembly(layout: Layout, plan: Plan, inputs: Floats, state: Floats) -
     values, states = np.ascontiguousarray(inputs[:, None]), state[:, None].copy()
     for number in range(len(layout.graph.blocks)):
         ends(plan, number, values, states)
-    found: Floats = states[:, 0].copy()
-    return found
-
-
-def _quaternion_scalars(layout: Layout) -> list[int]:
-    return [carrier.state for carrier in layout.carriers if carrier.part.type.is_ball]
+    end: Floats = states[:, 0].copy()
+    return end
 
 
 def with_assemblies(
@@ -488,25 +457,20 @@ def _closed(
         batch = run(plan, RowInputs(values, states), Ask(Demand.CONDITION, iterations=0))
     assert batch.condition is not None
     keep = batch.good & (batch.condition < tolerances.SEARCH_CONDITION)
-    states, residual, condition = (
-        batch.states[:, keep],
-        batch.residual[keep],
-        batch.condition[keep],
-    )
-    wrap_angles(layout, states)
+    states = batch.states[:, keep]
+    _wrap_angles(layout, states)
     chosen = first_of_each(pose_keys(layout, states))
-    return states[:, chosen], residual[chosen], condition[chosen]
+    return states[:, chosen], batch.residual[keep][chosen], batch.condition[keep][chosen]
 
 
-def wrap_angles(layout: Layout, states: Floats) -> None:
+def _wrap_angles(layout: Layout, states: Floats) -> None:
     """Brings the angles of unknown turns into (-pi, pi], in place; threads keep their turns."""
     driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
     for carrier in layout.carriers:
         for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state):
             if freedom.is_cyclic and number not in driven:
                 row = states[number]
-                turns = np.ceil((row - pi) / (2.0 * pi))
-                row -= turns * (2.0 * pi)
+                row -= np.ceil((row - pi) / (2.0 * pi)) * (2.0 * pi)
 
 
 def all_assemblies(
@@ -526,12 +490,11 @@ def all_assemblies(
 def _everywhere(
     structure: Structure, inputs: Floats, turns: int, about: Floats, thorough: bool
 ) -> Assemblies:
-    """All assemblies of a structure, threads within `turns` to either side of `about` (states,)."""
     return assemblies(structure.layout, structure.plan, inputs, turns, None, about, thorough)
 
 
 def _named_turns(session: Session) -> Floats:
-    """States (states,): the turns of threads that the assembly's `near` names, else zero."""
+    """(states,): the turns of threads that the assembly's `near` names, else zero."""
     states: Floats = np.zeros(session.layout.states)
     for name, value in session.problem.assembly.near.items():
         owner, _, coordinate = name.rpartition(".")

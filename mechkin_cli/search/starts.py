@@ -1,4 +1,9 @@
-"""Where the random starts of a block are taken, and which states it has and depends on."""
+"""The states of a block, its random starts, and whether a short search can prove its assemblies.
+
+It can where a block's real solutions are counted (`loop_equation`), or where it finds as many as
+such a block has at most (`chain`). Of loops that are not counted those with a large bound reach it
+for exceptional dimensions alone, and a search that does not is wasted.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,7 @@ from typing import TYPE_CHECKING
 from mechkin_cli import tolerances
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
+from mechkin_cli.search.loop_equation import count_assemblies
 
 if TYPE_CHECKING:
     from mechkin_cli.plan import Layout
@@ -35,7 +41,7 @@ def most_turn(turns: int) -> float:
 
 
 def unknown_states(layout: Layout, number: int) -> list[int]:
-    """States that a block's unknowns are, each once."""
+    """The states of a block's unknowns, each once."""
     states: dict[int, None] = {}
     for edge, freedom in layout.graph.blocks[number].unknowns:
         k, local = layout.carrier_of(edge, freedom)
@@ -48,7 +54,7 @@ def unknown_states(layout: Layout, number: int) -> list[int]:
 
 
 def upstream_states(layout: Layout, number: int) -> list[int]:
-    """States of other blocks that a block's loops depend on: of the joints on their ways."""
+    """States of other blocks on which a block's loops depend: of the joints on their paths."""
     graph = layout.graph
     loops = (graph.closings[c].loop for c in graph.blocks[number].closings)
     edges = {edge for loop in loops for edge, _ in loop}
@@ -74,8 +80,8 @@ def randomise(
     middle: Floats,
     within: Within | None = None,
 ) -> None:
-    """Fills the unknown states of a block with random starts, threads about `middle`; where a box
-    bounds them, from there."""
+    """Fills the unknown states of a block with random starts, threads about `middle`; those that a
+    box bounds lie in it."""
     rows = states.shape[1]
     reach = tolerances.SEARCH_SLIDES * layout.mechanism.box_diagonal() / layout.length
     for edge, freedom in layout.graph.blocks[number].unknowns:
@@ -95,45 +101,24 @@ def randomise(
             states[state] = generator.between(half, rows)
             if thread:
                 states[state] += middle[state]
-    if within is not None:
-        _bring_within(layout, number, states, generator, within)
-
-
-def _bring_within(
-    layout: Layout, number: int, states: Floats, generator: RandomStarts, within: Within
-) -> None:
-    """Takes the starts of a block from a box, where it is bounded."""
+    if within is None:
+        return
     for edge, freedom in layout.graph.blocks[number].unknowns:
         k, local = layout.carrier_of(edge, freedom)
         state = layout.carriers[k].state + local
         radius = float(within.radius[state])
         if isfinite(radius):
-            states[state] = within.centre[state] + generator.between(radius, states.shape[1])
-
-
-# Whether a short search can prove that it knows all assemblies.
-#
-# It does where a block's real solutions are counted (`loop_count`), or where it finds as many as
-# such a block has at most (`block_bounds`). Of loops that are not counted those with a large bound
-# reach it in exceptional dimensions alone, and a search that does not is spent for nothing.
+            states[state] = within.centre[state] + generator.between(radius, rows)
 
 
 def is_in_reach(layout: Layout, state: Floats) -> bool:
     """Whether a short search may prove the number of assemblies at the inputs of one of them,
     `state` (states,)."""
-    blocks = range(len(layout.graph.blocks))
-    return all(_is_small(layout, number) or _is_counted(layout, number, state) for number in blocks)
-
-
-def _is_small(layout: Layout, number: int) -> bool:
-    most = most_of_block(layout.graph, layout.graph.blocks[number])
-    return most is not None and most <= tolerances.SEARCH_REACHED_BOUND
-
-
-def _is_counted(layout: Layout, number: int, state: Floats) -> bool:
-    from mechkin_cli.search.loop_equation import count_assemblies, state_error
-
-    count = count_assemblies(layout, number, state, state_error(number))
-    if count is None:
-        return False
-    return count.real is not None or count.most <= tolerances.SEARCH_REACHED_BOUND
+    for number, block in enumerate(layout.graph.blocks):
+        most = most_of_block(layout.graph, block)
+        if most is not None and most <= tolerances.SEARCH_REACHED_BOUND:
+            continue
+        count = count_assemblies(layout, number, state)
+        if count is None or (count[0] is None and count[1] > tolerances.SEARCH_REACHED_BOUND):
+            return False
+    return True

@@ -40,7 +40,7 @@ import mechkin_cli as mk
 from benchmarks import sevenr
 from mechkin_cli.bench.measurement import in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
-from mechkin_cli.response.integration import MotionRows, MotionStart, integrate
+from mechkin_cli.response.integration import MotionRows, integrate
 from mechkin_cli.response.runs import Prepared, prepare, read, rows_of
 from mechkin_cli.session.kernel_run import Ask, RowInputs
 from mechkin_cli.session.session import Packing, Session
@@ -177,9 +177,8 @@ class Case:
         one = self.prepared
         assert one.begun is not None
         begun, times = one.begun, one.response.moments.values
-        start = MotionStart(one.free.plan, begun.state, begun.first, begun.tangents)
         return integrate(
-            [start] * starts,
+            [(one.free.plan, begun)] * starts,
             float(times[0]),
             times,
             tolerance=tolerance,

@@ -21,7 +21,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2]))
 import mechkin_cli as mk
 from benchmarks import sevenr, train
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
-from mechkin_cli.proofs.enclose import Given, Positions, enclose
+from mechkin_cli.proofs.enclose import EnclosedInputs, Positions, enclose
 from mechkin_cli.proofs.rows import certify
 
 REPETITIONS = 30
@@ -47,7 +47,7 @@ def tell(name: str, model: mk.Model) -> None:
     nodes = Nodes.of(session, session.inputs.values, session.inputs.reduced, states)
     enclosed = session.once("enclosed", lambda: Enclosed.of(session))
     rows = least_time(lambda: prove_boxes(enclosed, nodes))
-    given, whole = Given.of(session), result.row_states.turns
+    given, whole = EnclosedInputs.of(session), result.row_states.turns
     quantities = model.problem.quantities().values()
     wanted = [q for q in quantities if q.kind == "coordinate" and q.order in (1, 2)]
 

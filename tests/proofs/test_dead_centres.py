@@ -233,7 +233,7 @@ def test_dead_centres_on_both_sides_of_a_gap_are_not_the_same(gap: str) -> None:
     """Found on both sides of the gap of one mechanism."""
     case = near_change_point(gap)
     ways = ("values: [0, -3]", "values: [-3, 0]")
-    folds = [end._found.fold for way in ways for end in ends(case.swept(way))]
+    folds = [end._proof.fold for way in ways for end in ends(case.swept(way))]
     one = next(fold for fold in folds if fold and fold.value > -np.pi / 2)
     other = next(fold for fold in folds if fold and fold.value < -np.pi / 2)
     inputs, state = np.array([other.value]), other.node.states[:, 0]

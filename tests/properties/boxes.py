@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.proofs.enclose import Given, Positions
+from mechkin_cli.proofs.enclose import EnclosedInputs, Positions
 
 
-def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:
+def boxes_of(session: Any, given: EnclosedInputs, states: np.ndarray) -> Positions:
     """Of the session's rows with their inputs and states (states, rows)."""
     constants = session.precise.enclosed_constants(session)
     plan = session.plan.with_constants(np.ascontiguousarray(constants[:, 0]))
@@ -22,7 +22,7 @@ def boxes_of(session: Any, given: Given, states: np.ndarray) -> Positions:
     return boxes._replace(radius=np.ascontiguousarray(radius))
 
 
-def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.ndarray:
+def _radius(boxes: Positions, given: EnclosedInputs, row: int, unknown: list[int]) -> np.ndarray:
     """Radii (columns,) of a box with exactly one solution; fails where none is found."""
     point = np.zeros(boxes.plan.columns)
     equations, derivatives = evaluated(boxes, given, row, point)
@@ -44,7 +44,7 @@ def _radius(boxes: Positions, given: Given, row: int, unknown: list[int]) -> np.
 
 
 def evaluated(
-    boxes: Positions, given: Given, row: int, radius: np.ndarray
+    boxes: Positions, given: EnclosedInputs, row: int, radius: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Equations (equations, 3) and derivatives (equations, columns, 3) over a row's box."""
     count = boxes.plan.equations

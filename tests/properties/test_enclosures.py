@@ -14,7 +14,7 @@ from properties.expected import expected
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.derived import DERIVED_KINDS
-from mechkin_cli.proofs.enclose import Enclosure, Given, enclose
+from mechkin_cli.proofs.enclose import EnclosedInputs, Enclosure, enclose
 
 DIGITS = mp.mpf(10) ** -40
 """What the oracle may be off."""
@@ -30,7 +30,7 @@ def enclosures(text: str) -> tuple[Any, dict[str, Enclosure]]:
     result = model.analyze([q.name for q in wanted], tables=[]).result
     session = result.session
     rows = result.row_states
-    given = Given.of(session)
+    given = EnclosedInputs.of(session)
     found = enclose(
         session, boxes_of(session, given, rows.states), given, wanted, turned=rows.turns
     )
