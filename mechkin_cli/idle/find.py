@@ -304,7 +304,7 @@ def advance_of(screw: Screw) -> Vector:
 # the other, few links first. A group's motions are those that no smaller group has: in S-E-C with
 # the axes in line the two links in between turn, each on its own, and that both turn together says
 # nothing more. This is a matter of the rates of all joints at one place, so motions are kept at
-# each general place (common_motions.py), and reduced by those that were found before.
+# each general place, and reduced by those that were found before.
 
 Coordinate = tuple[str, str]
 """A joint and its coordinate."""

@@ -3,7 +3,7 @@
 In a component whose screws have order d, every link has d freedoms against the component's entry,
 and a joint of f freedoms has d - f equations between its links, one more for every input; a leg has
 one. The Dulmage-Mendelsohn parts of that system are the Assur groups, whatever tree is laid
-through them later (Assur 1914; for the matching Shai 2010). Regions of lower order (regions.py)
+through them later (Assur 1914; for the matching Shai 2010). Regions of lower order (`network.py`)
 have their own count: `d_r` freedoms a link beside the pose of the region's frame.
 
 What the screws as drawn leave undetermined is counted once more with all freedoms of a link: a
@@ -11,7 +11,7 @@ drawing can be special, and the dimensions of an overconstrained loop decide lat
 enough, all that hangs together is one group; what is undetermined even then is not driven.
 
 Where there are more equations than freedoms, all this only proposes groups: ranks decide
-(determined.py).
+(`rank.py`).
 """
 
 from __future__ import annotations
