@@ -5,7 +5,7 @@ kinds in this file. A kind says
 
 - between which links it stands, for which joints, and by whose name it goes (`first`, `second`,
   `joints`, `joint`);
-- its equations: how many, by which entry of the kernel (`kernel/src/pairs.hpp`: residual, columns
+- its equations: how many, by which entry of the kernel (`kernel/core/joints/pairs.hpp`: residual, columns
   of the Jacobian, right sides for velocity, acceleration and jerk), on which frames and with which
   numbers of the drawing (`equations`, `code`, `frames`, `parameter`, `length`);
 - what its multipliers are: the wrench on its second link, read off at `joint`; without coordinates,
@@ -376,7 +376,7 @@ class Spin:
     """The idle turn of the links of a distance about the line of its spheres.
 
     Their pose is the shortest turn from the drawing, and their rate about the line is zero
-    (kernel/src/legs.hpp).
+    (kernel/core/joints/legs.hpp).
     """
 
     distance: DistanceConstraint

@@ -11,7 +11,7 @@ drawing can be special, and the dimensions of an overconstrained loop decide lat
 enough, all that hangs together is one group; what is undetermined even then is not driven.
 
 Where there are more equations than freedoms, all this only proposes groups: ranks decide
-(determined.py).
+(`rank.py`).
 """
 
 from __future__ import annotations

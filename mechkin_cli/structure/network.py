@@ -354,8 +354,7 @@ def _scaled(screw: Screw, length: float) -> list[float]:
 # Links of a plane linkage in space have three freedoms against each other, not six, and each of its
 # joints that many equations less; likewise about a point, without turning, in Bennett's loop. Where
 # such a region is only a part of a component, its links share the pose of its frame (the plane),
-# and have the freedoms of its order beside it. The order is that of the screws as drawn
-# (loop_rank.py).
+# and have the freedoms of its order beside it. The order is that of the screws as drawn.
 
 SPACE = 6
 """Freedoms of a body in space."""

@@ -117,9 +117,9 @@ def test_the_prose_has_the_numbers_that_were_printed(done) -> None:
     rms, peak = (found[word]["torque"] / 1000.0 for word in ("rms", "peak"))
     mean, most = (found[word]["power"] / 1000.0 for word in ("mean", "peak"))
     said = [
-        f"gives {rms:.1f} N*m for as long",
-        f"and {peak:.1f} N*m for moments",
-        f"to a watt, is {mean:.0f} W on the average and {most:.0f} W at most",
+        f"delivers {rms:.1f} N*m continuously",
+        f"and {peak:.1f} N*m briefly",
+        f"to the watt, is {mean:.0f} W on average and {most:.0f} W at most",
         f"1500 rpm, {rms / 9.0:.2f} N*m and {peak / 9.0:.2f} N*m",
     ]
     plain = " ".join(TUTORIAL.split())
@@ -127,4 +127,4 @@ def test_the_prose_has_the_numbers_that_were_printed(done) -> None:
     shown = next(out for step, out in done[1] if "bearings.summary" in step.commands)
     guide = re.search(r"^peak,.*,([\d.]+)$", shown, re.MULTILINE)
     assert guide is not None
-    assert f"carries {float(guide[1]):.0f} N across" in plain
+    assert f"carries a side load of {float(guide[1]):.0f} N" in plain
