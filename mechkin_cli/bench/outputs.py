@@ -78,11 +78,8 @@ CURVES = (
 """In the order of the legend."""
 
 
-class FigurePanel(NamedTuple):
-    """A mechanism's name and what was measured of it."""
-
-    name: str
-    measurements: Sequence[Measurement]
+Panel = tuple[str, "Sequence[Measurement]"]
+"""A mechanism's name and what was measured of it."""
 
 
 class Axis(NamedTuple):
@@ -100,9 +97,9 @@ class Axis(NamedTuple):
         return self.first + share * (self.last - self.first)
 
 
-def svg(panels: Sequence[FigurePanel]) -> str:
+def svg(panels: Sequence[Panel]) -> str:
     """The figure as one file."""
-    points = [m for panel in panels for m in panel.measurements if _is_shown(m)]
+    points = [m for _, measured in panels for m in measured if _is_shown(m)]
     if not points:
         return _page(320.0, 60.0, [_text(16.0, 34.0, "nothing to show", "head")], ())
     times = [log10(m.microseconds) for m in points]
@@ -140,9 +137,10 @@ def svg(panels: Sequence[FigurePanel]) -> str:
 
 
 def _panel(
-    panel: FigurePanel, x: Axis, y: Axis, used: Iterable[FigureCurve], *, labelled: bool
+    panel: Panel, x: Axis, y: Axis, used: Iterable[FigureCurve], *, labelled: bool
 ) -> list[str]:
-    parts = [_text(x.first, y.last - 7.0, panel.name, "title")]
+    name, measured = panel
+    parts = [_text(x.first, y.last - 7.0, name, "title")]
     for exponent in range(int(y.low), int(y.high) + 1):
         at = y.at(exponent)
         parts.append(f'<path class="grid" d="M{x.first:.1f} {at:.1f}H{x.last:.1f}"/>')
@@ -156,12 +154,12 @@ def _panel(
     size = f'width="{x.last - x.first:.1f}" height="{y.first - y.last:.1f}"'
     parts.append(f'<rect class="frame" x="{x.first:.1f}" y="{y.last:.1f}" {size}/>')
     for curve in used:
-        own = [m for m in panel.measurements if m.curve == curve.name and _is_shown(m)]
+        own = [m for m in measured if m.curve == curve.name and _is_shown(m)]
         places = [(x.at(log10(m.position or 1.0)), y.at(log10(m.microseconds))) for m in own]
         mark = CURVES.index(curve)
         if len(places) > 1:
-            way = "L".join(f"{a:.1f} {b:.1f}" for a, b in places)
-            parts.append(f'<path class="c{mark}" d="M{way}"/>')
+            line = "L".join(f"{a:.1f} {b:.1f}" for a, b in places)
+            parts.append(f'<path class="c{mark}" d="M{line}"/>')
         parts += [f'<circle class="p{mark}" cx="{a:.1f}" cy="{b:.1f}" r="3"/>' for a, b in places]
     return parts
 
@@ -278,23 +276,6 @@ def summary(table: ReportTable) -> str:
     )
 
 
-def responses_summary(tables: Iterable[ReportTable]) -> list[str]:
-    """Of each response, how many times the fastest other method takes at no smaller error."""
-    least: dict[str, float] = {}
-    for row in (row for table in tables if table.name == "responses" for row in table.rows):
-        case, ratio = str(row["case"]), row["ratio"]
-        if not str(row["method"]).startswith(FAMILY) and isinstance(ratio, float):
-            least[case] = min(ratio, least.get(case, ratio))
-    said = ", ".join(f"{case} {cell_text(ratio, 'time')}" for case, ratio in least.items())
-    if not said:
-        return []
-    return [
-        "",
-        "Responses against the fastest other method whose error is no larger: "
-        f"{said} times as fast.",
-    ]
-
-
 def _best(bench: Bench, level: str) -> list[dict[str, Cell]]:
     own = {m.curve: m for m in bench.measurements if m.family == FAMILY and m.setting == level}
     others = [m for m in bench.measurements if m.family != FAMILY and m.level == level]
@@ -356,7 +337,6 @@ def page(
         f"![time per position against error]({figure})",
         "",
         summary(best),
-        *responses_summary(tables),
         "",
         markdown(best),
     ]
@@ -381,7 +361,7 @@ def record(
 
 def figure(benches: Sequence[Bench]) -> str:
     """The figure of a run."""
-    return svg([FigurePanel(bench.scene.name, bench.measurements) for bench in benches])
+    return svg([(bench.scene.name, bench.measurements) for bench in benches])
 
 
 def write(

@@ -185,8 +185,3 @@ def markdown(table: ReportTable) -> str:
 
 def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
-
-
-def rows_of(values: Iterable[Mapping[str, Cell]]) -> list[dict[str, Cell]]:
-    """Rows of a table as plain dictionaries."""
-    return [dict(row) for row in values]

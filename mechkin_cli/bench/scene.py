@@ -7,13 +7,10 @@ their velocities and accelerations), `everything` (with efforts and joint reacti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +20,7 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import find_legs
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import RESIDUAL_TESTS, Ask, Batch, Packing, Session
-from mechkin_cli.sweep import analyze, at_once
+from mechkin_cli.sweep import analyze, at_once, follow_rows
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -148,8 +145,6 @@ class BenchScene:
     @cached_property
     def followed(self) -> Floats:
         """As a guess, what following the branch fills in between its nodes (states, rows)."""
-        from mechkin_cli.sweep import follow_rows
-
         rows = follow_rows(self.session, self.result.start, every_row=False)
         found: Floats = np.ascontiguousarray(rows.states[:, self.places])
         return found
@@ -251,29 +246,6 @@ class BenchScene:
         spinning = {link for leg in find_legs(mechanism) for link in leg.links}
         fixed = {"ground", *spinning}
         return {name: at for name, at in mechanism.points.items() if at.link not in fixed}
-
-
-class Subject(NamedTuple):
-    """A scene with its file, or the text of one that is known."""
-
-    scene: BenchScene
-    source: Path | str
-
-    @property
-    def name(self) -> str:
-        """As tables show it."""
-        return self.scene.name
-
-    @contextmanager
-    def on_disk(self) -> Iterator[Path]:
-        """The file, as long as it is needed."""
-        if isinstance(self.source, Path):
-            yield self.source.resolve()
-            return
-        with TemporaryDirectory(prefix="mechkin-bench-") as folder:
-            file = Path(folder) / "mechanism.yaml"
-            file.write_text(self.source, encoding="utf-8")
-            yield file
 
 
 def _unknown_coordinates(session: Session) -> list[str]:

@@ -247,10 +247,10 @@ def stress_table(found: Sequence[Outcome]) -> ReportTable:
     return ReportTable("verdicts", "What became of hard mechanisms' rows", columns, rows, faults)
 
 
-def stress(heard: Callable[[str], None]) -> list[Outcome]:
-    """Runs the set; `heard` is told the family that is at work."""
-    found: list[Outcome] = []
+def judge_hard_mechanisms(progress: Callable[[str], None]) -> list[Outcome]:
+    """Runs the set; `progress` is called with the family of each mechanism before it runs."""
+    judged: list[Outcome] = []
     for known in kept():
-        heard(known["family"])
-        found += outcomes([known])
-    return found
+        progress(known["family"])
+        judged += outcomes([known])
+    return judged
