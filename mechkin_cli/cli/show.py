@@ -299,7 +299,7 @@ def errors_line(analysis: Analysis) -> str:
     for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
         lost = sum(c.lost for c in errors.columns if c.lost_why == why)
         parts.append(f"{counted_cells(lost)} not measured ({why})")
-    there = sum(int(np.count_nonzero(c.stands_there)) for c in errors.columns)
+    there = sum(int(np.count_nonzero(c.at_dead_centre)) for c in errors.columns)
     parts += [f"{counted_cells(there)} without a figure ({AT_DEAD_CENTRE})"] if there else []
     return "; ".join(parts)
 

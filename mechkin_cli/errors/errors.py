@@ -228,7 +228,7 @@ class Errors(Listed):
         lost = self.repeated.lost_why or LOST
         found = column_errors(table, column.label, column.unit, values, true, doubt, lost)
         there = self._analysis.result.status == Status.dead_centre
-        return replace(found, there=there) if there.any() else found
+        return replace(found, dead_centres=there) if there.any() else found
 
 
 def _values(column: TableColumn) -> Any:

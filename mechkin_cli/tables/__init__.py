@@ -11,12 +11,15 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.tables.columns import (
+        Columns as Columns,
         FloatArray as FloatArray,
+        RunParameter as RunParameter,
         TableColumn as TableColumn,
         Words as Words,
         column_of as column_of,
         column_of_numbers as column_of_numbers,
         component_text as component_text,
+        evaluate as evaluate,
         row_words as row_words,
         run_parameter as run_parameter,
         solved_rows as solved_rows,
@@ -51,19 +54,26 @@ if TYPE_CHECKING:
         LOST as LOST,
         ZERO as ZERO,
         ColumnErrors as ColumnErrors,
+        cells_table as cells_table,
         clashing as clashing,
         column_errors as column_errors,
         counted_cells as counted_cells,
         least_digits as least_digits,
         not_repeated as not_repeated,
         worst_column as worst_column,
+        worst_table as worst_table,
     )
     from mechkin_cli.tables.files import (
         Claim as Claim,
         OutputFolder as OutputFolder,
         write_files as write_files,
     )
-    from mechkin_cli.tables.json import json_text as json_text, runs_record as runs_record
+    from mechkin_cli.tables.json import (
+        json_bytes as json_bytes,
+        json_text as json_text,
+        runs_record as runs_record,
+    )
+    from mechkin_cli.tables.latex import latex_bytes as latex_bytes
     from mechkin_cli.tables.layout import (
         ROW_NUMBERS as ROW_NUMBERS,
         ROW_PROOF as ROW_PROOF,
@@ -84,7 +94,6 @@ if TYPE_CHECKING:
         rows_table as rows_table,
     )
     from mechkin_cli.tables.print import read_table_text as read_table_text
-    from mechkin_cli.tables.results import Results as Results
     from mechkin_cli.tables.summary import (
         OVER_THE_WAY as OVER_THE_WAY,
         REDUCTIONS as REDUCTIONS,
@@ -97,16 +106,13 @@ if TYPE_CHECKING:
         row_weights as row_weights,
         statistics as statistics,
         summary_of as summary_of,
-        written_notes as written_notes,
-    )
-    from mechkin_cli.tables.table import (
-        Columns as Columns,
-        evaluate as evaluate,
         summary_table as summary_table,
+        written_notes as written_notes,
     )
     from mechkin_cli.tables.writers import (
         USUAL_FORMATS as USUAL_FORMATS,
         WRITERS as WRITERS,
+        Results as Results,
         written_files as written_files,
     )
 
@@ -114,12 +120,15 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": [
+            "Columns",
             "FloatArray",
+            "RunParameter",
             "TableColumn",
             "Words",
             "column_of",
             "column_of_numbers",
             "component_text",
+            "evaluate",
             "row_words",
             "run_parameter",
             "solved_rows",
@@ -149,15 +158,18 @@ __getattr__, __dir__ = lazy_names(
             "ColumnErrors",
             "LOST",
             "ZERO",
+            "cells_table",
             "clashing",
             "column_errors",
             "counted_cells",
             "least_digits",
             "not_repeated",
             "worst_column",
+            "worst_table",
         ],
         "files": ["Claim", "OutputFolder", "write_files"],
-        "json": ["json_text", "runs_record"],
+        "json": ["json_bytes", "json_text", "runs_record"],
+        "latex": ["latex_bytes"],
         "layout": [
             "CoefficientsLayout",
             "ColumnLayout",
@@ -175,7 +187,6 @@ __getattr__, __dir__ = lazy_names(
         ],
         "markdown": ["markdown_bytes", "rows_table"],
         "print": ["read_table_text"],
-        "results": ["Results"],
         "summary": [
             "Extreme",
             "OVER_THE_WAY",
@@ -188,9 +199,9 @@ __getattr__, __dir__ = lazy_names(
             "row_weights",
             "statistics",
             "summary_of",
+            "summary_table",
             "written_notes",
         ],
-        "table": ["Columns", "evaluate", "summary_table"],
-        "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],
+        "writers": ["USUAL_FORMATS", "WRITERS", "Results", "written_files"],
     },
 )

@@ -1,4 +1,4 @@
-"""What a page shows: runs, their branches, and what is read of an analysis."""
+"""What a page shows: runs, their branches, and what it reads of `model.Analysis`."""
 
 from __future__ import annotations
 
@@ -18,31 +18,25 @@ class Readable(Protocol):
     @property
     def run(self) -> str:
         """`sweep`, or the name of a response."""
-        ...
 
     @property
     def rows(self) -> int:
         """Number of rows."""
-        ...
 
     @property
     def result(self) -> Result:
         """States and verdicts of all rows."""
-        ...
 
     @property
     def tables(self) -> tuple[Columns, ...]:
         """The tables of the run, evaluated in the file's units."""
-        ...
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that the run has to say."""
-        ...
 
     def __getitem__(self, text: str) -> NDArray[Any]:
         """A quantity in the file's units, (rows,), or (rows, 3) of a vector."""
-        ...
 
 
 class ShownBranch(NamedTuple):

@@ -32,7 +32,7 @@ _OWN_NAMES = {HOME: "as drawn", NEAR: "as chosen"}
 
 
 def analyses_of(model: Model, run: str | None, mode: str | None) -> list[Analysis]:
-    """The runs of a model that are to be shown; None: all.
+    """The analysis of a run of a model; None: of all runs.
 
     Raises:
         InvalidFile: a run cannot be solved as it is driven.
@@ -140,7 +140,6 @@ def _other_modes(
 
 
 def _other_tables(analysis: Analysis, notes: list[Diagnostic]) -> tuple[Columns, ...]:
-    """The tables of dense systems and of balances."""
     try:
         return (*analysis.coefficients, *analysis.balance_tables)
     except UsageError as error:
@@ -158,6 +157,6 @@ def _left_out(runs: Sequence[ShownRun]) -> Iterator[Diagnostic]:
                 "note",
                 f"{run.name}: the page shows some of the rows, in even steps",
                 measured=f"{rows} rows",
-                limit=f"{own.rows} in curves and tables, {own.poses} poses, fewer of other modes",
+                limit=f"{own[0]} in curves and tables, {own[1]} poses, fewer of other modes",
                 hint="the files that mechkin analyze writes have all rows",
             )
