@@ -1,7 +1,7 @@
 """Rows along the inputs: followed, judged, explained.
 
-Hides dead centres, branch points, friction's iteration and unresolved columns. Every row leaves
-with a status and its residual; where a sweep ends, a message says why.
+Hides dead centres, branch points, friction's iteration and unresolved columns. Every row gets a
+status and its residual; where a sweep ends, a message says why.
 """
 
 from __future__ import annotations
@@ -10,8 +10,18 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.sweep.branch_end import passed_straight_on as passed_straight_on
-    from mechkin_cli.sweep.dead_centre import lost_rates as lost_rates
+    from mechkin_cli.sweep.branch_end import (
+        crossing_note as crossing_note,
+        explain_end as explain_end,
+        input_faults as input_faults,
+        passed_straight_on as passed_straight_on,
+    )
+    from mechkin_cli.sweep.dead_centre import (
+        judge_dead_centres as judge_dead_centres,
+        lost_rates as lost_rates,
+        put_unbounded as put_unbounded,
+    )
+    from mechkin_cli.sweep.follow_part import followed_session as followed_session
     from mechkin_cli.sweep.following import follow_rows as follow_rows
     from mechkin_cli.sweep.friction import unfounded_in_motion as unfounded_in_motion
     from mechkin_cli.sweep.messages import stands_elsewhere as stands_elsewhere
@@ -30,8 +40,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "branch_end": ["passed_straight_on"],
-        "dead_centre": ["lost_rates"],
+        "branch_end": ["crossing_note", "explain_end", "input_faults", "passed_straight_on"],
+        "dead_centre": ["judge_dead_centres", "lost_rates", "put_unbounded"],
+        "follow_part": ["followed_session"],
         "following": ["follow_rows"],
         "friction": ["unfounded_in_motion"],
         "messages": ["stands_elsewhere"],

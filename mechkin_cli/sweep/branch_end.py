@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import mobility, modes, tolerances
 from mechkin_cli.assembly import MAY_BE_RIGID
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
-from mechkin_cli.modes import Passage, Walker
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import (
     BranchFold,
@@ -70,7 +69,7 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
 
 
 def crossing_note(session: Session, followed: Followed) -> Diagnostic:
-    """The branch points that a way passed straight on."""
+    """The branch points that the rows passed straight on."""
     places = [
         input_numbers(session.problem, session.layout, crossing.inputs)
         for crossing in followed.crossings
@@ -105,13 +104,11 @@ def input_faults(session: Session) -> list[Diagnostic]:
     """What mobility says of inputs that are locked, dependent or too few, where by the count of
     their equations all loops would be driven.
 
-    To be asked where a run is stuck or its rank unclear from its first row on. At a branch point
-    ways of several kinds meet, and inputs that are locked on one drive another: then only freedoms
-    are named that are left undriven on all of them.
+    For runs that are stuck or whose rank is unclear from their first row on. At a branch point
+    motions of several kinds meet, and inputs that are locked on one drive another: then only
+    freedoms are named that are left undriven on all of them.
     """
-    from mechkin_cli.mobility import find_mobility, undriven_notes
-
-    found = find_mobility(session.problem, session)
+    found = mobility.find_mobility(session.problem, session)
     driven, idle, useful = session.problem.motion.driven, len(found.idle), found.useful
     codes = {"input-locked", "inputs-dependent", "undriven-freedom"}
     is_at_branch_point = found.first_order != found.mobility and not session.is_redundant
@@ -120,52 +117,47 @@ def input_faults(session: Session) -> list[Diagnostic]:
         codes = {"undriven-freedom"} if least > len(driven) + idle else set()
     elif useful and len(driven) > useful:
         # at the first row one of them may stand still by chance; together they cannot move
-        return [_too_many(driven, useful)]
-    notes = found.diagnostics if driven else undriven_notes(found.mobility or 0, idle, 0)
+        freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
+        return [
+            Diagnostic(
+                "inputs-dependent",
+                "error",
+                f"the inputs {', '.join(map('.'.join, driven))} are not independent",
+                measured=f"{len(driven)} inputs drive {freedoms}",
+                hint="drive fewer coordinates",
+            )
+        ]
+    notes = found.diagnostics if driven else mobility.undriven_notes(found.mobility or 0, idle, 0)
     return [note._replace(severity="error") for note in notes if note.code in codes]
-
-
-def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:
-    names = ", ".join(".".join(each) for each in driven)
-    freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
-    return Diagnostic(
-        "inputs-dependent",
-        "error",
-        f"the inputs {names} are not independent",
-        measured=f"{len(driven)} inputs drive {freedoms}",
-        hint="drive fewer coordinates",
-    )
 
 
 def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
     """The same of inputs that hardly `moved` (inputs,)."""
-    way = float(np.max(np.abs(moved), initial=0.0))
-    return input_faults(session) if way <= tolerances.PASSED else []
-
-
-def _row_span(rows: SweepRows) -> str:
-    missing = np.sort(rows.numbers[~rows.reached]) + 1
-    return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
+    farthest = float(np.max(np.abs(moved), initial=0.0))
+    return input_faults(session) if farthest <= tolerances.PASSED else []
 
 
 def _stay_empty(rows: SweepRows, where: str = "") -> str:
     """The missing rows in words, and `where` they lie."""
-    one = int(np.count_nonzero(~rows.reached)) == 1
-    lie = f"{'lies' if one else 'lie'} {where} and " if where else ""
-    return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
+    missing = np.sort(rows.numbers[~rows.reached]) + 1
+    lie, stay, span = "lie", "stay", f"rows {missing[0]} to {missing[-1]}"
+    if missing.size == 1:
+        lie, stay, span = "lies", "stays", f"row {missing[0]}"
+    return f"{span} {lie} {where} and {stay} empty" if where else f"{span} {stay} empty"
 
 
 def _place(
     session: Session, followed: Followed, inputs: Floats, shown: Iterable[int] | None = None
 ) -> tuple[Number, ...]:
-    """Where a way ended: the time, where inputs move by laws, and the inputs, or those `shown`."""
+    """Where the branch ended: time, where inputs move by laws, and the inputs, or those `shown`."""
     course = session.problem.motion.course
     numbers = input_numbers(session.problem, session.layout, inputs)
-    found = numbers if shown is None else tuple(numbers[number] for number in shown)
+    if shown is not None:
+        numbers = tuple(numbers[number] for number in shown)
     if followed.parameter is None or course is None or course.parameter.name != "time":
-        return found
+        return numbers
     moment = Number("time", followed.parameter, session.problem.units.label(TIME))
-    return (moment, *found)
+    return (moment, *numbers)
 
 
 def _dead_centre_note(
@@ -190,7 +182,7 @@ def _dead_centre_note(
 
 
 def _chords(session: Session, path: Floats) -> str:
-    """What to know of rows that no law joins."""
+    """A remark on rows that no law joins."""
     course = session.problem.motion.course
     together = np.count_nonzero((path != path[:, :1]).any(axis=1)) > 1
     if not together or (course is not None and course.parameter.name != "row"):
@@ -207,11 +199,11 @@ def _assembled_again(
     if moving.size != 1 or not rows.reached[0]:
         return None
     number = int(moving[0])
-    walker = Walker(session, number, path[:, 0])
+    walker = modes.Walker(session, number, path[:, 0])
     direction = float(np.sign(followed.direction[number]))
     if walker.period is None or direction == 0.0:
         return None
-    other = walker.end(Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    other = walker.end(modes.Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
     value = other.value + direction * walker.period
     ahead = direction * (path[number, ~rows.reached] - value)
     behind = direction * (value - float(limit.inputs[number]))
@@ -268,23 +260,21 @@ def _lost_hold_note(
     limit: BranchFold | Runaway | BranchPoint | None,
     rows: SweepRows,
 ) -> Diagnostic | None:
-    """If what holds an idle freedom ends the branch, and not the mechanism, that."""
-    from mechkin_cli.mobility import lost_holds
-
+    """Says where the hold of an idle freedom ends the branch, and not the mechanism."""
     at = limit if isinstance(limit, BranchFold | BranchPoint) else followed
-    held = lost_holds(session, at.inputs, at.state)
+    held = mobility.lost_holds(session, at.inputs, at.state)
     if not held:
         return None
     places = _place(session, followed, at.inputs)
     words = "; ".join(dict.fromkeys(one.words for one in held))
-    kept = ", ".join(dict.fromkeys(one.convention for one in held))
+    conventions = ", ".join(dict.fromkeys(one.convention for one in held))
     names = [one.name for one in held if one.cure == f"drive {one.name}"]
     drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
     return Diagnostic(
         "hold-ends",
         "error",
-        f"{words}; {kept}, and cannot be kept there beyond this place, where the mechanism itself "
-        f"has no dead centre; {_stay_empty(rows)}",
+        f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
+        f"itself has no dead centre; {_stay_empty(rows)}",
         measured=", ".join(map(input_text, places)),
         hint=f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
         numbers=places,

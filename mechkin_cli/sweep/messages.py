@@ -1,8 +1,13 @@
-"""What a sweep has to say about its rows beside their verdicts."""
+"""Messages of a sweep about its rows beside their verdicts.
+
+In reading order: turns that do not close, redundant constraints, conditions, poses in gimbal lock
+(where the middle one of three turns is a quarter turn, the others go about one axis, and their
+rates are lost), sets of actuators that cannot hold the mechanism, loads without a value.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -38,37 +43,30 @@ LOADS_NAMED = 4
 """Unique bearing loads that are named one by one."""
 
 
-class _Turn(NamedTuple):
-    """A row that is some whole turns of an input away from the first."""
-
-    name: str
-    row: int
-    turns: int
-
-
 def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
     """Rows a full turn of the one moving input apart at which the mechanism is not the same.
 
     A thread that advances with the turn, and what moves with it, is not meant to be. `states`
     (states, rows) in kernel units.
     """
-    turns = _whole_turns(session)
-    turn = next((turn for turn in turns if reached[turn.row]), None)
-    if turn is None or not reached[0] or not stands_elsewhere(session, states[:, [0, turn.row]]):
+    row, turns, name = next(
+        (turn for turn in _whole_turns(session) if reached[turn[0]]), (0, 0, "")
+    )
+    if not name or not reached[0] or not stands_elsewhere(session, states[:, [0, row]]):
         return None
     return Diagnostic(
         "turn-not-closed",
         "note",
-        f"after {turn.turns} full turn{'s' * (turn.turns > 1)} of {turn.name}, in row "
-        f"{turn.row + 1}, the mechanism is not back at its first row's position: it has gone on to "
-        "another assembly",
+        f"after {turns} full turn{'s' * (turns > 1)} of {name}, in row {row + 1}, the "
+        "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
 
 
 @remembered
-def _whole_turns(session: Session) -> list[_Turn]:
-    """The rows that are whole turns of the one moving input away from the first, in order."""
+def _whole_turns(session: Session) -> list[tuple[int, int, str]]:
+    """The rows that are whole turns of the one moving input away from the first, in order, how many
+    turns, and of which input."""
     inputs = session.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
     if moving.size != 1:
@@ -81,7 +79,7 @@ def _whole_turns(session: Session) -> list[_Turn]:
     rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
     whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
     rows = np.flatnonzero(whole).tolist()
-    return [_Turn(item.name, row, round(abs(float(turns[row])))) for row in rows]
+    return [(row, round(abs(float(turns[row]))), item.name) for row in rows]
 
 
 def stands_elsewhere(session: Session, both: Floats) -> bool:
@@ -151,14 +149,11 @@ def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
 
 
 def _is_unique(result: RunRows, text: str) -> bool:
-    """Whether an expression of reactions is in every row that has a position."""
     expression, reached = parse(text), result.row_states.reached
 
     def values(source: RunRows) -> Floats:
-        found = np.broadcast_to(
-            np.asarray(expression.evaluate(source.quantity).value), reached.shape
-        )
-        return found[reached]
+        value = np.asarray(expression.evaluate(source.quantity).value)
+        return np.broadcast_to(value, reached.shape)[reached]
 
     others = [values(other) for other in result.alternatives]
     disturbed = [values(other) for other in result.disturbed]
@@ -217,9 +212,6 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     )
 
 
-# Poses that are told by three turns: where the middle one is a quarter turn, the others go about
-# one axis, and their rates are lost (gimbal lock).
-
 _TROUBLE = (Status.branch_lost, Status.near_singular, Status.rank_unclear)
 
 
@@ -246,7 +238,7 @@ def locked_in(result: RunRows, rows: Bools) -> str | None:
 
 
 def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
-    """Says of poses whose turns are not given that rows may be lost through them alone."""
+    """Warns that rows may be lost by gimbal lock of a pose whose turns are not driven."""
     if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
         return []
     driven = {f"{joint}.{coordinate}" for joint, coordinate in result.problem.driven}
@@ -264,15 +256,13 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
     return found
 
 
-# Rows in which the actuators cannot hold the mechanism, whatever their efforts are.
-
 SHOWN = 6
 """Rows that a message names one by one."""
 
 
 def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
-    """What tells whether the actuators hold the mechanism, where forces are asked for."""
-
+    """The quantity that shows whether the actuators hold the mechanism, where forces are asked
+    for."""
     drives = problem.mechanism.drives
     if drives is None or not drives.actuators:
         return []
@@ -344,9 +334,6 @@ def _rows(rows: Bools) -> str:
     if len(numbers) <= SHOWN:
         return f"rows {', '.join(numbers[:-1])} and {numbers[-1]}"
     return f"{len(numbers)} rows, the first is row {numbers[0]}"
-
-
-# Loads that vary where one has no value: which, and what to say.
 
 
 def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:

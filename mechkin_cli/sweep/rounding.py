@@ -49,8 +49,7 @@ def error_bound(result: RunRows) -> Floats:
         if result.graph.blocks:
             condition = np.asarray(result.quantity("row.condition").value)
             bound = bound + condition * result.residual
-    found: Floats = np.where(rows.reached & np.isfinite(bound), bound, np.nan)
-    return found
+    return np.where(rows.reached & np.isfinite(bound), bound, np.nan)
 
 
 def largest_move(result: RunRows) -> Floats:
@@ -64,11 +63,14 @@ def largest_move(result: RunRows) -> Floats:
     sizes = _input_sizes(session)
     constants, placing = _constants(session)
     for _ in range(tolerances.ERROR_PROBES):
-        other = session.with_constants(_off(constants, placing, stream))
+        off = constants.copy()
+        count = int(np.count_nonzero(placing))
+        off[placing] *= 1.0 + _signed(stream, count) * tolerances.ERROR_PROBE
+        other = session.with_constants(off)
         inputs = session.inputs
-        off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
+        shift = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
-            POSITIONS, session=other, inputs=inputs._replace(reduced=inputs.reduced + off)
+            POSITIONS, session=other, inputs=inputs._replace(reduced=inputs.reduced + shift)
         )
         move = np.max(np.abs(batch.states - rows.states), axis=0)
         # of a row far from its place the move says nothing
@@ -96,12 +98,6 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
         isinstance(r, TreeJoint | ClosingJoint | PlanLeg) for r in records for _ in flatten([r])
     ]
     return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
-
-
-def _off(constants: Floats, placing: NDArray[np.bool_], stream: RandomStarts) -> Floats:
-    found = constants.copy()
-    found[placing] *= 1.0 + _signed(stream, int(np.count_nonzero(placing))) * tolerances.ERROR_PROBE
-    return found
 
 
 def _signed(stream: RandomStarts, count: int) -> Floats:

@@ -1,24 +1,24 @@
-"""The rows of a sweep: states, and what is known of each row."""
+"""The rows of a sweep: states, what is known of each row, and continuous angles.
+
+The kernel gives angles within a turn; following the branch counts whole turns
+(`session.turn_slots`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand
 from mechkin_cli.session import continuous_angle
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any
-
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import PlacesBefore
@@ -30,23 +30,28 @@ if TYPE_CHECKING:
     from mechkin_cli.structure import SolverGraph
 
 
-def sections(found: Followed, rows: int) -> NDArray[np.int64]:
+def sections(followed: Followed, rows: int) -> NDArray[np.int64]:
     """The number of branch points that a way passed before each row (rows,)."""
-    if not found.crossings:
+    if not followed.crossings:
         return np.zeros(rows, dtype=np.int64)
-    passed = [crossing.row for crossing in found.crossings]
+    passed = [crossing.row for crossing in followed.crossings]
     return np.searchsorted(np.sort(np.array(passed)), np.arange(rows), side="right")
 
 
 @dataclass
 class SweepRows:
-    """States (states, rows), guesses until they are closed, and what is known about rows that have
-    none; `limit` is the largest correction that a guess may still need, `numbers` counts the rows
-    from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
-    rows) are angles and quaternions of closing joints as following carried them along
-    (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
-    passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing,
-    `dead_centres` the rows that stand at one, twice where either of two branches may be meant.
+    """The rows of a sweep while they are followed, closed and judged.
+
+    Attributes:
+        states: (states, rows), guesses until they are closed.
+        limit: (rows,) the largest correction that a guess may still need.
+        nodes: steps with which the rows were followed.
+        numbers: (rows,) counts them from 0 as the file does.
+        turns: (turn slots, rows) angles and quaternions of closing joints as following carried
+            them along.
+        section: (rows,) differs between rows between which a branch point was passed.
+        ends: the dead centres beyond which rows are missing.
+        dead_centres: rows that stand at one, twice where either of two branches may be meant.
     """
 
     states: Floats
@@ -115,37 +120,6 @@ class SweepRows:
     def has_failed(self) -> bool:
         """Whether some row did not close."""
         return bool((self.status == Status.not_converged).any())
-
-
-# Following the branch of the first assembly along all rows: a guess for every row it reaches.
-
-
-# Continuous angles: the kernel gives them within a turn, following counts whole turns
-# (`solver.closing_turns`).
-
-
-@dataclass
-class _Turning:
-    """Angles of one sort: their names, outputs, and the rows of `Followed.turns` that count their
-    turns; of inputs, their numbers."""
-
-    names: list[str] = field(default_factory=list)
-    outputs: list[int] = field(default_factory=list)
-    turns: list[int] = field(default_factory=list)
-
-    def add(self, name: str, output: int, turn: int) -> None:
-        self.names.append(name)
-        self.outputs.append(output)
-        self.turns.append(turn)
-
-
-@dataclass(frozen=True)
-class _Angles:
-    """The angles among some outputs: of inputs, of the tree and of closing joints."""
-
-    driven: _Turning = field(default_factory=_Turning)
-    tree: _Turning = field(default_factory=_Turning)
-    closing: _Turning = field(default_factory=_Turning)
 
 
 class RunRows(Protocol):
@@ -218,6 +192,10 @@ Columns = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
 
 
+Angles = list[tuple[str, int, int]]
+"""Names of angles, their outputs, and the rows of `SweepRows.turns` that count their turns."""
+
+
 def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
     """Makes the angles among some outputs (outputs, rows) continuous from the first row, in place.
 
@@ -225,91 +203,44 @@ def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) 
         What they are within a turn, of those that have turns.
     """
     rows, session = result.row_states, result.session
-    angles = _angles(session, tuple(wanted))
+    driven, tree, closing = _angles(session, tuple(wanted))
     reached = rows.reached
-    for output, number in zip(angles.driven.outputs, angles.driven.turns, strict=True):
+    for _, output, number in driven:
         values = result.problem.motion.inputs[number].values
         outputs[output] = np.where(reached, values, outputs[output])
     rests: Columns = {}
-    for some in (angles.tree, angles.closing):
-        if not some.names:
+    for angles in (tree, closing):
+        if not angles:
             continue
-        rest, turns = outputs[some.outputs], rows.turns[some.turns]
-        if some is angles.closing:
+        names, slots, counters = map(list, zip(*angles, strict=True))
+        rest, turns = outputs[slots], rows.turns[counters]
+        if angles is closing:
             continuous = continuous_angle(rest, turns)
         else:
             continuous = rest + turns * (2.0 * pi)
-        outputs[some.outputs] = continuous
+        outputs[slots] = continuous
         turned = ((continuous != rest) & reached).any(axis=1)
-        rests |= {some.names[k]: rest[k] for k in np.flatnonzero(turned)}
+        rests |= {names[k]: rest[k] for k in np.flatnonzero(turned)}
     return rests
 
 
 @remembered
-def _angles(session: Session, wanted: tuple[Wanted, ...]) -> _Angles:
-    found, layout, slots = _Angles(), session.layout, session.readout(wanted).slots
+def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angles, Angles]:
+    """The angles of inputs, with the inputs' numbers; of the tree; of closing joints."""
+    driven, tree, closing = Angles(), Angles(), Angles()
+    layout, slots = session.layout, session.readout(wanted).slots
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
         name, output = quantity.name, slots[quantity.name].first
         turn = session.turn_slots.of_angle(layout, quantity)
         if name in inputs:
-            found.driven.add(name, output, inputs[name])
+            driven.append((name, output, inputs[name]))
         elif turn is not None:
-            closing = layout.joint_reference[quantity.owner] < 0
-            (found.closing if closing else found.tree).add(name, output, turn)
-    return found
+            angles = closing if layout.joint_reference[quantity.owner] < 0 else tree
+            angles.append((name, output, turn))
+    return driven, tree, closing
 
 
 def has_turns(quantity: Wanted) -> bool:
     """Whether a quantity is an angle, which may have whole turns."""
     return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
-
-
-class RowPlaces(NamedTuple):
-    """Arguments of `Session.run` by their names there, the last axis of each over places."""
-
-    inputs: Floats
-    guess: Floats
-    rates: Floats | None
-    accelerations: Floats | None
-    jerks: Floats | None
-    turned: Floats
-    whole: Floats
-    full: Floats
-    time: Floats | None
-    ties: Floats | None
-
-    @classmethod
-    def of(
-        cls,
-        own: Session,
-        rows: SweepRows,
-        inputs: KernelInputs,
-        demand: Demand,
-        ties: Floats | None,
-    ) -> RowPlaces:
-        """The rows of a run of the session `own` on their states, with rates of `inputs` as far as
-        they are demanded."""
-        moments = own.problem.motion.time
-        return cls(
-            inputs=inputs.reduced,
-            guess=rows.states,
-            rates=inputs.rates if demand & Demand.VELOCITY else None,
-            accelerations=inputs.accelerations if demand & Demand.ACCELERATION else None,
-            jerks=inputs.jerks if demand & Demand.JERK else None,
-            turned=rows.turns,
-            whole=own.inputs.whole,
-            full=own.inputs.values,
-            time=None if moments is None else moments.values,
-            ties=ties if demand & Demand.FORCES else None,
-        )
-
-    def at(self, numbers: NDArray[np.intp] | Sequence[int]) -> RowPlaces:
-        """Some of the places, in this order."""
-        parts: Any = (None if part is None else part[..., numbers] for part in self)
-        return RowPlaces(*parts)
-
-    @property
-    def arguments(self) -> dict[str, Any]:
-        """As `Session.run` takes them."""
-        return self._asdict()

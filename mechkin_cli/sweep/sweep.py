@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import idle, sweep, tolerances
 from mechkin_cli.assembly import choose_start
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
@@ -19,13 +19,14 @@ from mechkin_cli.mechanism import (
     base_quantity,
     dimension_of,
     find_legs,
+    quantities_read,
     read_for,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.session import Ask, assembly_size, moves_freely, places_at
 from mechkin_cli.sweep.following import follow_rows
-from mechkin_cli.sweep.friction import judged_by
+from mechkin_cli.sweep.friction import judged_by, uncounted_notes
 from mechkin_cli.sweep.messages import (
     actuation_notes,
     condition_notes,
@@ -46,10 +47,6 @@ if TYPE_CHECKING:
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import SweepRows
-
-
-# What a sweep is asked, worked out once for a session and kept there: runs that ask the same only
-# run.
 
 
 @dataclass(frozen=True)
@@ -84,10 +81,8 @@ def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
     """The moments that hold idle legs, where forces are computed and they are not asked for."""
     if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
         return []
-    from mechkin_cli.idle import idle_freedoms
-
     known = problem.quantities()
-    moments = {known[idle.holding] for idle in idle_freedoms(problem)}
+    moments = {known[freedom.holding] for freedom in idle.idle_freedoms(problem)}
     return sorted(moments.difference(asked))
 
 
@@ -130,12 +125,11 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     names = list(dict.fromkeys(quantities))
     known = session.problem.quantities() if names else {}
     asked = [known[name] for name in read_for(names, known)]
-    session = _followed_part(session, asked)
+    if session.problem.follow is not None:
+        session = sweep.followed_session(session, asked)
     session, start = first_assembly(session)
     if start.stuck:
-        from mechkin_cli.sweep.branch_end import input_faults
-
-        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
+        start = replace(start, diagnostics=sweep.input_faults(session) or start.diagnostics)
     wanted = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, wanted)
     result.read(wanted.asked)
@@ -172,15 +166,6 @@ def _in_parts_of_its_size(session: Session) -> Session:
     assert start.state is not None
     inputs = session.inputs.reduced[:, start.row]
     return session.sized(assembly_size(session.plan, inputs, start.state))
-
-
-def _followed_part(session: Session, asked: list[Wanted]) -> Session:
-    """The session of the loops that `follow:` leaves."""
-    if session.problem.follow is None:
-        return session
-    from mechkin_cli.sweep.follow_part import followed_session
-
-    return followed_session(session, asked)
 
 
 def _closed(session: Session, start: AssemblyStart, asked: SweepQuantities) -> Result:
@@ -230,8 +215,7 @@ def _is_near_singular(batch: Batch) -> Bools:
     """Rows (rows,) above that condition, as far as it was computed."""
     if batch.condition is None:
         return np.zeros(batch.residual.size, dtype=bool)
-    found: Bools = batch.condition > tolerances.CONDITION_NEAR_SINGULAR
-    return found
+    return np.asarray(batch.condition > tolerances.CONDITION_NEAR_SINGULAR)
 
 
 def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
@@ -262,13 +246,13 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
     if not (batch.side != batch.side[:, :1]).any():
         return failed
     # on a fold or a branch point a sign is rounding
-    told = rows.reached.copy()
+    certain = rows.reached.copy()
     if batch.condition is not None:
-        told &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
+        certain &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
     # where a branch point was passed sides change with it: each section has its own
-    turned = np.zeros(told.size, dtype=bool)
-    for section in set(rows.section[told].tolist()):
-        own = np.flatnonzero(told & (rows.section == section))
+    turned = np.zeros(certain.size, dtype=bool)
+    for section in set(rows.section[certain].tolist()):
+        own = np.flatnonzero(certain & (rows.section == section))
         turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
     return failed | rows.reached & turned
 
@@ -282,9 +266,7 @@ def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
     unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
     rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
     rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
-    from mechkin_cli.sweep.dead_centre import judge_dead_centres
-
-    judge_dead_centres(session, rows, condition)
+    sweep.judge_dead_centres(session, rows, condition)
     rows.diagnostics += condition_notes(rows, condition)
 
 
@@ -293,12 +275,10 @@ def _judge_inputs(session: Session, rows: SweepRows) -> None:
     equations than unknowns leave a least square, whose condition tells nothing."""
     if not session.is_redundant or not session.driven or not rows.reached.any():
         return
-    from mechkin_cli.sweep.branch_end import input_faults
-
     row = int(np.argmax(rows.reached))
     if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
         return
-    faults = input_faults(session)
+    faults = sweep.input_faults(session)
     rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
     if faults and any(moved.any() for moved in session.inputs.orders[1:]):
         rows.status[rows.reached] = Status.rank_unclear
@@ -309,17 +289,13 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     """What loads that vary read, where forces are computed."""
     if not (result.demand & Demand.FORCES and result.problem.load_laws):
         return []
-    from mechkin_cli.mechanism import quantities_read
-
     known = result.problem.quantities()
     return [known[name] for name in quantities_read(result.problem)]
 
 
 @remembered
 def _conventional_notes(session: Session, read: tuple[Wanted, ...]) -> list[Diagnostic]:
-    from mechkin_cli.idle import conventional_notes
-
-    return conventional_notes(session.problem, read)
+    return idle.conventional_notes(session.problem, read)
 
 
 def row_notes(
@@ -329,37 +305,24 @@ def row_notes(
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
     if find_legs(problem.mechanism) or problem.held:
-        from mechkin_cli.idle import (
-            holding_notes,
-            idle_freedoms,
-            nearly_common_notes,
-        )
-
-        notes += nearly_common_notes(problem)
+        notes += idle.nearly_common_notes(problem)
         read = [*asked, *_read_by_loads(result)]
         notes += _conventional_notes(session, tuple(read))
         if problem.hold_idle:
-            named = {idle.holding for idle in idle_freedoms(problem)}
+            named = {freedom.holding for freedom in idle.idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
-            notes += holding_notes(problem, found)
+            notes += idle.holding_notes(problem, found)
     unclear = rows.status == Status.rank_unclear
     if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
-        from mechkin_cli.sweep.branch_end import input_faults
-
         said = {diagnostic.code for diagnostic in rows.diagnostics}
-        notes += [fault for fault in input_faults(session) if fault.code not in said]
+        notes += [fault for fault in sweep.input_faults(session) if fault.code not in said]
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
-        from mechkin_cli.sweep.friction import uncounted_notes
-
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(result, asked))
     return notes
-
-
-# A sweep in time at other moments: the same branch, followed by the same laws.
 
 
 class Between(NamedTuple):
@@ -381,7 +344,6 @@ class Between(NamedTuple):
     def at(self, written: Floats) -> Result:
         """The sweep at rising moments within its own, in the file's unit, and at that of its first
         assembly, which may be none of them: rows (moments,) or one more."""
-
         session, problem, start = self.result.session, self.result.problem, self.result.start
         time, course = problem.motion.time, problem.motion.course
         assert time is not None

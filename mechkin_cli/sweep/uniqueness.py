@@ -2,7 +2,7 @@
 by rounding.
 
 Where constraints are redundant, a cell is unique if it changes no more with the former than with
-the latter (mechkin_cli/uniqueness.py).
+the latter (`tables.unique_cells`).
 """
 
 from __future__ import annotations
@@ -47,12 +47,10 @@ def reaction_rounding(result: RunRows) -> Floats:
 
 def _level(result: RunRows, shift: int) -> Floats:
     """The largest reaction of each row (rows,), of those of a `shift`."""
-    level: Floats = result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0]
-    return level
+    return np.asarray(result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0])
 
 
 def disturbed(columns: Floats, wanted: Wanted, off: Floats, length: float, number: int) -> Floats:
     """A reaction (3, rows) whose components are `off` by rounding (rows,); `length` unit in m."""
     off = off if wanted.dimension == FORCE else off * length
-    found: Floats = columns + off * np.array(DISTURBANCES[number])[:, None]
-    return found
+    return np.asarray(columns + off * np.array(DISTURBANCES[number])[:, None])
