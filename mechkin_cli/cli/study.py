@@ -104,7 +104,7 @@ def study(
     code = ExitCode.OK
     try:
         source = open_study(file)
-        planned = Study(source.model(parameters(set_)), source)
+        planned = Study(source.load_model(parameters(set_)), source)
         say_diagnostics(planned.plan.notes, str(file))
         workers = Workers(threads, processes, None, scheduler)
         if dry_run:

@@ -1,10 +1,16 @@
 """Exact derivatives of what a fit is measured by: sensitivities of the mechanism, by the chain
 rule through scales, weights and nearest places.
+
+Nearest places are those where curves, known in equal steps, come nearest to points. Between rows a
+curve is the polynomial through the ten rows around (Berrut & Trefethen 2004, Barycentric Lagrange
+interpolation, section 2): with steps h its error in the middle is below h^10 times the tenth
+derivative divided by 4000. On it the nearest place is found by Newton steps. Eight rows would do
+for the place as well, but give of the derivatives of a place only nine digits.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,20 +29,13 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
-# Where curves, known in equal steps, come nearest to points.
-#
-# Between rows a curve is the polynomial through the ten rows around (Berrut & Trefethen 2004,
-# Barycentric Lagrange interpolation, section 2): with steps h its error in the middle is below h^10
-# times the tenth derivative divided by 4000. On it the nearest place is found by Newton steps.
-# Eight rows would tell the place as well, but of the derivatives of a place only nine digits.
-
 NODES = 10
 """Rows of a polynomial."""
 
 HALF = 0.5 * (NODES - 1)
 POWERS = np.arange(NODES)
 TO_COEFFICIENTS = np.linalg.inv(((POWERS - HALF) / HALF)[:, None] ** POWERS)
-"""From the values at eight rows to a polynomial in z in [-1, 1]."""
+"""From the values at the rows to a polynomial in z in [-1, 1]."""
 
 STEPS = 30
 """Newton steps, each at most a row."""
@@ -47,8 +46,8 @@ def nearest_places(curves: Floats, points: Floats) -> tuple[Floats, Floats]:
 
     Returns their rows, in parts (S, points), and where they are (S, points, width).
     """
-    found = _nearest(curves, points)
-    return found.first + HALF + HALF * found.z, found.places
+    first, z, places, _ = _nearest(curves, points)
+    return first + HALF + HALF * z, places
 
 
 def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
@@ -59,8 +58,7 @@ def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
     c(z, u) the curve and r = c - point, r . c_z = 0 gives z_u = -(c_zu . r + c_u . c_z) /
     (c_z . c_z + r . c_zz), and c_u + c_z z_u is the derivative. At an end of the curve it stays.
     """
-    found = _nearest(curve[None], points)
-    first, z = found.first[0], found.z[0]
+    first, z, places, at_end = (part[0] for part in _nearest(curve[None], points))
     around = curve[first[:, None] + POWERS]
     moved = slopes[:, first[:, None] + POWERS]
     coefficients = np.einsum("pn,knw->kpw", TO_COEFFICIENTS, around)
@@ -68,47 +66,33 @@ def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
         np.einsum("kn,uknw->ukw", _powers(z, order) @ TO_COEFFICIENTS, moved) for order in (0, 1)
     )
     c_z, c_zz = (np.einsum("kp,kpw->kw", _powers(z, order), coefficients) for order in (1, 2))
-    away = found.places[0] - points
+    away = places - points
     curved = (c_z * c_z + away * c_zz).sum(axis=1)
     down = (c_zu * away + c_u * c_z).sum(axis=2)
-    stays = found.at_end[0] | (curved == 0.0)
+    stays = at_end | (curved == 0.0)
     z_u = np.where(stays, 0.0, -down / np.where(stays, 1.0, curved))
-    result: Floats = c_u + c_z * z_u[:, :, None]
-    return result
+    return np.asarray(c_u + c_z * z_u[:, :, None])
 
 
-class _CurvePlaces(NamedTuple):
-    """Of curves (S) the nearest places to points: the first rows of their polynomials and z there
-    (S, points), the places (S, points, width), and whether they are ends of the curve."""
-
-    first: NDArray[np.intp]
-    z: Floats
-    places: Floats
-    at_end: Bools
+CurvePlaces = tuple["NDArray[np.intp]", "Floats", "Floats", "Bools"]
+"""Of curves (S) the nearest places to points: the first rows of their polynomials and z there
+(S, points), the places (S, points, width), and whether they are ends of the curve."""
 
 
-def _nearest(curves: Floats, points: Floats) -> _CurvePlaces:
+def _nearest(curves: Floats, points: Floats) -> CurvePlaces:
     distances = np.square(curves[:, :, None, :] - points).sum(axis=3)
     rows = distances.argmin(axis=1)
     last = curves.shape[1] - 1
-    found = _from(curves, points, rows)
+    nearest = _from(curves, points, rows)
     # a closed curve has its ends at one place, and the nearest may lie on the other side of it
     at_end = (rows == 0) | (rows == last)
     if at_end.any():
         other = _from(curves, points, np.where(rows == 0, last, np.where(rows == last, 0, rows)))
-        nearer = at_end & (_far(other.places, points) < _far(found.places, points))
-        found = _CurvePlaces(
-            np.where(nearer, other.first, found.first),
-            np.where(nearer, other.z, found.z),
-            np.where(nearer[..., None], other.places, found.places),
-            np.where(nearer, other.at_end, found.at_end),
-        )
-    return found
-
-
-def _far(places: Floats, points: Floats) -> Floats:
-    found: Floats = np.square(places - points).sum(axis=2)
-    return found
+        there, here = (np.square(p[2] - points).sum(axis=2) for p in (other, nearest))
+        nearer = at_end & (there < here)
+        first, z, ends = (np.where(nearer, other[k], nearest[k]) for k in (0, 1, 3))
+        nearest = first, z, np.where(nearer[..., None], other[2], nearest[2]), ends
+    return nearest
 
 
 def _powers(z: Floats, order: int) -> Floats:
@@ -116,11 +100,10 @@ def _powers(z: Floats, order: int) -> Floats:
     factors = np.ones(NODES)
     for step in range(order):
         factors = factors * (POWERS - step)
-    found: Floats = factors * z[..., None] ** np.maximum(POWERS - order, 0)
-    return found
+    return np.asarray(factors * z[..., None] ** np.maximum(POWERS - order, 0))
 
 
-def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlaces:
+def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> CurvePlaces:
     """The nearest place within a row of given ones (S, points)."""
     last = curves.shape[1] - 1
     first = np.clip(rows - NODES // 2 + 1, 0, last - NODES + 1)
@@ -132,8 +115,7 @@ def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlace
 
     def at(polynomial: Floats, z: Any) -> Floats:
         powers = z[..., None] ** np.arange(polynomial.shape[2])
-        found: Floats = np.einsum("skp,skpw->skw", powers, polynomial)
-        return found
+        return np.asarray(np.einsum("skp,skpw->skw", powers, polynomial))
 
     middle = rows - first
     low = (np.maximum(middle - 1, 0) - HALF) / HALF
@@ -146,17 +128,16 @@ def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlace
         curved = flat + (away * bend).sum(axis=2)
         steep = np.where(curved > 0.1 * flat, curved, flat)
         z = np.clip(z - down / np.where(steep > 0.0, steep, 1.0), low, high)
-    found = first + HALF + HALF * z
-    at_end = (found <= 0.0) | (found >= last)
-    return _CurvePlaces(first, z, at(coefficients, z), at_end)
+    row = first + HALF + HALF * z
+    return first, z, at(coefficients, z), (row <= 0.0) | (row >= last)
 
 
 class FitSlopes:
     """The derivatives of `FitValues.measure`.
 
     Attributes:
-        why: what the last `stacked` has no exact derivative of, and why: verdicts of sensitivities
-            or the reason for which there are none, by expression.
+        why: expressions of which the last `stacked` has no exact derivative, and why: verdicts of
+            sensitivities, or the reason for which there are none.
     """
 
     def __init__(self, values: FitValues) -> None:
@@ -173,11 +154,10 @@ class FitSlopes:
         rows = {
             run: self._slopes(models.model, named, values.texts(run), run) for run in values.runs
         }
-        parts = [
-            _weighted(rows[one.run][one.of] / one.within, values.weights[one.run])
-            for one in values.least
-            if one.least == "rms"
-        ]
+        parts = []
+        for one in (target for target in values.least if target.least == "rms"):
+            slopes, weights = rows[one.run][one.of] / one.within, values.weights[one.run]
+            parts.append(slopes.reshape(len(slopes), len(weights), -1) * weights[:, None])
         for one in values.at_moments:
             parts.append(rows[one.run][one.of][:, values.rows_of(one)] / one.within)
         if values.at_inputs:
@@ -194,8 +174,7 @@ class FitSlopes:
                 slopes = rows[constraint.run][constraint.of]
                 parts.append(sign * slopes / (abs(bound) or 1.0))
         stacked = np.concatenate([part.reshape(len(unknowns), -1) for part in parts], axis=1)
-        found_all: Floats = (stacked * values.width[:, None]).T
-        return found_all
+        return np.asarray((stacked * values.width[:, None]).T)
 
     def _anywhere(self, named: dict[str, float], targets: Sequence[Target]) -> list[Floats]:
         """Of nearest places, each (parameters, points, width)."""
@@ -229,19 +208,13 @@ class FitSlopes:
         return {text: np.stack([found[text, name] for name in names]) for text in texts}
 
     def _note(self, found: Sensitivities, text: str) -> None:
-        """Say what a quantity has no sensitivity for."""
+        """Notes the parameters to which a quantity has no sensitivity."""
         notes = []
         for name in self._values.names:
             without = ~np.isfinite(found[text, name]).reshape(len(found.rows), -1).all(axis=1)
             if without.any():
                 words, counts = np.unique(found.verdict(text, name)[without], return_counts=True)
-                told = ", ".join(f"{n} rows {w}" for w, n in zip(words, counts, strict=True))
-                notes.append(f"{name}: {found.why(text, name) or told}")
+                verdicts = ", ".join(f"{n} rows {w}" for w, n in zip(words, counts, strict=True))
+                notes.append(f"{name}: {found.why(text, name) or verdicts}")
         if notes:
             self.why[text] = "; ".join(notes)
-
-
-def _weighted(slopes: Floats, weights: Floats) -> Floats:
-    """Rows (parameters, rows, ...) times the weights (rows,) of a mean over the way."""
-    found: Floats = slopes.reshape(len(slopes), len(weights), -1) * weights[:, None]
-    return found

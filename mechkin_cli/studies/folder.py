@@ -92,16 +92,16 @@ class StudyFolder:
             self._claim.release()
             self._claim = None
 
-    def begin(self, anew: bool = False) -> None:
-        """Takes up what an earlier run left, or begins; with `anew` in any case.
+    def begin(self, again: bool = False) -> None:
+        """Takes up what an earlier run left, or begins; with `again` in any case.
 
         Raises:
             UsageError: the folder holds another study, or cannot be written to.
         """
-        found = None if anew else self._manifest()
+        found = None if again else self._manifest()
         with refused(self.folder):
             if found is None:
-                if not anew:
+                if not again:
                     self._refuse_foreign()
                 self._clear()
                 (self.folder / PIECES).mkdir(exist_ok=True)
@@ -204,7 +204,6 @@ class StudyFolder:
         return dict(found)
 
     def _check(self, found: Mapping[str, Any]) -> None:
-        """Refuses another study than this."""
         own = json.loads(json.dumps(self.contents.record()))
         if all(found.get(key) == value for key, value in own.items()):
             return

@@ -1,4 +1,4 @@
-"""Results of a study in memory: columns over the variants, as arrays and as data frames."""
+"""Results of a study: an overview in a few numbers for each column, and all in memory."""
 
 from __future__ import annotations
 
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.show import Floats
     from mechkin_cli.studies.formats import Values
-
-
-# What a study has found, in a few numbers for each column.
 
 
 class Spread(NamedTuple):
@@ -114,20 +111,13 @@ def overview(
 def _spread(label: str, unit: str, column: _RunningColumn) -> Spread:
     if not column.count:
         return Spread(label, unit, 0, np.nan, -1, np.nan, -1, np.nan, np.nan)
+    ends = (*column.least, *column.largest)
     if column.infinite != 0.0:
-        ends = (*column.least, *column.largest)
         return Spread(label, unit, column.count, *ends, column.infinite, np.nan)
     mean = column.first / column.count
     variance = max(column.second / column.count - mean * mean, 0.0)
-    return Spread(
-        label,
-        unit,
-        column.count,
-        *column.least,
-        *column.largest,
-        column.origin + mean,
-        float(np.sqrt(variance)),
-    )
+    deviation = float(np.sqrt(variance))
+    return Spread(label, unit, column.count, *ends, column.origin + mean, deviation)
 
 
 class StudyFiles(NamedTuple):
@@ -146,7 +136,7 @@ class StudyResults(Listed):
     Attributes:
         name: of the study.
         rows: columns of all rows of all variants by label, empty where none were kept.
-        diagnostics: what the study has to say.
+        diagnostics: messages on the study.
     """
 
     def __init__(
@@ -199,12 +189,7 @@ class StudyResults(Listed):
         """The overview as a table."""
         seen = self.overview
         rows = tuple(
-            (
-                s.label,
-                s.unit,
-                *(f"{value:.6g}" for value in (s.least, s.mean, s.largest, s.deviation)),
-            )
-            for s in seen.spreads
+            (s.label, s.unit, *(f"{value:.6g}" for value in s.shown)) for s in seen.spreads
         )
         verdicts = ", ".join(f"{count} {word}" for word, count in seen.verdicts.items())
         head = f"{self.name}: {seen.variants} variants, {verdicts}"

@@ -1,4 +1,4 @@
-"""A study, read and checked: from its file, or from the data of a program."""
+"""A study, read and checked: from its file, or from the data of a program; and its faults."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 import numpy as np
 
+from mechkin_cli import model, reading
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import Document, in_order, read_document
 from mechkin_cli.schema import InvalidDataError, validate_study
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema import StudyFile
     from mechkin_cli.units import Dimension, UnitSystem
 
-
-# What is wrong with a study file, collected place by place; and its values of quantities.
 
 DIGITS = (15, 16)
 """Significant digits of a decimal number that may be the one that was written."""
@@ -76,12 +75,12 @@ def in_file_units(name: str, text: str, dimension: Dimension, units: UnitSystem)
         UsageError: the text says none.
     """
     in_si = one_value(name, text, dimension, units)
-    found = float(np.asarray(units.from_si(in_si, dimension)))
+    value = float(np.asarray(units.from_si(in_si, dimension)))
     for digits in DIGITS:
-        rounded = float(f"{found:.{digits}g}")
+        rounded = float(f"{value:.{digits}g}")
         if float(np.asarray(units.to_si(rounded, dimension))) == in_si:
             return rounded
-    return found
+    return value
 
 
 def split(error: UsageError) -> tuple[str, str]:
@@ -92,7 +91,6 @@ def split(error: UsageError) -> tuple[str, str]:
 
 DATA = "study"
 """What messages call the dict that a caller gives."""
-
 
 _OUTSIDE = "--set "
 """In front of parameters from outside the mechanism, in messages about them."""
@@ -109,20 +107,18 @@ class StudySource(NamedTuple):
         """The study's name, or that of its file."""
         return self.file.name or Path(self.document.file).stem
 
-    def model(self, parameters: Mapping[str, str]) -> Model:
+    def load_model(self, parameters: Mapping[str, str]) -> Model:
         """The mechanism that the study names, with the values of `set:` and these.
 
         Raises:
             UsageError: its file cannot be read, or an unknown parameter.
             InvalidFile: the study names none, or the mechanism is wrong.
         """
-        from mechkin_cli.model import load
-
         if self.file.mechanism is None:
             self._refuse("missing-key", (), "the study names no mechanism", "add mechanism: FILE")
         folder = self.document.folder or Path()
         try:
-            return load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
+            return model.load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
         except UsageError as error:
             text, _, hint = str(error).partition("; ")
             named, _, own = text.removeprefix(_OUTSIDE).partition(": ")
@@ -135,7 +131,7 @@ class StudySource(NamedTuple):
         except InvalidFile as error:
             raise InvalidFile([self._at_home(d, parameters) for d in error.diagnostics]) from None
 
-    def applied_to(self, model: Model) -> Model:
+    def applied_to(self, given: Model) -> Model:
         """A model of Python's with the values of `set:`.
 
         Raises:
@@ -143,10 +139,10 @@ class StudySource(NamedTuple):
         """
         for name, value in self.file.set.items():
             try:
-                model = model.with_parameters({name: value})
+                given = given.with_parameters({name: value})
             except UsageError as error:
                 self._refuse("bad-value", ("set", name), *split(error))
-        return model
+        return given
 
     def _at_home(self, found: Diagnostic, parameters: Mapping[str, str]) -> Diagnostic:
         """What was said of a value of `set:`, at its place in the study."""
@@ -163,22 +159,19 @@ class StudySource(NamedTuple):
         raise InvalidFile([Diagnostic(code, "error", text, place, hint=hint)])
 
 
-def open_study(given: str | Path | Mapping[str, Any]) -> StudySource:
+def open_study(study: str | Path | Mapping[str, Any]) -> StudySource:
     """The study in a file, or in the sections that a dict has.
 
     Raises:
         UsageError: the file cannot be read.
         InvalidFile: with every independent error and its place.
     """
-    if isinstance(given, Mapping):
-        from mechkin_cli.reading import document_from_data
-
-        document = document_from_data({"study": 1, **given}, DATA, None)
+    if isinstance(study, Mapping):
+        document = reading.document_from_data({"study": 1, **study}, DATA, None)
     else:
-        document = read_document(given)
+        document = read_document(study)
     try:
         return StudySource(validate_study(document.data), document)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading import explain, is_mechanism  # only for messages
-
-        raise InvalidFile(is_mechanism(document) or explain(invalid.errors, document)) from None
+        errors = reading.is_mechanism(document) or reading.explain(invalid.errors, document)
+        raise InvalidFile(errors) from None

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
         Variants as Variants,
         expressions_of as expressions_of,
         sample_of as sample_of,
+        swept_parameter as swept_parameter,
         vary as vary,
-        way_of as way_of,
     )
     from mechkin_cli.variants.model import (
         Base as Base,
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         parameter_values as parameter_values,
         with_parameters as with_parameters,
     )
+    from mechkin_cli.variants.responses import vary_response as vary_response
     from mechkin_cli.variants.samples import (
         Draws as Draws,
         draws as draws,
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "many": ["Reduce", "Variants", "expressions_of", "sample_of", "vary", "way_of"],
+        "many": ["Reduce", "Variants", "expressions_of", "sample_of", "vary", "swept_parameter"],
         "model": [
             "Base",
             "VariedModel",
@@ -43,6 +44,7 @@ __getattr__, __dir__ = lazy_names(
             "parameter_values",
             "with_parameters",
         ],
+        "responses": ["vary_response"],
         "samples": ["Draws", "draws", "has_scipy", "needs_scipy", "normal", "uniform"],
     },
 )

@@ -1,4 +1,8 @@
-"""Many variants of a model at once: what a caller asks for, and what comes back."""
+"""Many variants of a model at once: `Model.vary`.
+
+In reading order: reductions over the rows; the run, by chunks through the kernel, and one variant
+at a time where the kernel's run does not do; the results, and the call.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import tolerances, variants
 from mechkin_cli.arguments import a_text, a_whole_number, shown, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName, Vector
@@ -49,14 +53,12 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools
 
 
-# What is kept of the values of variants: all rows, or what reductions make of them.
-
 Reductions = tuple[Reduction, ...] | Reduction | None
 """Several, one, or none: all rows."""
 
 
 def need_places(reductions: Mapping[str, Reductions]) -> bool:
-    """Whether one of them is taken over the way."""
+    """Whether one of them is taken over what the run goes along."""
     own = (each if isinstance(each, tuple) else (each,) for each in reductions.values())
     return any(one in OVER_THE_WAY for several in own for one in several)
 
@@ -64,8 +66,12 @@ def need_places(reductions: Mapping[str, Reductions]) -> bool:
 def reduced(
     text: str, values: Floats, reduction: Reductions, places: Floats | None = None
 ) -> Floats:
-    """What is kept of (variants, rows) or (variants, rows, components), the reductions last where
-    there are several; `places` of the rows (variants, rows), None where nothing moves.
+    """Reduces (variants, rows) or (variants, rows, components), the reductions last where there are
+    several.
+
+    Args:
+        text: names the values in messages.
+        places: of the rows (variants, rows); None where nothing moves.
 
     Raises:
         UsageError: a function of the caller fails, or gives something else.
@@ -83,27 +89,24 @@ def _by(reduction: Reduction, text: str, values: Floats, places: Floats | None) 
         return np.stack(parts, axis=1)
     if reduction is mean or reduction is root_mean_square:
         return reduction(values, places)
-    given = values.view()
-    given.flags.writeable = False  # the next reduction reads the same
+    view = values.view()
+    view.flags.writeable = False  # the next reduction reads the same
     try:
-        found = np.asarray(reduction(given), dtype=np.float64)
+        result = np.asarray(reduction(view), dtype=np.float64)
     except Exception as error:
         raise UsageError(
             f"the reduction of {text} failed with {type(error).__name__}: "
             f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
         ) from error
-    if found.shape[:1] != values.shape[:1]:
+    if result.shape[:1] != values.shape[:1]:
         raise UsageError(
-            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
+            f"the reduction of {text} gives an array of shape {result.shape}; it takes "
             f"(variants, rows) = {values.shape} and gives one value a variant"
         )
-    return found
+    return result
 
 
-# What a sweep goes along: the way over which means are taken and that places are values of.
-
-
-def way_of(problem: Problem) -> tuple[str, Floats] | None:
+def swept_parameter(problem: Problem) -> tuple[str, Floats] | None:
     """The name of time where the sweep has one, else of its first input that moves, and its values
     over the rows (rows,) in the file's units as written; None where nothing moves."""
     motion = problem.motion
@@ -114,8 +117,6 @@ def way_of(problem: Problem) -> tuple[str, Floats] | None:
             return driven.name, driven.written
     return None
 
-
-# The runs behind `Model.vary`: chunks through the kernel, what takes more one at a time.
 
 CHUNK_NUMBERS = 2_000_000
 """Numbers that a chunk of variants holds at most: memory stays flat."""
@@ -138,7 +139,7 @@ def sample_of(problem: Problem) -> Any:
 
 
 REST = " within a turn"
-"""What the names of angles without whole turns end in."""
+"""Suffix of the names of angles without whole turns."""
 
 PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
 """Functions to which whole turns of an angle do not matter."""
@@ -157,11 +158,11 @@ class VariantRun:
         threads: int,
     ) -> None:
         self.base, self.names, self.asked, self.reductions = base, names, asked, reductions
-        self.kept = tuple(asked)
+        self.texts = tuple(asked)
         self.lanes, self.threads = lanes, threads
         self.problem = base.model.problem
-        way = way_of(self.problem) if need_places(reductions) else None
-        self.along = None if way is None else way[0]
+        swept = swept_parameter(self.problem) if need_places(reductions) else None
+        self.along = None if swept is None else swept[0]
         if self.along is not None and self.along not in asked:
             parse = self.problem.definitions.parse
             self.asked = {**asked, self.along: parse(self.along)}
@@ -184,45 +185,42 @@ class VariantRun:
         """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
         count = values.shape[1]
         codes = np.empty((count, self.rows), dtype=np.int8)
-        parts: dict[str, list[Floats]] = {text: [] for text in self.kept}
+        parts: dict[str, list[Floats]] = {text: [] for text in self.texts}
         variation = self.base.variation(self.names)
         native = self._native(variation) if variation is not None else None
         chunk = self._chunk()
         for begin in range(0, max(count, 1), chunk):
             part = values[:, begin : begin + chunk]
-            found = self._chunk_values(variation, native, part, begin, codes)
-            for text, array in found.items():
+            for text, array in self._chunk_values(variation, native, part, begin, codes).items():
                 parts[text].append(array)
         return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
 
-    def numbers_kept(self) -> int:
+    def numbers_returned(self) -> int:
         """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
-        kept = len(self.names) + -(-self.rows // 8)
-        for text in self.kept:
+        count = len(self.names) + -(-self.rows // 8)
+        for text in self.texts:
             value = self.asked[text].evaluate(sample_of(self.problem), self.problem.units).value
             width = len(value.components) if isinstance(value, Vector) else 1
             reduction = self.reductions[text]
             each = len(reduction) if isinstance(reduction, tuple) else 1
-            kept += width * (self.rows if reduction is None else each)
-        return kept
+            count += width * (self.rows if reduction is None else each)
+        return count
 
     def _chunk(self) -> int:
         width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
         return max(1, CHUNK_NUMBERS // (self.rows * width))
 
-    # --- by the kernel --------------------------------------------------------------------
-
     def _native(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
         """The kernel's variants of what is read; None where the rows take more than its run."""
         problem = self.problem
-        given = {driven.name for driven in problem.motion.inputs}
-        given |= {name for driven in problem.motion.inputs for name in driven.orders}
+        inputs = {driven.name for driven in problem.motion.inputs}
+        inputs |= {name for driven in problem.motion.inputs for name in driven.orders}
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
             or self._friction_takes_more(session)
-            or (variation.moving_inputs and given & {q.name for q in self.wanted})
+            or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
         ):
             return None
         reading = variation.reading(self._computed())
@@ -238,28 +236,24 @@ class VariantRun:
             return False
         return bool(session.is_redundant or find_legs(mechanism) or self.problem.held)
 
-    def _states(self, reading: VariantReadout) -> list[Wanted]:
-        """What tells the rows without an answer of friction."""
-        return [q for q in friction_states(self.problem.mechanism) if q.name in reading.slots]
-
     def _computed(self) -> list[Wanted]:
-        """What the kernel computes: no verdicts but on friction, and nothing that is given."""
-        given = self._given()
-        found = [q for q in self.wanted if q.owner != "row" and q.name not in given]
-        if demand_of(self.problem.mechanism, found) & Demand.FORCES:
-            found += friction_states(self.problem.mechanism)
+        """What the kernel computes: no verdicts but on friction, and no inputs."""
+        inputs = self.prescribed()
+        computed = [q for q in self.wanted if q.owner != "row" and q.name not in inputs]
+        if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
+            computed += friction_states(self.problem.mechanism)
         if any(map(PERIODIC.search, self.asked)):
             # angles within a turn, which the kernel gives before it adds whole turns
-            found += [q._replace(name=q.name + REST) for q in found if has_turns(q)]
-        return found
+            computed += [q._replace(name=q.name + REST) for q in computed if has_turns(q)]
+        return computed
 
-    def _given(self) -> dict[str, Floats]:
+    def prescribed(self) -> dict[str, Floats]:
         """Time, inputs and their rates over the rows, in SI."""
         motion = self.problem.motion
-        found = {} if motion.time is None else {"time": motion.time.values}
+        values = {} if motion.time is None else {"time": motion.time.values}
         for driven in motion.inputs:
-            found |= {name: in_si for name, (in_si, _) in driven.orders.items()}
-        return found
+            values |= {name: in_si for name, (in_si, _) in driven.orders.items()}
+        return values
 
     def _chunk_values(
         self,
@@ -277,7 +271,8 @@ class VariantRun:
             reading, kernel = native
             threads = threads_for(count * self.rows, self.threads)
             runs = run_variants(kernel, values, self.lanes, threads)
-            states = [reading.slots[q.name].first for q in self._states(reading)]
+            frictions = friction_states(self.problem.mechanism)
+            states = [reading.slots[q.name].first for q in frictions if q.name in reading.slots]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
             # what may stand at a dead centre is judged as in a run of its own
@@ -285,7 +280,7 @@ class VariantRun:
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
         places = None if self.along is None else found[self.along]
-        return {t: reduced(t, found[t], self.reductions[t], places) for t in self.kept}
+        return {t: reduced(t, found[t], self.reductions[t], places) for t in self.texts}
 
     def _evaluated(
         self,
@@ -297,7 +292,7 @@ class VariantRun:
     ) -> dict[str, Floats]:
         """The expressions in the file's units, (variants, rows) or (variants, rows, 3)."""
         units, count = self.problem.units, values.shape[1]
-        resolve = _Resolve(self, variation, reading, runs, values, codes)
+        resolve = _Resolver(self, variation, reading, runs, values, codes)
         found = {}
         for text, expression in self.asked.items():
             written = self._written(text)
@@ -306,15 +301,11 @@ class VariantRun:
                 continue
             result = expression.evaluate(resolve, units)
             value = result.value
-            parts = value.components if isinstance(value, Vector) else (value,)
-            columns = [
-                np.asarray(
-                    units.from_si(
-                        np.array(np.broadcast_to(part, (count * self.rows,))), result.dimension
-                    )
-                ).reshape(count, self.rows)
-                for part in parts
-            ]
+            columns = []
+            for part in value.components if isinstance(value, Vector) else (value,):
+                in_si = np.array(np.broadcast_to(part, (count * self.rows,)))
+                in_units = np.asarray(units.from_si(in_si, result.dimension))
+                columns.append(in_units.reshape(count, self.rows))
             found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
         return found
 
@@ -328,8 +319,6 @@ class VariantRun:
                 return driven.written
         return None
 
-    # --- one at a time --------------------------------------------------------------------
-
     def _alone(
         self,
         values: Floats,
@@ -340,6 +329,9 @@ class VariantRun:
     ) -> None:
         """One variant as `with_parameters(...).analyze()` gives it."""
         named = dict(zip(self.names, values.tolist(), strict=True))
+        for text in self.asked:
+            if not found[text].flags.writeable:
+                found[text] = found[text].copy()
         try:
             model = VariedModel(self.base, named)
             analysis = model.analyze(self.read, tables=[], lanes=self.lanes)
@@ -350,13 +342,11 @@ class VariantRun:
                 )
             codes[number] = analysis.result.status
             for text in self.asked:
-                found[text] = _writable(found[text])
                 found[text][place] = analysis[text]
         except MechkinError as error:
             self.errors[number] = error
             codes[number] = int(Status.not_assembled)
             for text in self.asked:
-                found[text] = _writable(found[text])
                 found[text][place] = np.nan
 
     def _empty(self, expression: Expression, count: int) -> Floats:
@@ -365,30 +355,30 @@ class VariantRun:
         return np.full((count, self.rows, *width), np.nan)
 
 
-class _Resolve:
+class _Resolver:
     """Names of expressions over a chunk: (variants * rows,) in SI."""
 
     def __init__(
         self,
-        study: VariantRun,
+        run: VariantRun,
         variation: SessionVariation,
         reading: VariantReadout,
         runs: Runs,
         values: Floats,
         codes: NDArray[np.int8],
     ) -> None:
-        self.study, self.reading, self.runs = study, reading, runs
-        self.count, self.rows = values.shape[1], study.rows
-        self.known = study.problem.quantities()
-        self.given = study._given()
+        self.run, self.reading, self.runs = run, reading, runs
+        self.count, self.rows = values.shape[1], run.rows
+        self.known = run.problem.quantities()
+        self.prescribed = run.prescribed()
         self.unclear = codes == int(Status.rank_unclear)
         self.solved = runs.end == int(VariantEnd.COMPLETE)
         parameters = variation.parameters(values)
-        self.parameters = dict(zip(study.problem.parameters, parameters, strict=True))
+        self.parameters = dict(zip(run.problem.parameters, parameters, strict=True))
 
     def __call__(self, name: str) -> Quantity:
         if name in self.parameters:
-            dimension = self.study.problem.parameters[name].dimension
+            dimension = self.run.problem.parameters[name].dimension
             return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
         if name not in self.known:
             raise UnknownName(name, list(self.known))
@@ -398,7 +388,7 @@ class _Resolve:
         if wanted.owner == "row" and name != "time":
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)
-        if name in self.given:
+        if name in self.prescribed:
             rest = input_rest(self.reading.variation.base, name)
             if rest is not None:
                 rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
@@ -412,15 +402,15 @@ class _Resolve:
         return Quantity(columns[0], wanted.dimension, within)
 
     def _over_rows(self, name: str) -> Floats:
-        rows = np.broadcast_to(self.given[name], (self.count, self.rows))
-        values = {driven.name for driven in self.study.problem.motion.inputs} | {"time"}
+        rows = np.broadcast_to(self.prescribed[name], (self.count, self.rows))
+        values = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
         if name not in values:
             rows = np.where(self.solved[:, None], rows, np.nan)
         return rows.reshape(-1)
 
     def _column(self, wanted: Wanted, slot: int) -> Floats:
         column = self.runs.outputs[:, slot, :]
-        if self.unclear.any() and demand_of(self.study.problem.mechanism, [wanted]):
+        if self.unclear.any() and demand_of(self.run.problem.mechanism, [wanted]):
             column = np.where(self.unclear, np.nan, column)
         return column.reshape(-1)
 
@@ -428,7 +418,7 @@ class _Resolve:
 def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
     """Codes of `Status` (variants, rows) of those that are complete; others are not read.
 
-    `states` are the slots that tell the rows without an answer of friction.
+    `states` are the slots of friction's states, zero where there is an answer.
     """
     codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
     if not np.isnan(runs.condition).all():
@@ -444,12 +434,7 @@ def _doubtful(runs: Runs) -> Bools:
     """Variants (variants,) with a row whose rates may be rounding."""
     if np.isnan(runs.condition).all():
         return np.zeros(len(runs.condition), dtype=bool)
-    doubtful: Bools = np.any(~(runs.condition <= tolerances.CONDITION_RATES_UNCLEAR), axis=1)
-    return doubtful
-
-
-def _writable(array: Floats) -> Floats:
-    return array if array.flags.writeable else array.copy()
+    return np.asarray((~(runs.condition <= tolerances.CONDITION_RATES_UNCLEAR)).any(axis=1))
 
 
 LONGEST_MESSAGE = 400
@@ -462,8 +447,8 @@ class Variants:
     """Results of `Model.vary`: `r["O4.theta"]` is an array over the variants, in the file's units.
 
     Attributes:
-        parameters: (variants,) of every parameter given, in the file's units.
-        errors: what was said of variants that cannot be built, by their number.
+        parameters: (variants,) of every parameter that varies, in the file's units.
+        errors: of variants that cannot be built, by their number.
     """
 
     def __init__(
@@ -503,19 +488,16 @@ class Variants:
     @cached_property
     def status(self) -> NDArray[np.str_]:
         """The verdict of every variant and row, in words (variants, rows)."""
-        words = np.array([status.label for status in Status])
-        found: NDArray[np.str_] = words[self._codes]
-        return found
+        return np.array([status.label for status in Status])[self._codes]
 
     @property
     def complete(self) -> NDArray[np.bool_]:
         """Which variants have a position in every row (variants,), as `Analysis.complete`.
 
-        A row at a dead centre has one: `status` tells it, and what has no bound there is infinite.
+        A row at a dead centre has one: see `status`; what has no bound there is infinite.
         """
         solved = np.array([status.has_solution for status in Status])
-        found: NDArray[np.bool_] = np.logical_and.reduce(solved[self._codes], axis=1)
-        return found
+        return np.asarray(np.logical_and.reduce(solved[self._codes], axis=1))
 
 
 def vary(
@@ -530,10 +512,10 @@ def vary(
 ) -> Variants:
     """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
     if a_text("run", run, f'"{SWEEP}"') != SWEEP:
-        from mechkin_cli.variants.responses import vary_response
-
         name = response_name(base.model, run)
-        return vary_response(base, held, parameters, quantities, reduce, name, lanes, threads)
+        return variants.vary_response(
+            base, held, parameters, quantities, reduce, name, lanes, threads
+        )
     lanes = a_whole_number("lanes", lanes, "rows at a time")
     threads = a_whole_number("threads", threads, "threads")
     check_width(lanes)
@@ -545,24 +527,19 @@ def vary(
         )
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
-    given = file_values(values, problem, names)
+    varied = file_values(values, problem, names)
     names, values = with_held(list(problem.parameters), names, values, held)
     asked = expressions_of(
         problem.mechanism.coordinates if quantities is None else quantities, problem
     )
-    study = VariantRun(base, names, asked, reductions_of(asked, reduce), lanes, threads)
-    _check_memory(values.shape[1], study)
-    return Variants(given, *study.run(values))
-
-
-def _check_memory(variants: int, study: VariantRun) -> None:
-    """Whether all that comes back fits into memory."""
-    kept = variants * study.numbers_kept()
-    if kept > MOST_KEPT:
+    call = VariantRun(base, names, asked, reductions_of(asked, reduce), lanes, threads)
+    numbers = values.shape[1] * call.numbers_returned()
+    if numbers > MOST_KEPT:
         raise UsageError(
-            f"the results of {variants} variants are {kept} numbers (limit {MOST_KEPT}); ask for "
-            "less, reduce over the rows, or take fewer variants at a time"
+            f"the results of {values.shape[1]} variants are {numbers} numbers (limit {MOST_KEPT}); "
+            "ask for less, reduce over the rows, or take fewer variants at a time"
         )
+    return Variants(varied, *call.run(values))
 
 
 def with_held(

@@ -1,8 +1,8 @@
-"""A model under other parameters, without reading or building anew.
+"""A model under other parameters, without reading or building it again.
 
 The base model records once, for each set of parameters, how its plan depends on them; variants are
 replays of that. Where a recording does not hold, the variant is built anew: the same answers and
-the same errors, only slower.
+the same errors, only slower. First, values of parameters as a caller gives them, to SI.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli import building, variants
 from mechkin_cli.arguments import Setting, a_setting, a_text, settings, shown
 from mechkin_cli.building import build, is_tiny_length, record
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
@@ -37,9 +38,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension, UnitSystem
     from mechkin_cli.variants.many import Reduce, Variants
-
-
-# Values of parameters as a caller gives them, to SI: one of each, or arrays.
 
 
 def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, float]:
@@ -130,18 +128,16 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
         )
     if array.dtype.kind not in "fiu":
         items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
-        return np.array(
-            [one_value(name, item, dimension, units) for item in items], dtype=np.float64
-        )
-    found = units.to_si(array.astype(np.float64), dimension)
-    sizes = np.abs(found)
+        return np.array([one_value(name, item, dimension, units) for item in items], np.float64)
+    in_si = units.to_si(array.astype(np.float64), dimension)
+    sizes = np.abs(in_si)
     least = SMALLEST_SIZE if dimension == LENGTH else 0.0
-    kept = (sizes >= least) & (sizes > 0.0) | (array == 0)
-    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & kept))
+    large = (sizes >= least) & (sizes > 0.0) | (array == 0)
+    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & large))
     if wrong.size:
         one_value(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
-        _bounded(f"{name}[{wrong[0]}]", float(found[wrong[0]]), array[wrong[0]], dimension)
-    return found
+        _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]], dimension)
+    return in_si
 
 
 def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> float:
@@ -279,13 +275,10 @@ class VariedModel(Model):
     @cached_property
     def precise(self) -> Precise:
         """As `Model.precise`; values that were set are the doubles that they are."""
-        from mechkin_cli.building import precise
-
-        return precise(self.built, self.problem, self._given)
+        return building.precise(self.built, self.problem, self._given)
 
     @property
     def _given(self) -> dict[str, Quantity]:
-        """The values that were set, in SI."""
         known = self._base.model.problem.parameters
         return {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
 
@@ -340,14 +333,14 @@ class VariedModel(Model):
         threads: int = 0,
     ) -> Analysis:
         """As `Model.respond`; the assembly at the start is chosen for these parameters."""
-        found = self._fresh.respond(
+        analysis = self._fresh.respond(
             name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
         )
-        found.model = self
-        return found
+        analysis.model = self
+        return analysis
 
     def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
-        """As `Model.with_parameters`; values of before stay unless they are given anew."""
+        """As `Model.with_parameters`; values set before stay unless they are set again."""
         root = self._base.model
         values = {**self._values, **parameter_values(root.problem, parameters)}
         ordered = {name: values[name] for name in root.problem.parameters if name in values}
@@ -363,14 +356,14 @@ class VariedModel(Model):
         lanes: int = 0,
         threads: int = 0,
     ) -> Variants:
-        """As `Model.vary`; values of before stay unless they are given anew."""
-        from mechkin_cli.variants.many import vary
-
-        return vary(self._base, self._values, parameters, quantities, reduce, run, lanes, threads)
+        """As `Model.vary`; values set before stay unless they are set again."""
+        return variants.vary(
+            self._base, self._values, parameters, quantities, reduce, run, lanes, threads
+        )
 
 
 class _BuiltAnew(Model):
-    """A model that was built with values, which its file does not have; `given` are those in SI."""
+    """A model built with values that its file does not have; `given` are those in SI."""
 
     def __init__(self, built: Built, stem: str, given: Mapping[str, Quantity]) -> None:
         super().__init__(built, stem)
@@ -382,7 +375,6 @@ class _BuiltAnew(Model):
 
 
 def _revaried(model: Model, values: Mapping[str, float]) -> Model:
-    """A model with the values that another had."""
     return VariedModel(Base(model), values) if values else model
 
 

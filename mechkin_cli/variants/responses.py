@@ -52,12 +52,12 @@ def vary_response(
     """`Model.vary` of a response, whose arguments these are.
 
     Rows are the moments asked for; where a stop ends a variant its row takes the place of the next
-    moment (`time` tells), and those behind it hold nan.
+    moment (see `time`), and those behind it hold nan.
     """
     packing = a_packing(lanes, threads)
     problem = base.model.problem
     names, values = parameter_arrays(problem, parameters)
-    given = file_values(values, problem, names)
+    varied = file_values(values, problem, names)
     names, values = with_held(list(problem.parameters), names, values, held)
     known = response_problem(problem, problem.responses[run])
     asked = expressions_of(
@@ -65,13 +65,13 @@ def vary_response(
     )
     reductions = reductions_of(asked, reduce)
     read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
-    study = _Study(base, names, list(read), run, packing)
-    found = study.run(values)
-    kept = {text: reduced(text, found[text], reductions[text], found.get(TIME)) for text in asked}
-    return Variants(given, kept, study.codes, study.errors)
+    call = _ResponseRun(base, names, list(read), run, packing)
+    rows = call.run(values)
+    results = {text: reduced(text, rows[text], reductions[text], rows.get(TIME)) for text in asked}
+    return Variants(varied, results, call.codes, call.errors)
 
 
-class _Study:
+class _ResponseRun:
     """One call: arrays (variants, rows) or (variants, rows, 3) by the texts asked for."""
 
     def __init__(

@@ -31,7 +31,6 @@ class Draws(Protocol):
 
     def stretch(self, begin: int, end: int) -> Floats:
         """Samples `begin` to `end` (without it), (samples, dimensions), between 0 and 1."""
-        ...
 
 
 def needs_scipy(method: Method, distributions: Iterable[object]) -> bool:
@@ -41,7 +40,7 @@ def needs_scipy(method: Method, distributions: Iterable[object]) -> bool:
 
 
 def has_scipy() -> bool:
-    """Whether scipy is there, without which the package does elsewhere."""
+    """Whether scipy is installed, which is optional."""
     try:
         import scipy.special  # noqa: F401
     except ImportError:
@@ -117,8 +116,7 @@ def _seeded(engine: Any, dimensions: int, seed: int) -> Any:
 
 
 def _inside(values: Floats) -> Floats:
-    clipped: Floats = np.clip(values, *_INSIDE)
-    return clipped
+    return np.clip(values, *_INSIDE)
 
 
 def uniform(samples: Floats, least: float, most: float) -> Floats:
@@ -130,5 +128,4 @@ def normal(samples: Floats, mean: float, deviation: float) -> Floats:
     """Samples (n,) to values of a normal distribution."""
     from scipy.special import ndtri
 
-    found: Floats = mean + deviation * ndtri(samples)
-    return found
+    return np.asarray(mean + deviation * ndtri(samples))
