@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from mechkin_cli import view as pages
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
@@ -68,21 +69,19 @@ def view(
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
     responses, in all assembly modes, with curves, tables, verdicts and notes.
     """
-    from mechkin_cli.view import PAGE_NAME, analyses_of, view_page, write_view
-
     tell_as(messages)
     try:
         with working(f"{shown(file)}: reading", quiet) as tell:
             model = model_of(file, parameters(set_))
             tell(f"{shown(file)}: rows")
-            analyses = analyses_of(model, run, mode)
+            analyses = pages.analyses_of(model, run, mode)
             tell(f"{shown(file)}: the page")
-            page, notes = view_page(analyses, not no_modes)
-        target = write_view(out or Path("out", stem_of(file), PAGE_NAME), page)
+            page, notes = pages.view_page(analyses, not no_modes)
+        target = pages.write_view(out or Path("out", stem_of(file), pages.PAGE_NAME), page)
     except (InvalidFile, UsageError) as error:
         raise typer.Exit(refusal(file, error)[0]) from None
-    said = [found for analysis in analyses for found in analysis.diagnostics]
-    say_diagnostics(dict.fromkeys([*said, *notes]), shown(file))
+    diagnostics = [one for analysis in analyses for one in analysis.diagnostics]
+    say_diagnostics(dict.fromkeys([*diagnostics, *notes]), shown(file))
     put(f"{target}\n")
     if not quiet:
         say(_summary(analyses, len(page)))
@@ -93,7 +92,6 @@ def view(
 
 
 def _summary(analyses: list[Analysis], size: int) -> str:
-    """What is on the page, and how large it is."""
     model = analyses[0].model
     runs = ", ".join(f"{one.run} ({one.rows} rows)" for one in analyses)
     return f"{model.name}: {runs}; {size / 1000:.0f} kB, to be opened in a browser"

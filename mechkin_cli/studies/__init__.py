@@ -7,7 +7,11 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.studies.formats import FORMATS as FORMATS
-    from mechkin_cli.studies.results import StudyFiles as StudyFiles, StudyResults as StudyResults
+    from mechkin_cli.studies.results import (
+        Spread as Spread,
+        StudyFiles as StudyFiles,
+        StudyResults as StudyResults,
+    )
     from mechkin_cli.studies.source import open_study as open_study
     from mechkin_cli.studies.study import Study as Study, Workers as Workers, study_of as study_of
     from mechkin_cli.studies.workers import end_without_warnings as end_without_warnings
@@ -16,7 +20,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "formats": ["FORMATS"],
-        "results": ["StudyFiles", "StudyResults"],
+        "results": ["Spread", "StudyFiles", "StudyResults"],
         "source": ["open_study"],
         "study": ["Study", "Workers", "study_of"],
         "workers": ["end_without_warnings"],

@@ -229,9 +229,10 @@ class TableColumn:
 
 
 def column_of_numbers(
-    label: str, unit: str, numbers: FloatArray, decimals: int | None = None
+    label: str, unit: str, numbers: FloatArray | Sequence[float], decimals: int | None = None
 ) -> TableColumn:
     """A column of numbers (rows,), of which some may be infinite."""
+    numbers = np.asarray(numbers, dtype=np.float64)
     infinite = np.isinf(numbers)
     if not infinite.any():
         return TableColumn(label, unit, numbers, decimals)
