@@ -73,7 +73,6 @@ def _kernel(
     packing: Packing = ALONE,
     more: Demand = Demand.POSITION,
 ) -> Method:
-    """A call of the kernel with many rows."""
     make = partial(
         scene.kernel,
         level,
@@ -88,7 +87,6 @@ def _kernel(
 
 
 def _sweeps(scene: BenchScene) -> Iterator[Method]:
-    """Whole sweeps: followed by skeletons of some spacings, with verdicts and without."""
     rows = scene.result.rows
     if scene.session.route is None and scene.is_whole:
         for spacing in SPACINGS:

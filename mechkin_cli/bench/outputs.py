@@ -58,14 +58,10 @@ class FigureCurve(NamedTuple):
     dark: str
 
 
+SPACED = "mechkin: followed and closed, by spacing"
 CURVES = (
     FigureCurve("kernel, by tolerance", "mechkin: kernel, by tolerance", "#0550ae", "#6cb6ff"),
-    FigureCurve(
-        "sweep, by skeleton spacing",
-        "mechkin: followed and closed, by spacing",
-        "#1a7f7a",
-        "#56d4cf",
-    ),
+    FigureCurve("sweep, by skeleton spacing", SPACED, "#1a7f7a", "#56d4cf"),
     FigureCurve("sweep, verdicts", "mechkin: analyze, with verdicts", "#116329", "#57d364"),
     FigureCurve("compiled Newton", "CasADi: compiled Newton, by steps", "#8250df", "#d2a8ff"),
     FigureCurve("Newton on its Jacobians", "Pinocchio: Newton, by steps", "#9a6700", "#e3b341"),
@@ -182,12 +178,12 @@ def _page(width: float, height: float, parts: Sequence[str], used: Iterable[Figu
     marks = [(CURVES.index(curve), curve) for curve in used]
     light = "".join(f".c{k}{{stroke:{c.light}}}.p{k}{{fill:{c.light}}}" for k, c in marks)
     dark = "".join(f".c{k}{{stroke:{c.dark}}}.p{k}{{fill:{c.dark}}}" for k, c in marks)
-    both = f"{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}\n"
+    style = f"{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}\n"
     size = f'width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.0f} {height:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img">'
-    told = "<title>Time per position against its error, a curve for each method</title>"
+    title = "<title>Time per position against its error, a curve for each method</title>"
     back = f'<rect class="bg" width="{width:.0f}" height="{height:.0f}"/>'
-    return "\n".join([head, told, f"<style>{both}</style>", back, *parts, "</svg>", ""])
+    return "\n".join([head, title, f"<style>{style}</style>", back, *parts, "</svg>", ""])
 
 
 MOTION = ("position", "velocity", "acceleration")
@@ -226,9 +222,8 @@ BEST_COLUMNS = (
 def best_table(benches: Sequence[Bench]) -> ReportTable:
     """For positions and for the motion: the fastest other method whose error is no more than ten
     times that of mechkin's sweep."""
-    rows = [
-        row for bench in benches for level in ("position", "motion") for row in _best(bench, level)
-    ]
+    levels = ("position", "motion")
+    rows = [row for bench in benches for level in levels for row in _best(bench, level)]
     families = {m.family for bench in benches for m in bench.measurements}
     notes = (
         "as exact: every error at most ten times that of mechkin's sweep with its verdicts.",
@@ -382,9 +377,7 @@ def write(
         "page": page(machine, benches, tables, NAMES["figure"], command),
         "figure": figure(benches),
     }
-    found = []
-    for kind, text in texts.items():
-        path = folder / NAMES[kind]
+    paths = {folder / NAMES[kind]: text for kind, text in texts.items()}
+    for path, text in paths.items():
         path.write_text(text, encoding="utf-8", newline="\n")
-        found.append(path)
-    return found
+    return list(paths)

@@ -95,8 +95,8 @@ class BenchScene:
             )
         if not self.asked.position:
             raise UsageError(
-                f"{name} has nothing by which errors could be told: no unknown coordinate has a "
-                "name; write points: on a link that moves"
+                f"{name} has nothing by which errors could be measured: no unknown coordinate has "
+                "a name; write points: on a link that moves"
             )
         self.result = analyze(model.session.packed(ALONE), self.asked.level("everything"))
         self.solved = np.flatnonzero(self.result.row_states.reached)

@@ -81,7 +81,7 @@ MECHANISM = "mechanism"
 
 
 def committed(name: str) -> Path:
-    """Where the schema of a name is kept."""
+    """The committed file of a schema."""
     return Path(f"schemas/{name}.schema.json")
 
 

@@ -28,7 +28,7 @@ from mechkin_cli.tables import (
     TableColumn,
     Words,
     column_texts,
-    counted_cells,
+    counted,
 )
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP, Status
@@ -287,12 +287,12 @@ def errors_line(analysis: Analysis) -> str:
     words = [c for c in errors.columns if c.why == WORDS]
     parts += [f"words, which have no error: {_named(words)}"] if words else []
     bounds = sum(int(np.count_nonzero(c.is_bound)) for c in errors.columns)
-    parts += [f"{bounds} cells right to at least the digits told"] if bounds else []
+    parts += [f"{bounds} cells right to at least the digits given"] if bounds else []
     for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
         lost = sum(c.lost for c in errors.columns if c.lost_why == why)
-        parts.append(f"{counted_cells(lost)} not measured ({why})")
+        parts.append(f"{counted(lost, 'cell')} not measured ({why})")
     empty = sum(int(np.count_nonzero(c.at_dead_centre)) for c in errors.columns)
-    parts += [f"{counted_cells(empty)} without a figure ({AT_DEAD_CENTRE})"] if empty else []
+    parts += [f"{counted(empty, 'cell')} without a figure ({AT_DEAD_CENTRE})"] if empty else []
     return "; ".join(parts)
 
 

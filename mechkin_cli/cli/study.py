@@ -1,4 +1,4 @@
-"""`mechkin study`: a hundred thousand variants of a mechanism, and what is kept of each."""
+"""`mechkin study`: a hundred thousand variants of a mechanism, a few numbers of each."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def study(
         ),
     ] = "csv",
     again: Annotated[
-        bool, typer.Option("--again", help="Discard the results in the folder and begin anew.")
+        bool, typer.Option("--again", help="Discard the results in the folder and start over.")
     ] = False,
     threads: Annotated[
         int, typer.Option("--threads", help="Threads of each process (0: as many as pay).")
@@ -191,8 +191,8 @@ def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Rec
             f"{planned.piece}"
         )
         run = planned.plan.question.run
-        kept = len(planned.plan.question.tables["variants"])
-        say(f"  of the run {run} {kept} columns are kept of every variant")
+        count = len(planned.plan.question.tables["variants"])
+        say(f"  each variant has {count} columns, of the run {run}")
     return {
         "variants": planned.variants,
         "piece": planned.piece,

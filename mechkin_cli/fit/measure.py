@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 CURVE_ROWS = 181
 """Rows of a curve between which the nearest place is sought: 2 deg of a turn, so that ten of
-them tell the curve between to rounding."""
+them give the curve between to rounding."""
 
 LEFT_OUT = ("tables", "responses", "view")
 """Sections that no fit reads."""

@@ -266,7 +266,7 @@ class Sensitivities(Listed):
             f"Sensitivities of {self.model.name}: {len(self.quantities)} quantities, "
             f"{len(self.parameters)} parameters, {self.rows.size} rows"
         )
-        labels = ("quantity", "parameter", "largest", "unit", f"at {self.along}", "not told")
+        labels = ("quantity", "parameter", "largest", "unit", f"at {self.along}", "missing")
         return Listing(head, labels, rows, tuple(bending_notes(self)))
 
     def to_pandas(self) -> pandas.DataFrame:

@@ -36,7 +36,7 @@ def messages(
 
     Args:
         found: all rows of the variants.
-        texts: what is kept of them.
+        texts: quantities that are kept.
         along: what the run goes along, None where nothing moves.
         places: its values in the rows (variants, rows).
     """
@@ -61,7 +61,7 @@ def _reason(status: Status) -> str:
 
 
 def _infinite(found: Variants, texts: Iterable[str]) -> dict[int, str]:
-    """Which of what is kept is infinite, and in which row first, by the number of the variant."""
+    """Kept quantities that are infinite, and in which row first, by the number of the variant."""
     at = found.codes == Status.dead_centre
     numbers = np.flatnonzero(at.any(axis=1))
     words: dict[int, str] = {}
@@ -156,8 +156,8 @@ class StudyQuestion:
 def chunk(
     model: Model, question: StudyQuestion, values: Mapping[str, Floats], begin: int, threads: int
 ) -> dict[str, Records]:
-    """What is kept of variants that have these values (variants,) by name, in the file's units; the
-    first has the number `begin`. By name of table."""
+    """Records of variants with these values (variants,) by name, in the file's units, by name of
+    table; the first variant has the number `begin`."""
     found, places = _varied(model, question, values, threads)
     count = len(found)
     records: Records = {VARIANT.label: np.arange(begin, begin + count, dtype=np.int64)}

@@ -161,7 +161,7 @@ class StudyFolder:
                     yield from self._format.read(path, headings)
                 except (ValueError, KeyError) as error:
                     raise UsageError(
-                        f"{path} is not as it was written: {str(error)[:120]}; begin anew with "
+                        f"{path} is not as it was written: {str(error)[:120]}; start over with "
                         "--again"
                     ) from None
 
@@ -199,7 +199,7 @@ class StudyFolder:
         if not _is_manifest(found):
             raise UsageError(
                 f"{path} does not say what the folder holds; choose another folder with --out, or "
-                "begin anew with --again"
+                "start over with --again"
             )
         return dict(found)
 
@@ -217,7 +217,7 @@ class StudyFolder:
         what = ", ".join(changed) or "columns"
         raise UsageError(
             f"{self.folder} holds results of another study: different {what}; choose another "
-            "folder with --out, or begin anew with --again"
+            "folder with --out, or start over with --again"
         )
 
     def _write_manifest(self) -> None:

@@ -431,7 +431,7 @@ class _QuestionReader:
         """The unit of a quantity or expression of one number; None where it is none."""
         problem = self.problem
         if text.strip() in ROW_TEXTS:
-            hint = "the verdict of every variant is kept anyway"
+            hint = "every variant has its verdict anyway"
             self.faults.error("words", path, f"{text} is words, no number", hint)
             return None
         try:

@@ -130,12 +130,12 @@ class StudyFiles(NamedTuple):
 
 
 class StudyResults(Listed):
-    """What was kept of all variants: `r["peak(O1.effort)"]` is an array over them, in the file's
+    """The results of all variants: `r["peak(O1.effort)"]` is an array over them, in the file's
     units.
 
     Attributes:
         name: of the study.
-        rows: columns of all rows of all variants by label, empty where none were kept.
+        rows: columns of all rows of all variants by label, empty where the study keeps none.
         diagnostics: messages on the study.
     """
 

@@ -145,7 +145,7 @@ class StudySource(NamedTuple):
         return given
 
     def _at_home(self, found: Diagnostic, parameters: Mapping[str, str]) -> Diagnostic:
-        """What was said of a value of `set:`, at its place in the study."""
+        """A message on a value of `set:`, at its place in the study."""
         place = found.place
         if place is None or place.in_file or not place.file.startswith(_OUTSIDE):
             return found

@@ -84,10 +84,10 @@ def passed_straight_on(
 
     Args:
         subject: what passed them.
-        places: numbers that tell each branch point.
+        places: numbers of each branch point.
         place: of what asked for the motion.
     """
-    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    shown = [_words(numbers) for numbers in places[:MOST_SHOWN]]
     more = len(places) - len(shown)
     return Diagnostic(
         "branch-point-passed",
@@ -137,6 +137,10 @@ def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
     return input_faults(session) if farthest <= tolerances.PASSED else []
 
 
+def _words(places: Iterable[Number]) -> str:
+    return ", ".join(map(input_text, places))
+
+
 def _stay_empty(rows: SweepRows, where: str = "") -> str:
     """The missing rows in words, and `where` they lie."""
     missing = np.sort(rows.numbers[~rows.reached]) + 1
@@ -175,7 +179,7 @@ def _dead_centre_note(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
-        measured=", ".join(map(input_text, shown)),
+        measured=_words(shown),
         hint=f"{cure}{_chords(session, path)}",
         numbers=shown,
     )
@@ -220,21 +224,27 @@ def _all_beyond(limit: BranchFold, path: Floats, rows: SweepRows) -> bool:
     return bool(np.all(along <= 0.0))
 
 
+def _error(
+    code: str, rows: SweepRows, places: tuple[Number, ...], text: str, measured: str, hint: str
+) -> Diagnostic:
+    """A branch that ends at these places, in no dead centre of the mechanism."""
+    message = f"{text}; {_stay_empty(rows)}"
+    return Diagnostic(code, "error", message, measured=measured, hint=hint, numbers=places)
+
+
 def _runaway_note(
     session: Session, followed: Followed, limit: Runaway, rows: SweepRows
 ) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
     units = session.problem.units
     slide = float(units.from_si(limit.slide * session.layout.length, LENGTH))
-    return Diagnostic(
+    return _error(
         "unbounded",
-        "error",
-        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
-        f"{_stay_empty(rows)}",
-        measured=f"{slide:.6g} {units.label(LENGTH)} at the last place followed, "
-        f"{', '.join(map(input_text, places))}",
-        hint="end the sweep before it, or choose another assembly",
-        numbers=places,
+        rows,
+        places,
+        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity",
+        f"{slide:.6g} {units.label(LENGTH)} at the last place followed, {_words(places)}",
+        "end the sweep before it, or choose another assembly",
     )
 
 
@@ -242,15 +252,15 @@ def _branch_point_note(
     session: Session, followed: Followed, point: BranchPoint, rows: SweepRows
 ) -> Diagnostic:
     places = _place(session, followed, point.inputs)
-    return Diagnostic(
+    return _error(
         "branch-point",
-        "error",
+        rows,
+        places,
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
-        f"either way; {_stay_empty(rows)}",
-        measured=", ".join(map(input_text, places)),
-        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
+        "either way",
+        _words(places),
+        "assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
         "begin another sweep beyond it with assembly: {near: ...}",
-        numbers=places,
     )
 
 
@@ -270,38 +280,34 @@ def _lost_hold_note(
     conventions = ", ".join(dict.fromkeys(one.convention for one in held))
     names = [one.name for one in held if one.cure == f"drive {one.name}"]
     drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
-    return Diagnostic(
+    return _error(
         "hold-ends",
-        "error",
+        rows,
+        places,
         f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
-        f"itself has no dead centre; {_stay_empty(rows)}",
-        measured=", ".join(map(input_text, places)),
-        hint=f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
-        numbers=places,
+        "itself has no dead centre",
+        _words(places),
+        f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
     )
 
 
 def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
-    return Diagnostic(
+    note = _error(
         "steps-exhausted",
-        "error",
+        rows,
+        places,
         "following the branch takes too many steps: the way to the next row is too long, or the "
-        f"mechanism turns too fast on it; {_stay_empty(rows)}",
-        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
-        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
-        hint="check the range of the input and its unit",
-        numbers=places,
+        "mechanism turns too fast on it",
+        f"{followed.steps} steps, last place {_words(places)}",
+        "check the range of the input and its unit",
     )
+    limit = f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit"
+    return note._replace(limit=limit)
 
 
 def _lost_note(session: Session, followed: Followed, path: Floats, rows: SweepRows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
-    return Diagnostic(
-        "branch-lost",
-        "error",
-        f"the branch could not be followed further; {_stay_empty(rows)}",
-        measured=f"last place {', '.join(map(input_text, places))}",
-        hint=(MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path),
-        numbers=places,
-    )
+    hint = (MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path)
+    text = "the branch could not be followed further"
+    return _error("branch-lost", rows, places, text, f"last place {_words(places)}", hint)

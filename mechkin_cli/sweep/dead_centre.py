@@ -261,7 +261,7 @@ def _note(rows: SweepRows) -> Diagnostic:
     both = ""
     if double:
         both = (
-            f"; nothing tells on which of two branches row {double[0]} is, so what is infinite "
+            f"; it is undecided on which of two branches row {double[0]} is, so what is infinite "
             "with another sign on each is empty, too"
         )
     return Diagnostic(

@@ -41,7 +41,7 @@ _WHY = {
         "make the coefficient smaller, or move the sweep by a fraction of its step",
     ),
 }
-"""What is said of a row without an answer, and what to do."""
+"""Why a row has no answer, and what to do."""
 
 
 FrictionVerdict = tuple["Bools", "Bools", list[Diagnostic]]

@@ -249,7 +249,7 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
             continue
         text = (
             f"where {name} is a quarter turn the turns before and after it go about one axis: "
-            f"rows may be lost or singular there by how {joint.name} tells its pose alone"
+            f"rows may be lost or singular there by the coordinates of {joint.name} alone"
         )
         hint = f"remove {joint.name} and read points and directions, or drive its turns"
         found.append(Diagnostic("locked-pose", "note", text, hint=hint))
@@ -340,7 +340,7 @@ def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
     """What to say of the rows (rows,) of a result in which some load has no value.
 
     The laws are evaluated once more, from the same quantities as in the kernel and with the same
-    bits, to tell them apart.
+    bits, to identify them.
     """
     known = result.problem.quantities()
     result.read([known[name] for name in quantities_read(result.problem)])

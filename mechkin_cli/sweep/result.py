@@ -1,7 +1,7 @@
 """A finished run: the states of all rows, their verdicts, and every quantity computed from them.
 
 Quantities are evaluated on the stored states when they are asked for, at the first reading or
-later; nothing is searched or followed again. What was read is kept.
+later; nothing is searched or followed again.
 """
 
 from __future__ import annotations
@@ -399,8 +399,8 @@ class Result(Proven):
         demand: Demand = Demand.POSITION,
         shift: int = 0,
     ) -> Columns:
-        """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
-        differs in masses and loads alone, or with the reactions of a `shift`."""
+        """Quantities on the stored states, without storing them: with other `inputs` (rates), of a
+        session that differs in masses and loads alone, or with the reactions of a `shift`."""
         own = session or self.session
         demand |= demand_of(own.problem.mechanism, wanted)
         readout = own.readout(wanted)

@@ -180,7 +180,7 @@ class RunRows(Protocol):
         """Evaluates the quantities that have not been read yet."""
 
     def evaluated(self, wanted: Sequence[Wanted], *, shift: int = 0) -> Columns:
-        """Quantities on the stored states, not kept, with the reactions of a `shift`."""
+        """Quantities on the stored states, not stored, with the reactions of a `shift`."""
 
     def run(
         self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None

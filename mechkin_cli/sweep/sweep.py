@@ -55,7 +55,7 @@ class SweepQuantities:
 
     Attributes:
         asked: those asked for, and those by which the rows are judged beside them.
-        ask: what the run that closes the rows computes and reads off: no derived quantities.
+        ask: what the run that closes the rows computes: no derived quantities.
         rests_on_reactions: whether some are not unique where reactions are not.
     """
 
@@ -89,7 +89,7 @@ def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
 def at_once(
     session: Session, asked: Sequence[Wanted], verdicts: bool
 ) -> tuple[list[Wanted], Demand]:
-    """What the run that closes the rows reads off, and its demand: no derived quantities."""
+    """Quantities of the run that closes the rows, and its demand: no derived ones."""
     mechanism = session.problem.mechanism
     wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
     demand = demand_of(mechanism, wanted)
@@ -220,7 +220,7 @@ def _is_near_singular(batch: Batch) -> Bools:
 
 def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
     """The run with so many steps that rows on a fold close, too, where each only halves what is
-    left; and with conditions, which tell that they do."""
+    left; and with conditions, which show that they do."""
     demand = asked.ask.demand | Demand.CONDITION
     return result.run(asked.ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
 
@@ -272,7 +272,7 @@ def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
 
 def _judge_inputs(session: Session, rows: SweepRows) -> None:
     """Names inputs that cannot move; the rates of no row mean anything where they are to move: more
-    equations than unknowns leave a least square, whose condition tells nothing."""
+    equations than unknowns leave a least square, whose condition means nothing."""
     if not session.is_redundant or not session.driven or not rows.reached.any():
         return
     row = int(np.argmax(rows.reached))

@@ -35,7 +35,7 @@ def reaction_rounding(result: RunRows) -> Floats:
     unit.
 
     It goes with the largest reaction of the run. A row without any load has none but those of the
-    null space, whose rounding is what tells its zeros.
+    null space, whose rounding decides what is zero.
     """
     level = _level(result, 0)
     largest = float(np.max(level[np.isfinite(level)], initial=0.0))

@@ -1,8 +1,8 @@
 """Comparison of fresh tables with committed ones, byte by byte, explained cell by cell.
 
 The relative change of a cell is |fresh - committed| / max(|fresh|, |committed|); the scaled change
-is the same difference over the column's largest committed magnitude, which tells rounding near a
-zero crossing from a change that matters.
+is the same difference over the column's largest committed magnitude, which separates rounding near
+a zero crossing from a change that matters.
 
 A file beside a mechanism for which there is no table any more is stale only if it shows that
 mechkin wrote it, since stale files are removed: a table has two files of one name, CSV and
@@ -25,6 +25,7 @@ from typing import Literal
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.tables.errata import HEAD, HEADER, NAME, PAGE
+from mechkin_cli.tables.layout import counted
 from mechkin_cli.tables.print import TableText, read_table_text
 
 TABLE_SUFFIXES = (".csv", ".md")
@@ -307,13 +308,13 @@ def _file_lines(comparison: FileComparison) -> list[str]:
     for cell in comparison.cells:
         lines += _wrapped(_cell_line(cell), "  ")
     rest = comparison.cell_count - len(comparison.cells)
-    return [*lines, f"  and {_counted(rest, 'more cell')}"] if rest else lines
+    return [*lines, f"  and {counted(rest, 'more cell')}"] if rest else lines
 
 
 def _headline(comparison: FileComparison) -> str:
     text = f"{comparison.name}: different"
     if comparison.cell_count:
-        text += f", {_counted(comparison.cell_count, 'cell')}"
+        text += f", {counted(comparison.cell_count, 'cell')}"
     if comparison.largest_relative_change is not None:
         text += f"; largest relative change {comparison.largest_relative_change:.2g}"
     if comparison.largest_scaled_change is not None:
@@ -329,17 +330,13 @@ def _cell_line(cell: CellChange) -> str:
 
 def _summary(comparisons: Sequence[FileComparison]) -> str:
     counts = Counter(comparison.verdict for comparison in comparisons)
-    text = f"{_counted(len(comparisons), 'table file')}: {counts['equal']} equal"
+    text = f"{counted(len(comparisons), 'table file')}: {counts['equal']} equal"
     for verdict in ("different", "missing", "extra"):
         if counts[verdict]:
             text += f", {counts[verdict]} {verdict}"
     if counts["equal"] == len(comparisons):
         return text
     return f"{text}; where the change is meant, run `mechkin tables` and commit the files"
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _shortened(text: str, longest: int) -> str:

@@ -24,6 +24,7 @@ from mechkin_cli.tables.layout import (
     ROW_NUMBER,
     PrintedSource,
     TableLayout,
+    counted,
     link_target,
     markdown_line,
     markdown_text,
@@ -70,7 +71,7 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
 def counts(agreements: Iterable[TableAgreement]) -> str:
     """Agreement of some tables in a few words: `12 of 15 cells agree, 2 one off, 1 differs`."""
     total = TableAgreement(tuple(cell for one in agreements for cell in one.cells))
-    text = f"{total.agreeing} of {_counted(len(total.cells), 'cell')} agree"
+    text = f"{total.agreeing} of {counted(len(total.cells), 'cell')} agree"
     text += f", {total.one_off} one off" if total.one_off else ""
     differ = "differs" if total.differing == 1 else "differ"
     return text + (f", {total.differing} {differ}" if total.differing else "")
@@ -111,9 +112,9 @@ def _table_parts(one: PrintedTable) -> list[str]:
 def _left_out(found: TableAgreement) -> str:
     texts = []
     if found.without_row:
-        texts.append(f"{_counted(found.without_row, 'printed row')} without a computed one.")
+        texts.append(f"{counted(found.without_row, 'printed row')} without a computed one.")
     if found.without_value:
-        texts.append(f"{_counted(found.without_value, 'printed cell')} with an empty computed one.")
+        texts.append(f"{counted(found.without_value, 'printed cell')} with an empty computed one.")
     if found.other_labels:
         others = ", ".join(map(markdown_text, found.other_labels))
         texts.append(f"Printed columns not computed here: {others}.")
@@ -150,7 +151,7 @@ def _worst_cells(one: PrintedTable) -> list[str]:
     ]
     parts = [_markdown([first, "column", "printed", "computed", "units"], rows)]
     rest = len(off) - len(shown)
-    more = f"and {_counted(rest, 'more cell')} that do not agree ([all](disagreements.csv))."
+    more = f"and {counted(rest, 'more cell')} that do not agree ([all](disagreements.csv))."
     return [*parts, more] if rest else parts
 
 
@@ -187,10 +188,6 @@ def _value(value: Decimal) -> str:
     if _THOUSAND <= abs(value) < _MILLION:
         return f"{value:.0f}"
     return f"{value:.3g}" if value else "0"
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

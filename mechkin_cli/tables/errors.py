@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.tables.columns import Columns, TableColumn, Words, words_of
+from mechkin_cli.tables.layout import counted
 from mechkin_cli.tape import DoubleDoubles, difference
 from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
 from mechkin_cli.verdict import SWEEP
@@ -33,7 +34,7 @@ EMPTY = "empty"
 LOST = "no value in double-double"
 """Said of a cell that the repetition has no number for."""
 
-NO_VALUE = "no value, or none that double-double tells"
+NO_VALUE = "no value, or none that double-double decides"
 """Said of a cell whose true value hangs on a rounding of zero: the text divides by zero."""
 
 AT_LEAST = "at least so many digits: the repetition itself is known to no more"
@@ -69,7 +70,7 @@ class ColumnErrors:
         error: (rows,) |cell - true value|, with what the true value may be off by where that
             counts; nan where a cell is empty or was not repeated.
         is_bound: (rows,) whether it counts: the error is at most so large.
-        lost_why: what is said of a cell that the repetition has no number for.
+        lost_why: why a cell has no true value.
         why: why the column was not repeated, or has no digits; "" of others.
         dead_centres: (rows,) rows that stand at a dead centre; None: no row does.
     """
@@ -153,7 +154,7 @@ def column_errors(
         values: (rows,) the cells.
         true: (rows,) what they should be, in the same unit.
         doubt: how far that may be off.
-        lost_why: what is said of a cell that has no true value.
+        lost_why: why a cell has no true value.
     """
     with np.errstate(invalid="ignore"):
         error = np.abs(difference(values, true))
@@ -177,15 +178,6 @@ def column_errors(
     )
 
 
-def counted_cells(number: int) -> str:
-    """How many cells.
-
-    >>> counted_cells(1), counted_cells(3)
-    ('1 cell', '3 cells')
-    """
-    return f"{number} cell" if number == 1 else f"{number} cells"
-
-
 def least_digits(columns: Sequence[ColumnErrors]) -> int | None:
     """Digits that every cell has; None where nothing was repeated."""
     known = [int(c.digits[c.digits >= 0].min()) for c in columns if (c.digits >= 0).any()]
@@ -205,7 +197,7 @@ def _name(run: str) -> str:
 def clashing(names: Iterable[str], runs: Iterable[str]) -> str | None:
     """The first of some tables whose files are those of the errors of a run; None where none is.
 
-    Files differ by more than capitals, for there are disks that do not tell these apart.
+    Names differ by more than capitals, which not every file system distinguishes.
     """
     own = {_name(run).casefold() for run in runs}
     return next((name for name in names if name.casefold() in own), None)
@@ -267,7 +259,7 @@ def _why(column: ColumnErrors) -> str:
         return column.why
     there = int(np.count_nonzero(column.at_dead_centre))
     said = [(column.lost, column.lost_why), (there, AT_DEAD_CENTRE)]
-    without = [f"{counted_cells(cells)} without: {why}" for cells, why in said if cells]
+    without = [counted(cells, "cell") + f" without: {why}" for cells, why in said if cells]
     return "; ".join(without) or (AT_LEAST if column.is_bound.any() else "")
 
 

@@ -142,6 +142,15 @@ def default_table(
     return TableLayout(run, "Coordinates, rates and efforts", columns, run=run)
 
 
+def counted(count: int, noun: str) -> str:
+    """A count with its noun.
+
+    >>> counted(1, "cell"), counted(3, "cell")
+    ('1 cell', '3 cells')
+    """
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
 def effort_names(inputs: Collection[str]) -> list[str]:
     """Name of each input's effort: `O1.effort`, or `O2.s.effort` where O2 has several inputs."""
     joints = [name.rpartition(".")[0] for name in inputs]

@@ -9,7 +9,7 @@ numbers of rows.
 A value may be infinite: what grows without bound towards a row at a dead centre. Extremes count
 it, and are infinite at its place. Means do not: whether the integral up to there is finite (a
 rate, which goes as one over the root of what is left of the way) or not (its square), one row
-cannot tell, so the way ends at the last row beside it, as it does where there is no value.
+cannot decide, so the integral ends at the last row beside it, as it does where there is no value.
 
 Sums are added row by row, in order: their bits do not depend on the machine.
 """

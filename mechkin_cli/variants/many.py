@@ -526,12 +526,8 @@ def vary(
             f'with_parameters({{...}}).respond("{base.model.runs[0]}")'
         )
     problem = base.model.problem
-    names, values = parameter_arrays(problem, parameters)
-    varied = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, held)
-    asked = expressions_of(
-        problem.mechanism.coordinates if quantities is None else quantities, problem
-    )
+    varied, names, values = varied_parameters(problem, parameters, held)
+    asked = expressions_of(quantities, problem)
     call = VariantRun(base, names, asked, reductions_of(asked, reduce), lanes, threads)
     numbers = values.shape[1] * call.numbers_returned()
     if numbers > MOST_KEPT:
@@ -542,23 +538,27 @@ def vary(
     return Variants(varied, *call.run(values))
 
 
-def with_held(
-    order: Sequence[str], names: tuple[str, ...], values: Floats, held: Mapping[str, float]
-) -> tuple[tuple[str, ...], Floats]:
-    """Names and values of all parameters that are set, in the file's order."""
-    rows = dict(zip(names, values, strict=True))
-    count = values.shape[1]
-    rows = {name: np.full(count, value) for name, value in held.items()} | rows
-    names = tuple(name for name in order if name in rows)
-    return names, np.stack([rows[name] for name in names])
+def varied_parameters(
+    problem: Problem, parameters: Mapping[str, Any], held: Mapping[str, float]
+) -> tuple[dict[str, Floats], tuple[str, ...], Floats]:
+    """Values (variants,) of what varies by name, in the file's units; and all that is set, `held`
+    values (SI) included: names in the file's order and values (parameters, variants) in SI."""
+    names, values = parameter_arrays(problem, parameters)
+    varied = file_values(values, problem, names)
+    rows = {name: np.full(values.shape[1], value) for name, value in held.items()}
+    rows |= dict(zip(names, values, strict=True))
+    names = tuple(name for name in problem.parameters if name in rows)
+    return varied, names, np.stack([rows[name] for name in names])
 
 
-def expressions_of(quantities: Iterable[str], problem: Problem) -> dict[str, Expression]:
-    """What is asked for, by its text.
+def expressions_of(quantities: Iterable[str] | None, problem: Problem) -> dict[str, Expression]:
+    """Quantities and expressions by their text; None: all coordinates.
 
     Raises:
         UsageError: no such quantity, or a text.
     """
+    if quantities is None:
+        quantities = problem.mechanism.coordinates
     found = {}
     for text in texts("quantities", quantities, '["O4.theta"]'):
         if text.strip() in ROW_TEXTS:

@@ -1,7 +1,7 @@
 """A model under other parameters, without reading or building it again.
 
 The base model records once, for each set of parameters, how its plan depends on them; variants are
-replays of that. Where a recording does not hold, the variant is built anew: the same answers and
+replays of that. Where a recording does not hold, the variant is built again: the same answers and
 the same errors, only slower. First, values of parameters as a caller gives them, to SI.
 """
 
@@ -179,7 +179,7 @@ class Base:
         return self._assembled[1]
 
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
-        """How the model depends on some parameters; None where every variant is built anew."""
+        """How the model depends on some parameters; None where every variant is built by itself."""
         key = tuple(names)
         if key not in self._variations:
             self._variations[key] = self._recorded(key)
@@ -283,7 +283,7 @@ class VariedModel(Model):
         return {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
 
     def _between(self, place: float) -> Session:
-        """The session between the file's own parameters (0) and these (1), built anew."""
+        """The session between the file's own parameters (0) and these (1), built from the file."""
         own = self._base.model.problem.parameters
         values = {}
         for name, value in self._values.items():
@@ -301,9 +301,9 @@ class VariedModel(Model):
 
     @cached_property
     def _fresh(self) -> Model:
-        """The same model built anew: no recording holds responses."""
+        """The same model built from the file: no recording holds responses."""
         built = self.built if self._variation is None else self._base.built(self._values)
-        return _BuiltAnew(built, self.stem, self._given)
+        return _BuiltModel(built, self.stem, self._given)
 
     @property
     def view_settings(self) -> ViewSettings:
@@ -362,7 +362,7 @@ class VariedModel(Model):
         )
 
 
-class _BuiltAnew(Model):
+class _BuiltModel(Model):
     """A model built with values that its file does not have; `given` are those in SI."""
 
     def __init__(self, built: Built, stem: str, given: Mapping[str, Quantity]) -> None:

@@ -20,9 +20,9 @@ from mechkin_cli.variants.many import (
     need_places,
     reduced,
     reductions_of,
-    with_held,
+    varied_parameters,
 )
-from mechkin_cli.variants.model import Base, file_values, parameter_arrays
+from mechkin_cli.variants.model import Base
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
@@ -56,13 +56,10 @@ def vary_response(
     """
     packing = a_packing(lanes, threads)
     problem = base.model.problem
-    names, values = parameter_arrays(problem, parameters)
-    varied = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, held)
-    known = response_problem(problem, problem.responses[run])
-    asked = expressions_of(
-        problem.mechanism.coordinates if quantities is None else quantities, known
-    )
+    varied, names, values = varied_parameters(problem, parameters, held)
+    if quantities is None:
+        quantities = problem.mechanism.coordinates
+    asked = expressions_of(quantities, response_problem(problem, problem.responses[run]))
     reductions = reductions_of(asked, reduce)
     read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
     call = _ResponseRun(base, names, list(read), run, packing)

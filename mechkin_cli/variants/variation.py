@@ -169,7 +169,7 @@ class SessionVariation:
         return compiled(self.recorder.tape(register(self.recorder, n) for n in numbers))
 
     def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
-        """The reading of some quantities; kept."""
+        """The reading of some quantities."""
         wanted = tuple(wanted)
         key = tuple(quantity.name for quantity in wanted)
         if key not in self._readings:

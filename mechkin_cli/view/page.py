@@ -135,7 +135,7 @@ LEAST_ROWS = 200
 """Rows of a branch that are shown however many columns and modes there are."""
 
 MOST_MODES = 16
-"""Assembly modes that are shown beside the file's own: more can hardly be told apart by eye."""
+"""Assembly modes that are shown beside the file's own: more can hardly be distinguished by eye."""
 
 MOST_MODE_ROWS = 100_000
 """Rows of all other assembly modes together: half a second of work for most mechanisms."""
@@ -252,6 +252,6 @@ def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
 
 def _idle(problem: Problem) -> Iterator[str]:
     for leg in find_legs(problem.mechanism):
-        yield f"{leg.words}: where it stands about that line is told by convention."
+        yield f"{leg.words}: where it stands about that line is set by convention."
     for held in problem.held:
         yield f"{held.words}: {held.convention}."

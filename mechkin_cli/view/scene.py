@@ -47,7 +47,7 @@ class Scene:
         file: name of the mechanism file.
         problem: the mechanism; poses are those of the runs.
         runs: in the order of the file.
-        notes: everything that was said of the file and its runs.
+        notes: all messages on the file and its runs.
         settings: the `view:` section.
     """
 
