@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         key_of as key_of,
         machine as machine,
         plain_text as plain_text,
-        width as width,
     )
     from mechkin_cli.bench.runs import (
         FULL as FULL,
@@ -38,7 +37,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "measurement": ["Bench"],
         "outputs": ["NAMES", "record", "write"],
-        "report": ["ReportTable", "bench_table", "key_of", "machine", "plain_text", "width"],
+        "report": ["ReportTable", "bench_table", "key_of", "machine", "plain_text"],
         "runs": ["FULL", "QUICK", "SUITE", "Rounds", "Suite", "bench"],
         "scene": ["BenchScene"],
         "stress": ["judge_hard_mechanisms", "stress_table"],

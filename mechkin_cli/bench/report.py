@@ -8,7 +8,7 @@ import csv
 import platform
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
 from typing import Literal
@@ -101,12 +101,6 @@ def _significant(value: float) -> str:
     if value >= 100.0:
         return f"{value:.0f}"
     return f"{value:.1f}" if value >= 10.0 else f"{value:.2f}" if value >= 1.0 else f"{value:.3f}"
-
-
-def width(table: ReportTable) -> int:
-    """Characters that the columns need side by side."""
-    lines = plain_text(replace(table, notes=())).splitlines()
-    return max(map(len, lines))
 
 
 def plain_text(table: ReportTable) -> str:

@@ -222,15 +222,12 @@ class BenchScene:
         return demand
 
     def _asked(self, session: Session) -> Asked:
-        stems = []
-        for name in _unknown_coordinates(session):
-            stems.append((name, True))
-        stems += [(name, False) for name in self._points()]
-        found = {
-            order: tuple(stem + ends[not plain] for stem, plain in stems)
+        coordinates, points = _unknown_coordinates(session), list(self._points())
+        names = {
+            order: [name + ends[0] for name in coordinates] + [name + ends[1] for name in points]
             for order, ends in ORDERS.items()
         }
-        known = {o: tuple(n for n in names if n in self.quantities) for o, names in found.items()}
+        known = {o: tuple(n for n in each if n in self.quantities) for o, each in names.items()}
         return Asked(**known, loads=self._loads(session))
 
     def _loads(self, session: Session) -> tuple[str, ...]:

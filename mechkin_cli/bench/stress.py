@@ -147,12 +147,7 @@ class Outcome(NamedTuple):
 
     def record(self) -> dict[str, Any]:
         """As plain data."""
-        return {
-            "family": self.family,
-            "rows": self.rows,
-            "verdicts": dict(self.verdicts),
-            "faults": list(self.faults),
-        }
+        return self._asdict() | {"verdicts": dict(self.verdicts), "faults": list(self.faults)}
 
 
 def kept() -> list[dict[str, Any]]:

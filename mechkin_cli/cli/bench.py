@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -16,8 +15,6 @@ from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from rich.table import Table as RichTable
-
     from mechkin_cli.bench import Bench, BenchScene, ReportTable, Rounds, Suite
 
 
@@ -212,41 +209,5 @@ def _tables(
 
 
 def show(table: ReportTable) -> None:
-    """Styled on a terminal wide enough, else aligned text."""
-
-    if not sys.stdout.isatty():
-        put("\n" + room.plain_text(table))
-        return
-    from rich.console import Console
-
-    console = Console()
-    console.print()
-    # a table that does not fit would lose digits
-    if room.width(table) > console.width:
-        console.out(room.plain_text(table), end="", highlight=False)
-        return
-    console.print(_styled(table))
-    for note in table.notes:
-        console.print(note, style="dim", highlight=False, markup=False)
-
-
-def _styled(table: ReportTable) -> RichTable:
-    from rich import box
-    from rich.table import Table as RichTable
-
-    styled = RichTable(
-        title=table.title,
-        title_justify="left",
-        title_style="bold",
-        header_style="",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
-    for column in table.columns:
-        justify = "left" if column.kind == "text" else "right"
-        styled.add_column(column.label, justify=justify, vertical="bottom", no_wrap=True)  # type: ignore[arg-type]
-    for row in table.texts():
-        styled.add_row(*row)
-    return styled
+    """Aligned text on stdout."""
+    put("\n" + room.plain_text(table))

@@ -14,10 +14,10 @@ import numpy as np
 from mechkin_cli.arguments import a_whole_number
 from mechkin_cli.fit.measure import SOLVED, TIME, FitModels, FitValues, deviations, margins_of
 from mechkin_cli.fit.request import Constraint, Target, request
-from mechkin_cli.fit.search import Measured, Progress, best_of
+from mechkin_cli.fit.search import Measured, Progress, SearchResult, best_of
 from mechkin_cli.fit.slopes import FitSlopes, nearest_places
 from mechkin_cli.mechanism import response_problem
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.tables import run_parameter
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
 from mechkin_cli.verdict import SWEEP, Status
@@ -25,10 +25,8 @@ from mechkin_cli.verdict import SWEEP, Status
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from mechkin_cli.fit.search import SearchResult
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.model import Analysis, Model
-    from mechkin_cli.show import Bools, Floats
 
 
 END_BEFORE = "end the sweep before it, or vary a dimension that moves the dead centre"

@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import TableColumn, Words, row_texts, run_parameter
+from mechkin_cli.tables import Columns, TableColumn, TableLayout, Words, row_texts, run_parameter
 from mechkin_cli.units import FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import Status
 from mechkin_cli.view import run_marks
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.tables import Columns, TableLayout
     from mechkin_cli.view import Readable
 
 

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.arguments import a_setting, a_text, texts
+from mechkin_cli.arguments import Setting, a_setting, a_text, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.errors import NotRepeated, reason_of
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.mechanism import read_for
 from mechkin_cli.model import run_name
 from mechkin_cli.sensitivities.slopes import Shifting, Slope, slope_of
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.tables import row_texts
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
@@ -30,11 +30,9 @@ if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
 
-    from mechkin_cli.arguments import Setting
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.model import Analysis, Model
-    from mechkin_cli.show import Bools, Floats
 
 
 def bending_notes(s: Sensitivities) -> list[str]:

@@ -16,19 +16,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.arguments import a_setting, a_whole_number, refusal, shown
+from mechkin_cli.arguments import Setting, a_setting, a_whole_number, refusal, shown
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.variants import draws, normal, one_value, uniform
 
 if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
 
-    from mechkin_cli.arguments import Setting
     from mechkin_cli.model import Model
-    from mechkin_cli.show import Bools, Floats
 
 
 METHODS = ("latin", "sobol", "random")
@@ -275,8 +273,7 @@ class Tolerances(Listed):
     @cached_property
     def _varied(self) -> Any:
         """All samples, then the ends of the bands, one parameter at a time."""
-        unit = draws(self._method, self.samples, len(self.bands), self._seed)
-        points = unit.stretch(0, self.samples)
+        points = draws(self._method, self.samples, len(self.bands), self._seed)(0, self.samples)
         ends = 2 * len(self.bands)
         values: dict[str, Floats] = {}
         for number, (name, band) in enumerate(self.bands.items()):

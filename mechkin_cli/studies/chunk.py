@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
-from mechkin_cli.studies.formats import Heading, Records, empty_values
+from mechkin_cli.studies.formats import Heading, Records, Values, empty_values
 from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.verdict import SWEEP, Status
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats
-    from mechkin_cli.studies.formats import Values
     from mechkin_cli.variants import Variants
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from mechkin_cli.building import BadTable, by_count, by_step, table_path, table_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError, nearest_hint
-from mechkin_cli.expressions import ExpressionError, Vector
+from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.schema import study as written
 from mechkin_cli.studies.chunk import (
@@ -34,6 +34,7 @@ from mechkin_cli.studies.source import Faults, in_file_units, split
 from mechkin_cli.tables import ROW_TEXTS, RunParameter
 from mechkin_cli.tolerances import LAST_ROW, MOST_DRAWN, MOST_TABLE_TEXT, MOST_VARIANTS
 from mechkin_cli.variants import (
+    Draws,
     draws,
     has_scipy,
     needs_scipy,
@@ -47,12 +48,10 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.expressions import Quantity
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.model import Model
     from mechkin_cli.reading import Document, KeyPath
     from mechkin_cli.show import Floats
-    from mechkin_cli.variants import Draws
 
 
 Distribution = Callable[["Floats"], "Floats"]
@@ -120,7 +119,7 @@ class StudyVariation:
             return {}
         first, last = int(numbers.min()), int(numbers.max()) + 1
         _, drawing, distributions = self.samples
-        drawn = drawing.stretch(first, last)[numbers - first]
+        drawn = drawing(first, last)[numbers - first]
         return {n: shape(drawn[:, k]) for k, (n, shape) in enumerate(distributions.items())}
 
 

@@ -11,17 +11,14 @@ import numpy as np
 
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS
 from mechkin_cli.studies.folder import ROWS, VARIANTS
-from mechkin_cli.studies.formats import Heading, Records, numbers
+from mechkin_cli.studies.formats import Heading, Records, Values, numbers
 
 if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
-
-    from mechkin_cli.show import Floats
-    from mechkin_cli.studies.formats import Values
 
 
 class Spread(NamedTuple):

@@ -10,13 +10,12 @@ import numpy as np
 
 from mechkin_cli import model, reading
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.reading import Document, in_order, read_document
+from mechkin_cli.reading import Document, KeyPath, in_order, read_document
 from mechkin_cli.schema import InvalidDataError, validate_study
 from mechkin_cli.variants import one_value
 
 if TYPE_CHECKING:
     from mechkin_cli.model import Model
-    from mechkin_cli.reading import KeyPath
     from mechkin_cli.schema import StudyFile
     from mechkin_cli.units import Dimension, UnitSystem
 

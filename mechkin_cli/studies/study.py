@@ -28,7 +28,7 @@ from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
 from mechkin_cli.studies.formats import Records, format_of, joined
 from mechkin_cli.studies.plan import StudyPlan, study_plan
 from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
-from mechkin_cli.studies.source import open_study
+from mechkin_cli.studies.source import StudySource, open_study
 from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
 from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
 from mechkin_cli.verdict import SWEEP, version
@@ -36,7 +36,6 @@ from mechkin_cli.verdict import SWEEP, version
 if TYPE_CHECKING:
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats
-    from mechkin_cli.studies.source import StudySource
 
 
 Parcel = tuple[bytes, str]

@@ -28,7 +28,7 @@ import numpy as np
 from mechkin_cli import assembly
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.plan import Demand, Slot, demand_of
 from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.plan import Slot
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import SweepRows

@@ -17,12 +17,12 @@ import numpy as np
 from mechkin_cli import assembly, derived, proofs, sweep
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
-from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of, forces_demand
+from mechkin_cli.plan import WRENCH_KINDS, Demand, Readout, demand_of, forces_demand
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held, undefined_loads
 from mechkin_cli.sweep.rounding import error_bound
-from mechkin_cli.sweep.rows import Columns, make_continuous
+from mechkin_cli.sweep.rows import Columns, SweepRows, make_continuous
 from mechkin_cli.sweep.uniqueness import (
     DISTURBANCES,
     SHIFTS,
@@ -39,63 +39,10 @@ if TYPE_CHECKING:
     from mechkin_cli.derived import OtherMoments
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Mechanism, Problem, Wanted
-    from mechkin_cli.plan import Readout
     from mechkin_cli.proofs import SweepProofs
     from mechkin_cli.session import Batch, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.structure import SolverGraph
-    from mechkin_cli.sweep.rows import SweepRows
-
-
-class Proven:
-    """The proofs of a result's rows, made when they are asked for."""
-
-    session: Session
-    row_states: SweepRows
-    _certificate: SweepProofs | None = None
-    if TYPE_CHECKING:
-
-        @cached_property
-        def solved(self) -> Bools:
-            """Rows that have a position (rows,)."""
-
-    @property
-    def certificate(self) -> SweepProofs:
-        """What is proven of the rows."""
-        if self._certificate is None:
-            rows = self.row_states
-            solved = self.solved & rows.reached
-            self._certificate = proofs.certify(self.session, rows.states, solved, rows.ends)
-        return self._certificate
-
-    @property
-    def is_certified(self) -> bool:
-        """Whether proofs have been asked for."""
-        return self._certificate is not None
-
-    @property
-    def proven_way(self) -> tuple[bool, int]:
-        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
-        return bool(self.certificate.is_complete), int(self.certificate.tubes)
-
-    @property
-    def proven_dead_centres(self) -> list[dict[str, object]]:
-        """What is proven of the dead centres beyond which rows are missing, as plain data in the
-        file's units: bounds are None where none is proven to exist; rows count from 1."""
-        records, session = [], self.session
-        for found in self.certificate.dead_centres:
-            place = float(found.place[found.number])
-            record = input_number(session.problem, session.layout, found.number, place).record()
-            low, high = (x if isfinite(x) else None for x in proofs.input_bounds(session, found))
-            record |= {"low": low, "high": high, "last_row": found.row + 1, "tubes": found.tubes}
-            proof = Proof.not_proven if found.why else Proof.proven
-            records.append(record | {"proof": proof.label})
-        return records
-
-    @property
-    def proof(self) -> NDArray[np.int8]:
-        """What is proven of every row, codes of `Proof` (rows,)."""
-        return self.certificate.status
 
 
 def columns_of(rows: SweepRows, mechanism: Mechanism, readout: Readout, batch: Batch) -> Columns:
@@ -121,7 +68,7 @@ ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "
 """Verdicts that are numbers, by the names of their quantities."""
 
 
-class Result(Proven):
+class Result:
     """The rows of a sweep with a position and a verdict each.
 
     Args:
@@ -154,6 +101,7 @@ class Result(Proven):
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
         self._unloaded: bool | None = None
+        self._certificate: SweepProofs | None = None
         self.friction = FrictionRows()
 
     @property
@@ -273,6 +221,44 @@ class Result(Proven):
             self._store_verdicts(self.run(Ask(demand, iterations=0)))
         found: Floats = error_bound(self) if name == "error_bound" else getattr(self, name)
         return found
+
+    @property
+    def certificate(self) -> SweepProofs:
+        """What is proven of the rows."""
+        if self._certificate is None:
+            rows = self.row_states
+            solved = self.solved & rows.reached
+            self._certificate = proofs.certify(self.session, rows.states, solved, rows.ends)
+        return self._certificate
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether proofs have been asked for."""
+        return self._certificate is not None
+
+    @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        return bool(self.certificate.is_complete), int(self.certificate.tubes)
+
+    @property
+    def proven_dead_centres(self) -> list[dict[str, object]]:
+        """What is proven of the dead centres beyond which rows are missing, as plain data in the
+        file's units: bounds are None where none is proven to exist; rows count from 1."""
+        records, session = [], self.session
+        for found in self.certificate.dead_centres:
+            place = float(found.place[found.number])
+            record = input_number(session.problem, session.layout, found.number, place).record()
+            low, high = (x if isfinite(x) else None for x in proofs.input_bounds(session, found))
+            record |= {"low": low, "high": high, "last_row": found.row + 1, "tubes": found.tubes}
+            proof = Proof.not_proven if found.why else Proof.proven
+            records.append(record | {"proof": proof.label})
+        return records
+
+    @property
+    def proof(self) -> NDArray[np.int8]:
+        """What is proven of every row, codes of `Proof` (rows,)."""
+        return self.certificate.status
 
     @property
     def columns(self) -> Mapping[str, Floats]:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.plan import ClosingJoint, PlanLeg, TreeJoint, flatten, plan_records
 from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
@@ -30,13 +30,12 @@ if TYPE_CHECKING:
 
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows
 
 
 _ROUNDING = ldexp(1.0, -53)
 
 
-def error_bound(result: RunRows) -> Floats:
+def error_bound(result: sweep.Result) -> Floats:
     """The bound (rows,); nan in rows without a position, and where none is known."""
     rows = result.row_states
     if not rows.reached.any():
@@ -52,7 +51,7 @@ def error_bound(result: RunRows) -> Floats:
     return np.where(rows.reached & np.isfinite(bound), bound, np.nan)
 
 
-def largest_move(result: RunRows) -> Floats:
+def largest_move(result: sweep.Result) -> Floats:
     """The largest move of any state (rows,) in some runs with constants and inputs slightly off;
     nan where one of them did not close."""
     session, rows = result.session, result.row_states

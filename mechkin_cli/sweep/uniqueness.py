@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.mechanism import REACTION_LEVEL
 from mechkin_cli.units import FORCE
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows
 
 
 SHIFTS = (1, 2)
@@ -30,7 +29,7 @@ DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
 leave an expression unchanged by chance."""
 
 
-def reaction_rounding(result: RunRows) -> Floats:
+def reaction_rounding(result: sweep.Result) -> Floats:
     """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
     unit.
 
@@ -45,7 +44,7 @@ def reaction_rounding(result: RunRows) -> Floats:
     return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
 
 
-def _level(result: RunRows, shift: int) -> Floats:
+def _level(result: sweep.Result, shift: int) -> Floats:
     """The largest reaction of each row (rows,), of those of a `shift`."""
     return np.asarray(result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0])
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.columns import Columns, TableColumn, Words, words_of
+from mechkin_cli.tables.columns import Columns, FloatArray, TableColumn, Words, words_of
 from mechkin_cli.tables.layout import counted
 from mechkin_cli.tape import DoubleDoubles, difference
 from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
@@ -24,8 +24,6 @@ from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from mechkin_cli.tables.columns import FloatArray
 
 
 EMPTY = "empty"

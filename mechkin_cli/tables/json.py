@@ -18,12 +18,11 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.tables.columns import Columns, FloatArray, TableSource, Words
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.decimals import number_column
-from mechkin_cli.tables.errors import least_digits
+from mechkin_cli.tables.errors import ColumnErrors, least_digits
 from mechkin_cli.tables.markdown import rows_table
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.errors import ColumnErrors
     from mechkin_cli.tables.summary import Extreme, Summary
     from mechkin_cli.tables.writers import Results
 

@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Final
 
 from mechkin_cli import tables
 from mechkin_cli.diagnostics import legible
-from mechkin_cli.tables.columns import INFINITE, Columns, TableColumn, Words
+from mechkin_cli.tables.columns import INFINITE, Columns, TableColumn, TableSource, Words
 from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.markdown import footnotes
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.columns import TableSource
     from mechkin_cli.tables.summary import Summary
 
 

@@ -27,13 +27,12 @@ from mechkin_cli.tables.columns import (
     words_of,
 )
 from mechkin_cli.tables.csv import threads_for, word_column
-from mechkin_cli.tables.decimals import column_texts, decimal_column
+from mechkin_cli.tables.decimals import DecimalColumn, column_texts, decimal_column
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_PROOF, markdown_text
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.csv import WordColumn
-    from mechkin_cli.tables.decimals import DecimalColumn
     from mechkin_cli.tables.summary import Summary
 
 

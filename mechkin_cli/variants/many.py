@@ -30,7 +30,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.model import response_name
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.session import input_rest
-from mechkin_cli.show import Floats
+from mechkin_cli.show import Bools, Floats
 from mechkin_cli.sweep import has_turns
 from mechkin_cli.tables import (
     OVER_THE_WAY,
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.session import Session
-    from mechkin_cli.show import Bools
 
 
 Reductions = tuple[Reduction, ...] | Reduction | None

@@ -33,6 +33,7 @@ from mechkin_cli.session import (
 from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import (
     Filling,
+    Recorder,
     TraceLost,
     compiled,
     is_traced,
@@ -46,7 +47,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.tape import Recorder
 
 
 class FirstAssembly(NamedTuple):

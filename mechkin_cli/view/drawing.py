@@ -22,7 +22,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, Joint, diagonal, is_written
+from mechkin_cli.mechanism import (
+    FIRST,
+    GROUND_NAME,
+    SECOND,
+    Attached,
+    Joint,
+    JointType,
+    Mechanism,
+    diagonal,
+    is_written,
+)
 from mechkin_cli.view.joints import (
     HOME,
     Shape,
@@ -36,7 +46,6 @@ from mechkin_cli.view.joints import (
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Attached, JointType, Mechanism
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
 

@@ -19,8 +19,10 @@ from mechkin_cli.mechanism import (
     FIRST,
     GROUND_NAME,
     SECOND,
+    Frame,
     Joint,
     Mechanism,
+    Vector,
     is_written,
     reference_point,
     scale,
@@ -29,7 +31,6 @@ from mechkin_cli.view.page import FLATNESS, POINTS_APART
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Kind, ShapeSetting
-    from mechkin_cli.mechanism import Frame, Vector
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
     from mechkin_cli.view.page import Lengths, Plain

@@ -24,7 +24,7 @@ def test_lists_tables_and_samples_are_crossed(seed: int) -> None:
     count = int(generator.integers(1, 7))
     samples = (count, draws("random", count, len(drawn), seed), drawn) if drawn else None
     variation = StudyVariation(lists, False, table, samples)
-    points = draws("random", count, len(drawn), seed).stretch(0, count) if drawn else [()]
+    points = draws("random", count, len(drawn), seed)(0, count) if drawn else [()]
     expected = [
         (*listed, *row, *point)
         for listed in itertools.product(*(values.tolist() for values in lists.values()))
