@@ -7,7 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from benchmarks import rcsr, sevenr, train
-from mechkin_cli.bench.scene import BenchScene, Subject
+from mechkin_cli.bench.scene import BenchScene
+from mechkin_cli.model import loads
 
 FOLDER = Path(__file__).parent / "mechanisms"
 
@@ -31,12 +32,9 @@ def texts() -> dict[str, Callable[[], str]]:
     }
 
 
-def subjects() -> list[Subject]:
+def known_scenes() -> list[BenchScene]:
     """The same, read, checked and closed."""
-    from mechkin_cli.model.model import loads
-
-    found = [(name, text()) for name, text in texts().items()]
-    return [Subject(BenchScene(name, loads(text, name)), text) for name, text in found]
+    return [BenchScene(name, loads(text(), name)) for name, text in texts().items()]
 
 
 def platform(rows: int) -> str:

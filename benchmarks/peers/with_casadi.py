@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchmarks.closure import named_motion
 from mechkin_cli.bench.closure import Entries, Placing
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.row_by_row import RowByRow
@@ -147,4 +148,4 @@ class Symbols:
             moved, (rows.rates, rows.accelerations), found[1:], strict=True
         ):
             array[rows.driven], array[rows.unknowns] = given, own
-        return rows.named(q, orientations, *moved)
+        return named_motion(rows, q, orientations, *moved)

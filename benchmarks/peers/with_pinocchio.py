@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from benchmarks.closure import named_motion
 from mechkin_cli.bench.chain import (
     EQUATIONS,
     GROUND,
@@ -156,7 +157,9 @@ class Loops:
                     # the chain's second derivatives of three turns one after the other
                     a, b, c = rates[ball : ball + 3, row]
                     accelerations[ball : ball + 3, row] -= (b * c, -a * c, a * b)
-        return rows.named(found, orientations, *((rates, accelerations) if moving else ()))
+        if moving:
+            return named_motion(rows, found, orientations, rates, accelerations)
+        return rows.named(found, orientations)
 
     def _drive(self, velocity: Floats, values: Floats) -> None:
         for at, value in zip(self.driven, values, strict=True):

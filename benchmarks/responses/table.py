@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.responses.cases import RUN, TOLERANCES, Case, cases
 from benchmarks.responses.peers import Way, peers
 from mechkin_cli.bench.measurement import in_turns
-from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
+from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, cell_text
 from mechkin_cli.model.model import Model
 
 MILLI = 1000.0
@@ -46,9 +46,23 @@ def response_table(
         "their number between two rows. times mechkin: against respond() at the roughest tolerance",
         "at which it is as exact, or at its smallest. errors: of all coordinates in rad and m,",
         "against an extrapolated motion in numpy's widest numbers, or a closed form (spring).",
+        *summary(rows),
         *(f"{library} is left out: it is not installed." for library in missing),
     )
     return ReportTable("responses", "Responses: time against error", COLUMNS, rows, notes)
+
+
+def summary(rows: Iterable[Mapping[str, Cell]]) -> list[str]:
+    """Of each response, how many times the fastest other method takes at no smaller error."""
+    least: dict[str, float] = {}
+    for row in rows:
+        case, ratio = str(row["case"]), row["ratio"]
+        if row["method"] != OWN and isinstance(ratio, float):
+            least[case] = min(ratio, least.get(case, ratio))
+    said = ", ".join(f"{case} {cell_text(ratio, 'time')}" for case, ratio in least.items())
+    if not said:
+        return []
+    return [f"The fastest other method whose error is no larger: {said} times as fast."]
 
 
 def _case(

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mechkin_cli.bench.truth import solved
+from benchmarks.closure import solved
 from mechkin_cli.mechanism.model import Mechanism, RigidLink
 
 GROUND = -1

@@ -1,6 +1,45 @@
 """`mechkin bench`: run time against error, for any mechanism file.
 
 A *scene* is a mechanism whose rows are closed; a *method* is a way to its answers at one setting,
-made by a family (`runs.FAMILIES`); a *measurement* is its time and its errors against what is right
-(`truth`). `runs` puts them together, `outputs` writes them. Only `mechkin bench` loads this room.
+made by a family (`runs.FAMILIES`); a *measurement* is its time and its errors against the rows
+repeated in double-double. `runs` puts them together, `outputs` writes them, `stress` judges hard
+mechanisms whose rows are known. Only `mechkin bench` loads the chapters.
 """
+
+from mechkin_cli.lazy import TYPE_CHECKING, lazy_names
+
+if TYPE_CHECKING:
+    from mechkin_cli.bench.measurement import Bench as Bench
+    from mechkin_cli.bench.outputs import NAMES as NAMES, record as record, write as write
+    from mechkin_cli.bench.report import (
+        ReportTable as ReportTable,
+        bench_table as bench_table,
+        key_of as key_of,
+        machine as machine,
+        plain_text as plain_text,
+    )
+    from mechkin_cli.bench.runs import (
+        FULL as FULL,
+        QUICK as QUICK,
+        SUITE as SUITE,
+        Rounds as Rounds,
+        Suite as Suite,
+        bench as bench,
+    )
+    from mechkin_cli.bench.scene import BenchScene as BenchScene
+    from mechkin_cli.bench.stress import (
+        judge_hard_mechanisms as judge_hard_mechanisms,
+        stress_table as stress_table,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "measurement": ["Bench"],
+        "outputs": ["NAMES", "record", "write"],
+        "report": ["ReportTable", "bench_table", "key_of", "machine", "plain_text"],
+        "runs": ["FULL", "QUICK", "SUITE", "Rounds", "Suite", "bench"],
+        "scene": ["BenchScene"],
+        "stress": ["judge_hard_mechanisms", "stress_table"],
+    },
+)

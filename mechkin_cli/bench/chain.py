@@ -114,7 +114,7 @@ EQUATIONS = {CommonPoint: 3, Distance: 1, CommonFrame: 6}
 
 
 def chain_of(layout: Layout, points: dict[str, tuple[str, Place]]) -> BodyTree:
-    """The chain of a mechanism in the kernel; `points` (link, place) by name are told along."""
+    """The chain of a mechanism in the kernel; with `points` (link, place) by name."""
     return _Builder(layout).chain(points)
 
 

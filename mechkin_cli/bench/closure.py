@@ -1,18 +1,9 @@
-"""Places of the bodies of a chain and the gaps of its closings, in numbers of any kind.
-
-`Entries` has frames as nested lists whose entries are anything that adds and multiplies: arrays
-over the rows, jets, symbols. `Matrices` has them as 4x4 arrays of doubles, for one row at a time.
-A `Jet` is a number with two derivatives by one parameter, f + f' t + f'' t^2/2, truncated: a
-formula that is evaluated on jets gives its derivatives along a direction without one of their own.
-"""
+"""Places of a chain's bodies and the gaps of its closings, in numbers of any kind."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from math import cos, sin
-from typing import Any, Protocol
-
-import numpy as np
+from typing import Any
 
 from mechkin_cli.bench.chain import (
     GROUND,
@@ -29,38 +20,80 @@ Turned = Mapping[int, Any]
 """The orientation (3, 3) from which each ball counts its three turns, by its first coordinate."""
 
 
-class Algebra(Protocol):
-    """What placing needs of frames."""
+class Entries:
+    """Frames as three rows of four entries, which are floats, arrays over rows, jets or symbols.
+
+    Args:
+        cos, sin: of an entry.
+        number: makes an entry of a float.
+    """
+
+    def __init__(
+        self,
+        cos: Callable[[Any], Any],
+        sin: Callable[[Any], Any],
+        number: Callable[[float], Any] = float,
+    ) -> None:
+        self.cos, self.sin, self.number = cos, sin, number
 
     def frame(self, frame: Frame) -> Any:
         """A constant frame."""
+        columns = (frame.x, frame.y, frame.z, frame.o)
+        return [[self.number(column[i]) for column in columns] for i in range(3)]
 
     def inverse(self, frame: Any) -> Any:
-        """From the frame back."""
+        """The inverse displacement."""
+        turned = [[frame[j][i] for j in range(3)] for i in range(3)]
+        return [[*row, -sum(row[k] * frame[k][3] for k in range(3))] for row in turned]
 
     def product(self, a: Any, b: Any) -> Any:
-        """One after the other."""
+        """The product of two displacements."""
+        return [
+            [
+                *(row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j] for j in range(3)),
+                row[0] * b[0][3] + row[1] * b[1][3] + row[2] * b[2][3] + row[3],
+            ]
+            for row in a
+        ]
 
     def screwed(self, a: Any, angle: Any, slide: Any) -> Any:
-        """Turned about its z and moved along it; None for neither."""
+        """The frame turned about its z axis and moved along it; None for neither."""
+        if slide is not None:
+            a = [[x, y, z, o + z * slide] for x, y, z, o in a]
+        return a if angle is None else self.turned(a, 2, angle)
 
     def turned(self, a: Any, about: int, angle: Any) -> Any:
-        """Turned about its axis x (0), y (1) or z (2)."""
+        """The frame turned about its axis x (0), y (1) or z (2)."""
+        c, s = self.cos(angle), self.sin(angle)
+        i, j = (about + 1) % 3, (about + 2) % 3
+        found = [list(row) for row in a]
+        for row, old in zip(found, a, strict=True):
+            row[i], row[j] = old[i] * c + old[j] * s, old[j] * c - old[i] * s
+        return found
 
     def oriented(self, a: Any, orientation: Any) -> Any:
-        """Turned by a matrix."""
+        """The frame turned by a matrix (3, 3)."""
+        return self.product(a, [[*row, 0.0] for row in orientation])
 
     def image(self, a: Any, place: Place) -> Sequence[Any]:
-        """Where it takes a point."""
+        """The image of a point."""
+        x, y, z = place
+        return [row[0] * x + row[1] * y + row[2] * z + row[3] for row in a]
 
     def apart(self, a: Any, b: Any) -> Sequence[Any]:
-        """The displacement between two frames that nearly coincide: three turns, three lengths."""
+        """From one frame to another that nearly coincides with it: three turns, three lengths."""
+        turns = []
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            # half the sum of the axes' vector products
+            turns.append(sum(b[j][n] * a[k][n] - b[k][n] * a[j][n] for n in range(3)) * 0.5)
+        return [*turns, *(a[i][3] - b[i][3] for i in range(3))]
 
 
 class Placing:
     """A chain in an algebra: its constant frames multiplied once."""
 
-    def __init__(self, chain: BodyTree, algebra: Algebra) -> None:
+    def __init__(self, chain: BodyTree, algebra: Entries) -> None:
         self.chain, self.algebra = chain, algebra
         self._frames: dict[Frame, tuple[Any, Any]] = {}
 
@@ -149,168 +182,3 @@ def _distance_gap(closing: Distance, apart: Sequence[Any], q: Any) -> Any:
         else closing.length + closing.sign * q[closing.slide]
     )
     return (x * x + y * y + z * z - wanted * wanted) * (0.5 / closing.length)
-
-
-class Entries:
-    """Frames as three rows of four entries; `number` makes an entry of a double."""
-
-    def __init__(
-        self,
-        cos: Callable[[Any], Any],
-        sin: Callable[[Any], Any],
-        number: Callable[[float], Any] = float,
-    ) -> None:
-        self.cos, self.sin, self.number = cos, sin, number
-
-    def frame(self, frame: Frame) -> Any:
-        """See `Algebra`."""
-        columns = (frame.x, frame.y, frame.z, frame.o)
-        return [[self.number(column[i]) for column in columns] for i in range(3)]
-
-    def inverse(self, frame: Any) -> Any:
-        """See `Algebra`."""
-        turned = [[frame[j][i] for j in range(3)] for i in range(3)]
-        return [[*row, -sum(row[k] * frame[k][3] for k in range(3))] for row in turned]
-
-    def product(self, a: Any, b: Any) -> Any:
-        """See `Algebra`."""
-        return [
-            [
-                *(row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j] for j in range(3)),
-                row[0] * b[0][3] + row[1] * b[1][3] + row[2] * b[2][3] + row[3],
-            ]
-            for row in a
-        ]
-
-    def screwed(self, a: Any, angle: Any, slide: Any) -> Any:
-        """See `Algebra`."""
-        if slide is not None:
-            a = [[x, y, z, o + z * slide] for x, y, z, o in a]
-        return a if angle is None else self.turned(a, 2, angle)
-
-    def turned(self, a: Any, about: int, angle: Any) -> Any:
-        """See `Algebra`."""
-        c, s = self.cos(angle), self.sin(angle)
-        i, j = (about + 1) % 3, (about + 2) % 3
-        found = [list(row) for row in a]
-        for row, old in zip(found, a, strict=True):
-            row[i], row[j] = old[i] * c + old[j] * s, old[j] * c - old[i] * s
-        return found
-
-    def oriented(self, a: Any, orientation: Any) -> Any:
-        """See `Algebra`."""
-        return self.product(a, [[*row, 0.0] for row in orientation])
-
-    def image(self, a: Any, place: Place) -> Sequence[Any]:
-        """See `Algebra`."""
-        x, y, z = place
-        return [row[0] * x + row[1] * y + row[2] * z + row[3] for row in a]
-
-    def apart(self, a: Any, b: Any) -> Sequence[Any]:
-        """See `Algebra`."""
-        turns = []
-        for i in range(3):
-            j, k = (i + 1) % 3, (i + 2) % 3
-            # half the sum of the axes' vector products
-            turns.append(sum(b[j][n] * a[k][n] - b[k][n] * a[j][n] for n in range(3)) * 0.5)
-        return [*turns, *(a[i][3] - b[i][3] for i in range(3))]
-
-
-class Matrices:
-    """Frames as 4x4 arrays, as a script has them."""
-
-    def frame(self, frame: Frame) -> Any:
-        """See `Algebra`."""
-        found = np.eye(4)
-        found[:3] = np.column_stack([frame.x, frame.y, frame.z, frame.o])
-        return found
-
-    def inverse(self, frame: Any) -> Any:
-        """See `Algebra`."""
-        return np.linalg.inv(frame)
-
-    def product(self, a: Any, b: Any) -> Any:
-        """See `Algebra`."""
-        return a @ b
-
-    def screwed(self, a: Any, angle: Any, slide: Any) -> Any:
-        """See `Algebra`."""
-        m = np.eye(4)
-        if angle is not None:
-            m[0, 0] = m[1, 1] = cos(angle)
-            m[1, 0] = sin(angle)
-            m[0, 1] = -m[1, 0]
-        if slide is not None:
-            m[2, 3] = slide
-        return a @ m
-
-    def turned(self, a: Any, about: int, angle: Any) -> Any:
-        """See `Algebra`."""
-        i, j = (about + 1) % 3, (about + 2) % 3
-        m = np.eye(4)
-        m[i, i] = m[j, j] = cos(angle)
-        m[j, i] = sin(angle)
-        m[i, j] = -m[j, i]
-        return a @ m
-
-    def oriented(self, a: Any, orientation: Any) -> Any:
-        """See `Algebra`."""
-        m = np.eye(4)
-        m[:3, :3] = orientation
-        return a @ m
-
-    def image(self, a: Any, place: Place) -> Sequence[Any]:
-        """See `Algebra`."""
-        found: Sequence[Any] = a[:3, :3] @ place + a[:3, 3]
-        return found
-
-    def apart(self, a: Any, b: Any) -> Sequence[Any]:
-        """See `Algebra`."""
-        m = b[:3, :3] @ a[:3, :3].T
-        turns = (m[1, 2] - m[2, 1], m[2, 0] - m[0, 2], m[0, 1] - m[1, 0])
-        return [*(0.5 * x for x in turns), *(a[:3, 3] - b[:3, 3])]
-
-
-class Jet:
-    """A value with its first and second derivative."""
-
-    __array_ufunc__ = None
-    """Arrays leave their operators to the jet."""
-
-    def __init__(self, value: Any, first: Any = 0.0, second: Any = 0.0) -> None:
-        self.value, self.first, self.second = value, first, second
-
-    def __add__(self, other: Any) -> Jet:
-        o = jet(other)
-        return Jet(self.value + o.value, self.first + o.first, self.second + o.second)
-
-    def __neg__(self) -> Jet:
-        return Jet(-self.value, -self.first, -self.second)
-
-    def __sub__(self, other: Any) -> Jet:
-        return self + -jet(other)
-
-    def __rsub__(self, other: Any) -> Jet:
-        return jet(other) - self
-
-    def __mul__(self, other: Any) -> Jet:
-        if not isinstance(other, Jet):
-            return Jet(self.value * other, self.first * other, self.second * other)
-        crossed = self.first * other.first
-        return Jet(
-            self.value * other.value,
-            self.first * other.value + self.value * other.first,
-            self.second * other.value + crossed + crossed + self.value * other.second,
-        )
-
-    __radd__ = __add__
-    __rmul__ = __mul__
-
-    def outer(self, value: Any, slope: Any, bend: Any) -> Jet:
-        """f(self), with f, f' and f'' at its value."""
-        return Jet(value, slope * self.first, slope * self.second + bend * self.first * self.first)
-
-
-def jet(value: Any) -> Jet:
-    """A number as a jet, a constant if it is none."""
-    return value if isinstance(value, Jet) else Jet(value)

@@ -187,19 +187,11 @@ def measured(
     errors: Mapping[str, float | None],
 ) -> Measurement:
     """The record of a method; `unit` is the timing of the kernel in the same rounds."""
-    return Measurement(
-        scene,
-        method.family,
-        method.curve,
-        method.setting,
-        method.level,
-        method.rows,
-        _micro(timing.median / method.rows),
-        _micro(min(timing.seconds) / method.rows),
-        timing.spread,
-        timing.ratio(unit, method.rows / unit_rows),
-        **{kind: errors.get(kind) for kind in ERROR_KINDS},
-    )
+    named = (method.family, method.curve, method.setting, method.level, method.rows)
+    median, least = (1e6 * s / method.rows for s in (timing.median, min(timing.seconds)))
+    ratio = timing.ratio(unit, method.rows / unit_rows)
+    kinds = (errors.get(kind) for kind in ERROR_KINDS)
+    return Measurement(scene, *named, median, least, timing.spread, ratio, *kinds)
 
 
 def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values) -> dict[str, Any]:
@@ -210,10 +202,9 @@ def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values
         lengths: names that are no angles; angles are compared but for whole turns.
         found, true: quantities by name, arrays (width, rows).
     """
-    kinds = {kind: getattr(asked, kind) for kind in ERROR_KINDS}
     worst: dict[str, Any] = {}
-    for kind, names in kinds.items():
-        known = [name for name in names if name in found and name in true]
+    for kind in ERROR_KINDS:
+        known = [name for name in getattr(asked, kind) if name in found and name in true]
         # what is zero by its nature is rounding of the numbers that are right
         sizes = {name: float(np.max(np.abs(true[name]))) for name in known}
         nothing = ZERO * max(sizes.values(), default=0.0)
@@ -227,7 +218,6 @@ def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values
 
 
 def _error(found: Any, true: Any, *, turns: bool) -> float | None:
-    """Of one quantity; None where it is zero by its nature."""
     miss = np.asarray(found, np.longdouble) - true
     if turns:
         # whole turns as exact as the subtraction
@@ -239,7 +229,3 @@ def _error(found: Any, true: Any, *, turns: bool) -> float | None:
         return None
     error = float(np.max(np.abs(miss))) / size
     return error if np.isfinite(error) else float("inf")
-
-
-def _micro(seconds: float) -> float:
-    return 1e6 * seconds

@@ -11,18 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.balances import DenseSystem, dense_system, row_motion
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, BenchScene, Values
 from mechkin_cli.kernel.functions import widths
-from mechkin_cli.plan import Demand
-from mechkin_cli.session import RESIDUAL_TESTS, Batch, Packing, follow, step_limits
+from mechkin_cli.session import Batch, Packing, follow, step_limits
 from mechkin_cli.show import Floats
-from mechkin_cli.sweep import analyze
+from mechkin_cli.sweep import Result, analyze
 
 FAMILY = "mechkin"
 UNIT = "kernel, guesses as followed"
@@ -42,15 +41,8 @@ def kernel_methods(scene: BenchScene) -> Iterator[Method]:
     for level in LEVELS:
         yield _kernel(scene, UNIT, level, level, scene.followed)
     for limit in TOLERANCES:
-        tests = (limit, np.sqrt(limit), limit)
-        yield _kernel(
-            scene,
-            "kernel, by tolerance",
-            f"{limit:.0e}",
-            "position",
-            scene.from_before,
-            tests=tests,
-        )
+        name, tests = "kernel, by tolerance", (limit, np.sqrt(limit), limit)
+        yield _kernel(scene, name, f"{limit:.0e}", "position", scene.from_before, tests=tests)
     for steps in STEPS:
         start, name = scene.from_before, "kernel, by Newton steps"
         yield _kernel(scene, name, str(steps), "position", start, iterations=steps)
@@ -61,47 +53,34 @@ def kernel_methods(scene: BenchScene) -> Iterator[Method]:
 
 
 def _kernel(
-    scene: BenchScene,
-    curve: str,
-    setting: str,
-    level: str,
-    guess: Floats,
-    *,
-    iterations: int = tolerances.NEWTON_ITERATIONS,
-    tests: tuple[float, float, float] = RESIDUAL_TESTS,
-    packing: Packing = ALONE,
-    more: Demand = Demand.POSITION,
+    scene: BenchScene, curve: str, setting: str, level: str, guess: Floats, **options: Any
 ) -> Method:
-    """A call of the kernel with many rows."""
-    make = partial(
-        scene.kernel,
-        level,
-        guess,
-        iterations=iterations,
-        tests=tests,
-        packing=packing,
-        more=more,
-    )
+    make = partial(scene.kernel, level, guess, **options)
     call, once = make(count=BATCH), make()
     return Method(FAMILY, curve, setting, level, call, BATCH, lambda: scene.found(level, once()))
 
 
 def _sweeps(scene: BenchScene) -> Iterator[Method]:
-    """Whole sweeps: followed by skeletons of some spacings, with verdicts and without."""
-    rows = scene.result.rows
+    rows, session = scene.result.rows, scene.model.session.packed(ALONE)
     if scene.session.route is None and scene.is_whole:
         for spacing in SPACINGS:
             call, read = followed_by(scene, "position", spacing)
-            yield Method(
-                FAMILY, "sweep, by skeleton spacing", f"{spacing:g}", "position", call, rows, read
-            )
+            curve = "sweep, by skeleton spacing"
+            yield Method(FAMILY, curve, f"{spacing:g}", "position", call, rows, read)
         for level in LEVELS:
             call, read = followed_by(scene, level, SPACINGS[0])
             yield Method(FAMILY, FOLLOWED, level, level, call, rows, read)
     for level in LEVELS:
         for verdicts, curve in ((True, ANALYZED), (False, "sweep, no verdicts")):
-            call, read = _analyzed(scene, level, verdicts=verdicts)
+            call = partial(analyze, session, scene.asked.level(level), verdicts=verdicts)
+            read = partial(_values, scene, level, call)
             yield Method(FAMILY, curve, level, level, call, rows, read)
+
+
+def _values(scene: BenchScene, level: str, call: Callable[[], Result]) -> Values:
+    columns = call().columns
+    names = scene.asked.level(level)
+    return {name: columns[name][:, scene.places] for name in names if name in columns}
 
 
 def followed_by(
@@ -121,20 +100,6 @@ def followed_by(
     def read() -> Values:
         found = scene.found(level, call())
         return {name: columns[:, scene.places] for name, columns in found.items()}
-
-    return call, read
-
-
-def _analyzed(
-    scene: BenchScene, level: str, *, verdicts: bool
-) -> tuple[Callable[[], object], Callable[[], Values]]:
-    names = scene.asked.level(level)
-    session = scene.model.session.packed(ALONE)
-    call = partial(analyze, session, names, verdicts=verdicts)
-
-    def read() -> Values:
-        columns = call().columns
-        return {name: columns[name][:, scene.places] for name in names if name in columns}
 
     return call, read
 
@@ -173,7 +138,7 @@ def dense_methods(scene: BenchScene) -> Iterator[Method]:
 def loads(scene: BenchScene, systems: list[DenseSystem], solution: Floats) -> Values:
     """Efforts (1, rows) and wrenches (3, rows) about the joints' points, by name."""
     names = scene.asked.loads
-    found: Values = {n: np.zeros((3 if _is_vector(n) else 1, scene.rows)) for n in names}
+    found: Values = {n: np.zeros((1 if n.endswith(".effort") else 3, scene.rows)) for n in names}
     for k, (system, values) in enumerate(zip(systems, solution, strict=True)):
         motion = row_motion(scene.result, int(scene.places[k]))
         for unknown, value in zip(system.unknowns, values, strict=True):
@@ -187,7 +152,3 @@ def loads(scene: BenchScene, systems: list[DenseSystem], solution: Floats) -> Va
                 place = motion.point(scene.problem.mechanism.joints[joint].point)
                 found[f"{joint}.moment"][:, k] += moment - np.cross(place, force)
     return found
-
-
-def _is_vector(name: str) -> bool:
-    return not name.endswith(".effort")

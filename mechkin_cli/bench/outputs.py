@@ -58,14 +58,10 @@ class FigureCurve(NamedTuple):
     dark: str
 
 
+SPACED = "mechkin: followed and closed, by spacing"
 CURVES = (
     FigureCurve("kernel, by tolerance", "mechkin: kernel, by tolerance", "#0550ae", "#6cb6ff"),
-    FigureCurve(
-        "sweep, by skeleton spacing",
-        "mechkin: followed and closed, by spacing",
-        "#1a7f7a",
-        "#56d4cf",
-    ),
+    FigureCurve("sweep, by skeleton spacing", SPACED, "#1a7f7a", "#56d4cf"),
     FigureCurve("sweep, verdicts", "mechkin: analyze, with verdicts", "#116329", "#57d364"),
     FigureCurve("compiled Newton", "CasADi: compiled Newton, by steps", "#8250df", "#d2a8ff"),
     FigureCurve("Newton on its Jacobians", "Pinocchio: Newton, by steps", "#9a6700", "#e3b341"),
@@ -78,11 +74,8 @@ CURVES = (
 """In the order of the legend."""
 
 
-class FigurePanel(NamedTuple):
-    """A mechanism's name and what was measured of it."""
-
-    name: str
-    measurements: Sequence[Measurement]
+Panel = tuple[str, "Sequence[Measurement]"]
+"""A mechanism's name and what was measured of it."""
 
 
 class Axis(NamedTuple):
@@ -100,9 +93,9 @@ class Axis(NamedTuple):
         return self.first + share * (self.last - self.first)
 
 
-def svg(panels: Sequence[FigurePanel]) -> str:
+def svg(panels: Sequence[Panel]) -> str:
     """The figure as one file."""
-    points = [m for panel in panels for m in panel.measurements if _is_shown(m)]
+    points = [m for _, measured in panels for m in measured if _is_shown(m)]
     if not points:
         return _page(320.0, 60.0, [_text(16.0, 34.0, "nothing to show", "head")], ())
     times = [log10(m.microseconds) for m in points]
@@ -140,9 +133,10 @@ def svg(panels: Sequence[FigurePanel]) -> str:
 
 
 def _panel(
-    panel: FigurePanel, x: Axis, y: Axis, used: Iterable[FigureCurve], *, labelled: bool
+    panel: Panel, x: Axis, y: Axis, used: Iterable[FigureCurve], *, labelled: bool
 ) -> list[str]:
-    parts = [_text(x.first, y.last - 7.0, panel.name, "title")]
+    name, measured = panel
+    parts = [_text(x.first, y.last - 7.0, name, "title")]
     for exponent in range(int(y.low), int(y.high) + 1):
         at = y.at(exponent)
         parts.append(f'<path class="grid" d="M{x.first:.1f} {at:.1f}H{x.last:.1f}"/>')
@@ -156,12 +150,12 @@ def _panel(
     size = f'width="{x.last - x.first:.1f}" height="{y.first - y.last:.1f}"'
     parts.append(f'<rect class="frame" x="{x.first:.1f}" y="{y.last:.1f}" {size}/>')
     for curve in used:
-        own = [m for m in panel.measurements if m.curve == curve.name and _is_shown(m)]
+        own = [m for m in measured if m.curve == curve.name and _is_shown(m)]
         places = [(x.at(log10(m.position or 1.0)), y.at(log10(m.microseconds))) for m in own]
         mark = CURVES.index(curve)
         if len(places) > 1:
-            way = "L".join(f"{a:.1f} {b:.1f}" for a, b in places)
-            parts.append(f'<path class="c{mark}" d="M{way}"/>')
+            line = "L".join(f"{a:.1f} {b:.1f}" for a, b in places)
+            parts.append(f'<path class="c{mark}" d="M{line}"/>')
         parts += [f'<circle class="p{mark}" cx="{a:.1f}" cy="{b:.1f}" r="3"/>' for a, b in places]
     return parts
 
@@ -184,12 +178,12 @@ def _page(width: float, height: float, parts: Sequence[str], used: Iterable[Figu
     marks = [(CURVES.index(curve), curve) for curve in used]
     light = "".join(f".c{k}{{stroke:{c.light}}}.p{k}{{fill:{c.light}}}" for k, c in marks)
     dark = "".join(f".c{k}{{stroke:{c.dark}}}.p{k}{{fill:{c.dark}}}" for k, c in marks)
-    both = f"{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}\n"
+    style = f"{STYLE}{light}\n@media (prefers-color-scheme:dark){{{dark}}}\n"
     size = f'width="{width:.0f}" height="{height:.0f}" viewBox="0 0 {width:.0f} {height:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} role="img">'
-    told = "<title>Time per position against its error, a curve for each method</title>"
+    title = "<title>Time per position against its error, a curve for each method</title>"
     back = f'<rect class="bg" width="{width:.0f}" height="{height:.0f}"/>'
-    return "\n".join([head, told, f"<style>{both}</style>", back, *parts, "</svg>", ""])
+    return "\n".join([head, title, f"<style>{style}</style>", back, *parts, "</svg>", ""])
 
 
 MOTION = ("position", "velocity", "acceleration")
@@ -228,9 +222,8 @@ BEST_COLUMNS = (
 def best_table(benches: Sequence[Bench]) -> ReportTable:
     """For positions and for the motion: the fastest other method whose error is no more than ten
     times that of mechkin's sweep."""
-    rows = [
-        row for bench in benches for level in ("position", "motion") for row in _best(bench, level)
-    ]
+    levels = ("position", "motion")
+    rows = [row for bench in benches for level in levels for row in _best(bench, level)]
     families = {m.family for bench in benches for m in bench.measurements}
     notes = (
         "as exact: every error at most ten times that of mechkin's sweep with its verdicts.",
@@ -276,23 +269,6 @@ def summary(table: ReportTable) -> str:
         "mechanisms and levels: "
         f"{', '.join(parts)} as fast. Below 1 the other method is faster."
     )
-
-
-def responses_summary(tables: Iterable[ReportTable]) -> list[str]:
-    """Of each response, how many times the fastest other method takes at no smaller error."""
-    least: dict[str, float] = {}
-    for row in (row for table in tables if table.name == "responses" for row in table.rows):
-        case, ratio = str(row["case"]), row["ratio"]
-        if not str(row["method"]).startswith(FAMILY) and isinstance(ratio, float):
-            least[case] = min(ratio, least.get(case, ratio))
-    said = ", ".join(f"{case} {cell_text(ratio, 'time')}" for case, ratio in least.items())
-    if not said:
-        return []
-    return [
-        "",
-        "Responses against the fastest other method whose error is no larger: "
-        f"{said} times as fast.",
-    ]
 
 
 def _best(bench: Bench, level: str) -> list[dict[str, Cell]]:
@@ -356,7 +332,6 @@ def page(
         f"![time per position against error]({figure})",
         "",
         summary(best),
-        *responses_summary(tables),
         "",
         markdown(best),
     ]
@@ -381,7 +356,7 @@ def record(
 
 def figure(benches: Sequence[Bench]) -> str:
     """The figure of a run."""
-    return svg([FigurePanel(bench.scene.name, bench.measurements) for bench in benches])
+    return svg([(bench.scene.name, bench.measurements) for bench in benches])
 
 
 def write(
@@ -402,9 +377,7 @@ def write(
         "page": page(machine, benches, tables, NAMES["figure"], command),
         "figure": figure(benches),
     }
-    found = []
-    for kind, text in texts.items():
-        path = folder / NAMES[kind]
+    paths = {folder / NAMES[kind]: text for kind, text in texts.items()}
+    for path, text in paths.items():
         path.write_text(text, encoding="utf-8", newline="\n")
-        found.append(path)
-    return found
+    return list(paths)

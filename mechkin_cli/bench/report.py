@@ -8,7 +8,7 @@ import csv
 import platform
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
 from typing import Literal
@@ -103,12 +103,6 @@ def _significant(value: float) -> str:
     return f"{value:.1f}" if value >= 10.0 else f"{value:.2f}" if value >= 1.0 else f"{value:.3f}"
 
 
-def width(table: ReportTable) -> int:
-    """Characters that the columns need side by side."""
-    lines = plain_text(replace(table, notes=())).splitlines()
-    return max(map(len, lines))
-
-
 def plain_text(table: ReportTable) -> str:
     """Aligned columns, numbers to the right."""
     labels = [column.label.split("\n") for column in table.columns]
@@ -185,8 +179,3 @@ def markdown(table: ReportTable) -> str:
 
 def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
-
-
-def rows_of(values: Iterable[Mapping[str, Cell]]) -> list[dict[str, Cell]]:
-    """Rows of a table as plain dictionaries."""
-    return [dict(row) for row in values]

@@ -1,10 +1,10 @@
 """Rows one after the other, as a script solves them: each from the row before.
 
-Closures are 4x4 matrices of doubles; the first row starts from its own closed coordinates. scipy's
-root finders are run over their tolerances, with differences for rates. Explicit stepping, as
-programs of the literature have it, integrates rates from row to row: Euler's method moves each step
-by the rates at its start (a successive screw displacement), the classical Runge-Kutta method takes
-four rates a step. No step closes the loops again, so that errors grow along the sweep.
+The first row starts from its own closed coordinates. scipy's root finders are run over their
+tolerances, with differences for rates. Explicit stepping, as programs of the literature have it,
+integrates rates from row to row: Euler's method moves each step by the rates at its start (a
+successive screw displacement), the classical Runge-Kutta method takes four rates a step. No step
+closes the loops again, so that errors grow along the sweep.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import cos, sin
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.bench.closure import Matrices, Placing
+from mechkin_cli.bench.closure import Entries, Placing, Turned
 from mechkin_cli.bench.measurement import Method, Unable
-from mechkin_cli.bench.truth import BALL, State, coordinates_of, named_values
 
 if TYPE_CHECKING:
     from mechkin_cli.bench.scene import BenchScene, Values
@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 MANY_UNKNOWNS = 12
 """Beyond, differences of the whole closure in Python take tens of milliseconds a row."""
+
+BALL = range(3)
+"""The turns of a ball."""
 
 Gap = Callable[["Floats"], "Floats"]
 Solve = Callable[[Gap, "Floats"], "Floats"]
@@ -39,7 +42,7 @@ class RowByRow:
 
     def __init__(self, scene: BenchScene) -> None:
         self.scene, self.chain = scene, scene.chain
-        self.placing = Placing(self.chain, Matrices())
+        self.placing = Placing(self.chain, Entries(cos, sin))
         self.unknowns = list(self.chain.unknowns)
         self.driven = list(self.chain.inputs)
         lengths = [self.chain.coordinates[k].is_length for k in self.driven]
@@ -50,7 +53,9 @@ class RowByRow:
         self.accelerations: Floats = inputs.accelerations[:, scene.places] * units
         values, turned = coordinates_of(scene, slice(0, 1))
         self.start: Floats = values[:, 0]
-        self.turned = {ball: _first(matrix) for ball, matrix in turned.items()}
+        self.turned = {
+            ball: [[float(x[0]) for x in row] for row in matrix] for ball, matrix in turned.items()
+        }
 
     @property
     def is_long(self) -> bool:
@@ -64,8 +69,9 @@ class RowByRow:
 
     def gap(self, q: Floats, turned: dict[int, Any]) -> Floats:
         """All closing equations (equations,) at coordinates (coordinates,)."""
-        places = self.placing.places(q, turned)
-        return np.array(self.placing.gaps(places, q, turned))
+        entries = q.tolist()
+        places = self.placing.places(entries, turned)
+        return np.array(self.placing.gaps(places, entries, turned))
 
     def values(self, solve: Solve, inputs: Floats) -> Values:
         """Coordinates and points by name, of rows whose inputs (inputs, rows) are given."""
@@ -99,37 +105,63 @@ class RowByRow:
             return q, turned
         algebra, q, found = self.placing.algebra, q.copy(), {}
         for ball, matrix in turned.items():
-            frame = np.eye(4)
-            frame[:3, :3] = matrix
+            frame = [[*row, 0.0] for row in matrix]
             for about in BALL:
-                frame = algebra.turned(frame, about, q[ball + about])
+                frame = algebra.turned(frame, about, float(q[ball + about]))
                 q[ball + about] = 0.0
-            found[ball] = frame[:3, :3]
+            found[ball] = [row[:3] for row in frame]
         return q, found
 
-    def named(
-        self,
-        q: Floats,
-        orientations: list[dict[int, Any]],
-        rates: Floats | None = None,
-        accelerations: Floats | None = None,
-    ) -> Values:
-        """Positions by name, with velocities and accelerations where rates (coordinates, rows) are
-        given."""
-        still = np.zeros_like(q)
-        turned = {
-            ball: np.array([each[ball] for each in orientations]).transpose(1, 2, 0)
-            for ball in self.turned
+    def named(self, q: Floats, orientations: list[dict[int, Any]]) -> Values:
+        """Coordinates (1, rows) and points (3, rows) by name."""
+        turned = self.orientations(orientations)
+        placing = Placing(self.chain, Entries(np.cos, np.sin))
+        places = placing.places(q, turned)
+        found: Values = {
+            coordinate.name: values[None, :]
+            for coordinate, values in zip(self.chain.coordinates, q, strict=True)
         }
-        moving = rates is not None and accelerations is not None
-        motion = (rates, accelerations) if moving else (still, still)
-        found = named_values(self.chain, State(q, *motion, turned))
-        names = self.scene.asked.level("motion" if moving else "position")
-        return {name: found[name] for name in names}
+        for name, body, at in self.chain.points:
+            found[f"{name}.position"] = np.array(
+                [np.zeros(q.shape[1]) + x for x in placing.image(places, body, at)]
+            )
+        return {name: found[name] for name in self.scene.asked.position}
+
+    def orientations(self, rows: list[dict[int, Any]]) -> dict[int, Any]:
+        """What balls count from, (3, 3, rows) by ball."""
+        return {
+            ball: np.array([row[ball] for row in rows]).transpose(1, 2, 0) for ball in self.turned
+        }
 
 
-def _first(matrix: Any) -> Any:
-    return np.array([[float(x[0]) for x in row] for row in matrix])
+def coordinates_of(scene: BenchScene, rows: Any) -> tuple[Any, Turned]:
+    """Closed coordinates (coordinates, rows) of a scene in SI as the kernel has them, and what
+    balls count from; a ball that closes a loop has none."""
+    chain, states = scene.chain, scene.states[:, rows]
+    values = np.zeros((len(chain.coordinates), states.shape[1]))
+    turned = {}
+    for k, (coordinate, place) in enumerate(zip(chain.coordinates, chain.states, strict=True)):
+        if place is None:
+            if coordinate.name in scene.closing_values:
+                values[k] = scene.closing_values[coordinate.name][0, rows]
+        elif not any(0 <= k - ball < len(BALL) for ball in chain.balls):
+            values[k] = states[place] * (chain.length if coordinate.is_length else 1.0)
+    for ball in chain.balls:
+        place = chain.states[ball]
+        if place is not None:
+            turned[ball] = rotation(np.asarray(states[place : place + 4], np.longdouble))
+    return values, turned
+
+
+def rotation(quaternion: Any) -> list[list[Any]]:
+    """The matrix of a quaternion (4, ...), scalar first, of any length."""
+    a, x, y, z = quaternion
+    n = a * a + x * x + y * y + z * z
+    return [
+        [(a * a + x * x - y * y - z * z) / n, 2 * (x * y - a * z) / n, 2 * (x * z + a * y) / n],
+        [2 * (x * y + a * z) / n, (a * a - x * x + y * y - z * z) / n, 2 * (y * z - a * x) / n],
+        [2 * (x * z - a * y) / n, 2 * (y * z + a * x) / n, (a * a - x * x - y * y + z * z) / n],
+    ]
 
 
 SCIPY = "scipy"

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from time import thread_time
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from mechkin_cli.bench.measurement import (
     Bench,
@@ -20,9 +21,11 @@ from mechkin_cli.bench.measurement import (
 from mechkin_cli.bench.methods import FAMILY, UNIT, dense_methods, kernel_methods
 from mechkin_cli.bench.report import ReportTable
 from mechkin_cli.bench.row_by_row import scipy_methods, stepping_methods
-from mechkin_cli.bench.scene import BenchScene, Subject, Values
-from mechkin_cli.bench.settings import demand_table, process_table, thread_table
-from mechkin_cli.bench.truth import exact_values
+from mechkin_cli.bench.scene import BenchScene, Values
+from mechkin_cli.bench.settings import demand_table, thread_table
+from mechkin_cli.errors import NotRepeated, wide_run
+from mechkin_cli.model import loads
+from mechkin_cli.plan import demand_of
 from mechkin_cli.templates import template_text
 
 Family = Callable[[BenchScene], Iterator[Method]]
@@ -38,17 +41,11 @@ FAMILIES: dict[str, Family] = {
 left out."""
 
 
-@dataclass(frozen=True)
-class Rounds:
+class Rounds(NamedTuple):
     """In how many rounds methods are timed: those of the kernel, and those row by row in Python."""
 
     fast: int = 15
     slow: int = 3
-
-    @property
-    def processes(self) -> int:
-        """Those of whole processes; 0 for none."""
-        return self.slow if self.slow > 1 else 0
 
 
 FULL, QUICK = Rounds(), Rounds(3, 1)
@@ -60,22 +57,16 @@ LONG = 0.5
 """Seconds of a sweep by a slow method from which on one round has to do."""
 
 
-def setting_tables(subjects: Sequence[Subject], rounds: Rounds) -> Iterator[ReportTable]:
+def setting_tables(scenes: Sequence[BenchScene], rounds: Rounds) -> Iterator[ReportTable]:
     """What the settings of a run cost."""
-    for subject in subjects:
-        yield demand_table(subject, rounds.fast, rounds.processes)
-    if rounds.processes:
-        for subject in subjects:
-            yield process_table(subject, rounds.processes)
-    yield thread_table([subject.scene for subject in subjects], rounds.slow)
+    for scene in scenes:
+        yield demand_table(scene, rounds.fast)
+    yield thread_table(scenes, rounds.slow)
 
 
-def templates() -> list[Subject]:
+def templates() -> list[BenchScene]:
     """Some mechanisms to start from, read, checked and closed."""
-    from mechkin_cli.model import loads
-
-    texts = {name: template_text(name) for name in TEMPLATES}
-    return [Subject(BenchScene(name, loads(text, name)), text) for name, text in texts.items()]
+    return [BenchScene(name, loads(template_text(name), name)) for name in TEMPLATES]
 
 
 class Suite(NamedTuple):
@@ -83,16 +74,16 @@ class Suite(NamedTuple):
 
     Args:
         command: its words, as a page names them.
-        subjects: makes the mechanisms where no file is named.
+        scenes: makes the mechanisms where no file is named.
         families: of methods.
         tables: what else is measured.
         words: the same in words.
     """
 
     command: str
-    subjects: Callable[[], list[Subject]]
+    scenes: Callable[[], list[BenchScene]]
     families: Mapping[str, Family]
-    tables: Callable[[Sequence[Subject], Rounds], Iterator[ReportTable]]
+    tables: Callable[[Sequence[BenchScene], Rounds], Iterator[ReportTable]]
     words: str
 
 
@@ -129,6 +120,30 @@ def bench(scene: BenchScene, rounds: Rounds, families: Mapping[str, Family] = FA
         unit = units[method.level]
         measurements.append(measured(scene.name, method, timing, by, unit.rows, errors))
     return Bench(scene, tuple(measurements), skipped, exact)
+
+
+TEXT = "double-double, from the numbers of the file's text"
+
+
+def exact_values(scene: BenchScene) -> tuple[Values, str]:
+    """Everything that is asked of a scene, at its places, and how it was computed.
+
+    Arrays (width, places) of numpy's widest numbers, from the rows repeated in double-double; none
+    where the text cannot be followed in it.
+    """
+    wanted = scene.wanted(scene.asked.level("everything"))
+    try:
+        wide = wide_run(scene.result)
+    except NotRepeated as reason:
+        return {}, f"not known, as the text cannot be followed in double-double ({reason})"
+    demand = demand_of(scene.problem.mechanism, wanted)
+    columns = wide.run(wanted, scene.session, wide.inputs, demand)
+    values: dict[str, Any] = {
+        name: np.asarray(parts.high, np.longdouble)[:, scene.places]
+        + np.asarray(parts.low, np.longdouble)[:, scene.places]
+        for name, parts in columns.items()
+    }
+    return values, TEXT
 
 
 def _timed(

@@ -7,13 +7,10 @@ their velocities and accelerations), `everything` (with efforts and joint reacti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,7 +19,7 @@ from mechkin_cli.bench.chain import BodyTree, chain_of
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import RESIDUAL_TESTS, Ask, Batch, Packing, Session
-from mechkin_cli.sweep import analyze, at_once
+from mechkin_cli.sweep import analyze, at_once, follow_rows
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -97,8 +94,8 @@ class BenchScene:
             )
         if not self.asked.position:
             raise UsageError(
-                f"{name} has nothing by which errors could be told: no unknown coordinate has a "
-                "name; write points: on a link that moves"
+                f"{name} has nothing by which errors could be measured: no unknown coordinate has "
+                "a name; write points: on a link that moves"
             )
         self.result = analyze(model.session.packed(ALONE), self.asked.level("everything"))
         self.solved = np.flatnonzero(self.result.row_states.reached)
@@ -147,8 +144,6 @@ class BenchScene:
     @cached_property
     def followed(self) -> Floats:
         """As a guess, what following the branch fills in between its nodes (states, rows)."""
-        from mechkin_cli.sweep import follow_rows
-
         rows = follow_rows(self.session, self.result.start, every_row=False)
         found: Floats = np.ascontiguousarray(rows.states[:, self.places])
         return found
@@ -224,15 +219,12 @@ class BenchScene:
         return demand
 
     def _asked(self, session: Session) -> Asked:
-        stems = []
-        for name in _unknown_coordinates(session):
-            stems.append((name, True))
-        stems += [(name, False) for name in self._points()]
-        found = {
-            order: tuple(stem + ends[not plain] for stem, plain in stems)
+        coordinates, points = _unknown_coordinates(session), list(self._points())
+        names = {
+            order: [name + ends[0] for name in coordinates] + [name + ends[1] for name in points]
             for order, ends in ORDERS.items()
         }
-        known = {o: tuple(n for n in names if n in self.quantities) for o, names in found.items()}
+        known = {o: tuple(n for n in each if n in self.quantities) for o, each in names.items()}
         return Asked(**known, loads=self._loads(session))
 
     def _loads(self, session: Session) -> tuple[str, ...]:
@@ -248,29 +240,6 @@ class BenchScene:
         spinning = {link for spin in mechanism.spins for link in spin.links}
         fixed = {"ground", *spinning}
         return {name: at for name, at in mechanism.points.items() if at.link not in fixed}
-
-
-class Subject(NamedTuple):
-    """A scene with its file, or the text of one that is known."""
-
-    scene: BenchScene
-    source: Path | str
-
-    @property
-    def name(self) -> str:
-        """As tables show it."""
-        return self.scene.name
-
-    @contextmanager
-    def on_disk(self) -> Iterator[Path]:
-        """The file, as long as it is needed."""
-        if isinstance(self.source, Path):
-            yield self.source.resolve()
-            return
-        with TemporaryDirectory(prefix="mechkin-bench-") as folder:
-            file = Path(folder) / "mechanism.yaml"
-            file.write_text(self.source, encoding="utf-8")
-            yield file
 
 
 def _unknown_coordinates(session: Session) -> list[str]:

@@ -1,35 +1,24 @@
-"""What settings of a run cost: what skipping saves, what threads gain, what a whole process takes.
+"""What settings of a run cost: what skipping saves, and what threads gain.
 
-Skipping: the same rows with one part of the demand plan more at a time, in the kernel's call, in
-`analyze` within a process, and in a whole process that imports, reads, checks and analyzes. Whole
-processes stand beside what a script of another library takes at least: none takes less than Python
-with its library imported, whatever it computes then.
+Skipping: the same rows with one part of the demand plan more at a time, in the kernel's call and in
+`analyze`.
 """
 
 from __future__ import annotations
 
-import subprocess
-import sys
+from collections.abc import Sequence
 from functools import partial
-from importlib.util import find_spec
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from mechkin_cli.bench.measurement import Timing, in_turns
+from mechkin_cli.bench.measurement import in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, key_of
-from mechkin_cli.bench.scene import BATCH, BenchScene, Subject
+from mechkin_cli.bench.scene import BATCH, BenchScene
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.plan import Demand
 from mechkin_cli.session import Packing
 from mechkin_cli.sweep import analyze
 
-SCRIPT = (
-    "import sys, mechkin_cli as mk; "
-    "mk.load(sys.argv[1]).analyze(sys.argv[2:], tables=[], threads=1)"
-)
-MILLI = 1000.0
-MICRO = MILLI * MILLI
+MICRO = 1000.0 * 1000.0
 
 DEMAND_COLUMNS = (
     ReportColumn("part", "computed"),
@@ -37,76 +26,54 @@ DEMAND_COLUMNS = (
     ReportColumn("share", "% of\nall", "percent"),
     ReportColumn("analyze", "analyze,\nus a row", "time"),
     ReportColumn("analyze_share", "% of\nall", "percent"),
-    ReportColumn("process", "process,\nms", "time"),
-    ReportColumn("process_share", "% of\nall", "percent"),
 )
 
 
 def steps(scene: BenchScene) -> list[tuple[str, tuple[str, ...], Demand]]:
-    """What is computed, the quantities, and what is demanded beside them."""
+    """Each part with the quantities of the parts up to it, and what is demanded beside them."""
     asked = scene.asked
     efforts = tuple(name for name in asked.loads if name.endswith(".effort"))
     first = (*asked.position, *asked.velocity)
     moving = asked.level("motion")
-    found = [("position", asked.position, Demand.POSITION)]
-    found += [("+ velocity", first, Demand.POSITION), ("+ acceleration", moving, Demand.POSITION)]
+    parts = [("position", asked.position), ("+ velocity", first), ("+ acceleration", moving)]
     if efforts:
-        found += [("+ effort", (*moving, *efforts), Demand.POSITION)]
+        parts.append(("+ effort", (*moving, *efforts)))
     if len(asked.loads) > len(efforts):
-        found += [("+ reactions of all joints", asked.level("everything"), Demand.POSITION)]
-    return [*found, ("+ verdicts of all rows", found[-1][1], scene.verdicts("everything"))]
+        parts.append(("+ reactions of all joints", asked.level("everything")))
+    verdicts = ("+ verdicts of all rows", parts[-1][1], scene.verdicts("everything"))
+    return [*((name, names, Demand.POSITION) for name, names in parts), verdicts]
 
 
-def demand_table(subject: Subject, rounds: int, processes: int) -> ReportTable:
-    """One line for every step; `processes` are the rounds of processes (0: none)."""
-    scene = subject.scene
+def demand_table(scene: BenchScene, rounds: int) -> ReportTable:
+    """One line for every step."""
     plan, session = steps(scene), scene.model.session.packed(Packing(0, 1))
-    verdicts = [k == len(plan) - 1 for k in range(len(plan))]
-    kernel = in_turns(
-        {
-            k: scene.kernel(names, scene.followed, BATCH, more=more)
-            for k, (_, names, more) in enumerate(plan)
-        },
-        rounds,
-    )
+    last = len(plan) - 1
+    calls = [scene.kernel(names, scene.followed, BATCH, more=more) for _, names, more in plan]
+    kernel = in_turns(dict(enumerate(calls)), rounds)
     whole = in_turns(
         {
-            k: partial(analyze, session, names, verdicts=verdicts[k])
+            k: partial(analyze, session, names, verdicts=k == last)
             for k, (_, names, _) in enumerate(plan)
         },
         rounds,
     )
-    processed = _processes([names for _, names, _ in plan], subject, processes) if processes else {}
-    last, rows = len(plan) - 1, []
-    for k, (name, _, _) in enumerate(plan):
-        row: dict[str, Cell] = {
+    rows: list[dict[str, Cell]] = [
+        {
             "part": name,
             "kernel": MICRO * kernel[k].median / BATCH,
             "share": kernel[k].ratio(kernel[last]),
             "analyze": MICRO * whole[k].median / scene.result.rows,
             "analyze_share": whole[k].ratio(whole[last]),
         }
-        if k in processed:
-            row["process"] = MILLI * processed[k].median
-            row["process_share"] = processed[k].ratio(processed[last])
-        rows.append(row)
+        for k, (name, _, _) in enumerate(plan)
+    ]
     notes = (
         f"kernel: {BATCH} rows a call; analyze: {scene.result.rows} rows, with verdicts in the",
-        "last line alone; a process has them in every line.",
+        "last line alone.",
         "each line computes all lines above it as well.",
     )
     name = "demand_" + key_of(scene.name)
     return ReportTable(name, f"{scene.name}: what skipping saves", DEMAND_COLUMNS, rows, notes)
-
-
-def _processes(asked: list[tuple[str, ...]], subject: Subject, rounds: int) -> dict[int, Timing]:
-    with subject.on_disk() as file:
-        line = [sys.executable, "-P", "-c", SCRIPT, str(file)]
-        calls = {
-            k: partial(subprocess.run, [*line, *names], check=True, capture_output=True)
-            for k, names in enumerate(asked)
-        }
-        return in_turns(calls, rounds, perf_counter)
 
 
 THREAD_ROWS = 50_000
@@ -120,7 +87,7 @@ THREAD_COLUMNS = (
 )
 
 
-def thread_table(scenes: list[BenchScene], rounds: int, rows: int = THREAD_ROWS) -> ReportTable:
+def thread_table(scenes: Sequence[BenchScene], rounds: int, rows: int = THREAD_ROWS) -> ReportTable:
     """Everything that is asked of every scene, on 1, 2, 4 ... threads, as many as there are."""
     most = _kernel.available_processors()
     counts = [n for n in (1, 2, 4, 8, 16, 32, 64) if n < most] + [most]
@@ -143,42 +110,3 @@ def thread_table(scenes: list[BenchScene], rounds: int, rows: int = THREAD_ROWS)
             )
     notes = (f"{rows} rows a call with everything; by the clock on the wall.",)
     return ReportTable("threads", "What threads gain", THREAD_COLUMNS, lines, notes)
-
-
-LIBRARIES = ("numpy", "scipy.optimize", "pinocchio", "casadi", "mujoco")
-"""What a script imports."""
-
-PROCESS_COLUMNS = (
-    ReportColumn("process", "process"),
-    ReportColumn("milliseconds", "ms", "time"),
-    ReportColumn("spread", "+-\n%", "percent"),
-    ReportColumn("ratio", "times the\nfirst", "ratio"),
-)
-
-
-def process_table(subject: Subject, rounds: int) -> ReportTable:
-    """The whole command on one file, and the imports of the libraries that are here."""
-    python = [sys.executable, "-P"]
-    with subject.on_disk() as file, TemporaryDirectory(prefix="mechkin-bench-") as folder:
-        name = f"mechkin analyze, {subject.name}"
-        options = ["--quiet", "--out", folder]
-        lines = {name: [*python, "-m", "mechkin_cli", "analyze", str(file), *options]}
-        lines["python, nothing imported"] = [*python, "-c", "pass"]
-        for module in LIBRARIES:
-            if find_spec(module.partition(".")[0]) is not None:
-                lines[f"import {module}"] = [*python, "-c", f"import {module}"]
-        run = partial(subprocess.run, capture_output=True, cwd=Path(folder))
-        calls = {key: partial(run, line) for key, line in lines.items()}
-        times = in_turns(calls, rounds, perf_counter)
-    rows: list[dict[str, Cell]] = [
-        {
-            "process": key,
-            "milliseconds": MILLI * timing.median,
-            "spread": timing.spread,
-            "ratio": timing.ratio(times[name]),
-        }
-        for key, timing in times.items()
-    ]
-    notes = ("a script of another library takes at least its import, before it reads or solves.",)
-    key = "processes_" + key_of(subject.name)
-    return ReportTable(key, f"{subject.name}: whole processes", PROCESS_COLUMNS, rows, notes)

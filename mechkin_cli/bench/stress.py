@@ -1,16 +1,16 @@
 """A small set of hard mechanisms whose rows are known, and what becomes of them here.
 
-The set is kept as data: the text of each file beside its true places, decided in double-double by
+The set is data: the text of each file beside its true places, decided in double-double by
 closed forms or by closing equations that are followed from the drawing. No code of the solver had a
-part in them. The project draws them from its families of random mechanisms, of which
-`docs/stress.md` tells.
+part in them. The project draws them from its families of random mechanisms
+(`docs/stress.md`).
 """
 
 from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -51,7 +51,7 @@ TAKEN = (
 is not driven, or an input does not move anything."""
 REFUSED = "refused"
 SHOWN = 5
-"""Faults of each mechanism that are told."""
+"""Faults of each mechanism that are reported one by one."""
 
 
 class StressVerdict(IntEnum):
@@ -147,12 +147,7 @@ class Outcome(NamedTuple):
 
     def record(self) -> dict[str, Any]:
         """As plain data."""
-        return {
-            "family": self.family,
-            "rows": self.rows,
-            "verdicts": dict(self.verdicts),
-            "faults": list(self.faults),
-        }
+        return self._asdict() | {"verdicts": dict(self.verdicts), "faults": list(self.faults)}
 
 
 def kept() -> list[dict[str, Any]]:
@@ -167,10 +162,9 @@ def kept() -> list[dict[str, Any]]:
     return found
 
 
-def outcomes(mechanisms: Sequence[Mapping[str, Any]] | None = None) -> Iterator[Outcome]:
-    """Runs the set, or other mechanisms that are known as well, and judges every row."""
-    for known in kept() if mechanisms is None else mechanisms:
-        yield _outcome(known)
+def outcomes(mechanisms: Iterable[Mapping[str, Any]]) -> Iterator[Outcome]:
+    """Runs mechanisms whose rows are known, and judges every row."""
+    return map(_outcome, mechanisms)
 
 
 def _outcome(known: Mapping[str, Any]) -> Outcome:
@@ -247,10 +241,10 @@ def stress_table(found: Sequence[Outcome]) -> ReportTable:
     return ReportTable("verdicts", "What became of hard mechanisms' rows", columns, rows, faults)
 
 
-def stress(heard: Callable[[str], None]) -> list[Outcome]:
-    """Runs the set; `heard` is told the family that is at work."""
-    found: list[Outcome] = []
+def judge_hard_mechanisms(progress: Callable[[str], None]) -> list[Outcome]:
+    """Runs the set; `progress` is called with the family of each mechanism before it runs."""
+    judged = []
     for known in kept():
-        heard(known["family"])
-        found += outcomes([known])
-    return found
+        progress(known["family"])
+        judged.append(_outcome(known))
+    return judged

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mechkin_cli import tables as table_room, view
 from mechkin_cli.cli.messages import (
     FORMS,
     ExitCode,
@@ -33,17 +34,16 @@ if TYPE_CHECKING:
     from mechkin_cli.model import Model
 
 
-# The runs of one file: its sweep and its responses.
-
-
 def run_all(
     model: Model,
     tables: Sequence[str] | None = None,
     mode: str | None = None,
     tell: Callable[[str], None] = lambda _: None,
 ) -> list[Analysis]:
-    """Every run that has one of the tables wanted (None: all), the sweep first; `tell` hears which
-    is under way.
+    """Every run that has one of the tables wanted (None: all), the sweep first.
+
+    Args:
+        tell: is called with words for the run that is under way.
 
     Raises:
         UsageError: no run has a table of a name.
@@ -54,21 +54,16 @@ def run_all(
     if wanted is not None:
         _refuse_unknown(model, tables or ())
         runs = {run: None for run in runs if wanted[run]}
-    found = []
+    analyses = []
     for run in runs:
         chosen = None if wanted is None else wanted[run]
-        tell(_words(model, run))
         if run == SWEEP:
-            found.append(model.analyze(tables=chosen, mode=mode))
+            tell(f"following {model.problem.motion.rows} rows")
+            analyses.append(model.analyze(tables=chosen, mode=mode))
         else:
-            found.append(model.respond(run, tables=chosen, mode=mode))
-    return found
-
-
-def _words(model: Model, run: str) -> str:
-    if run != SWEEP:
-        return f"integrating {run}"
-    return f"following {model.problem.motion.rows} rows"
+            tell(f"integrating {run}")
+            analyses.append(model.respond(run, tables=chosen, mode=mode))
+    return analyses
 
 
 def certify_sweeps(analyses: Sequence[Analysis]) -> tuple[Diagnostic, ...]:
@@ -193,14 +188,12 @@ def _one(
         analyses, notes, written = _run(model, folder, command, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    said = dict.fromkeys(found for analysis in analyses for found in analysis.diagnostics)
-    say_diagnostics((*said, *notes), shown(path))
+    diagnostics = dict.fromkeys(one for analysis in analyses for one in analysis.diagnostics)
+    say_diagnostics((*diagnostics, *notes), shown(path))
     record: Record = {}
     if command.json:
-        from mechkin_cli.tables import runs_record
-
         results = [_results(analysis, command) for analysis in analyses]
-        record = {"file": shown(path)} | runs_record(results)
+        record = {"file": shown(path)} | table_room.runs_record(results)
         if command.explain:
             from mechkin_cli.cli.explanation import explanation
 
@@ -217,9 +210,7 @@ def _run(
 ) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path]]:
     """The runs, notes on what is not proven, and the files written: alone in their folder from
     before the work on, so that nothing is computed that cannot be written."""
-    from mechkin_cli.tables import OutputFolder
-
-    with OutputFolder(folder) if command.writes else nullcontext() as output:
+    with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
         analyses = run_all(model, command.table, command.mode, tell)
         tell("proving rows" if command.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if command.certify else ()
@@ -229,26 +220,18 @@ def _run(
         results = [_results(analysis, command) for analysis in analyses]
         files = written_files(results, command.formats)
         if command.view:
-            notes = (*notes, *_add_page(files, analyses))
+            files[view.PAGE_NAME], left_out = view.view_page(analyses)
+            notes = (*notes, *left_out)
         return analyses, notes, output.write(files)
-
-
-def _add_page(files: dict[str, bytes], analyses: list[Analysis]) -> list[Diagnostic]:
-    """Adds the page of some runs to the files; notes on what it leaves out."""
-    from mechkin_cli.view import PAGE_NAME, view_page
-
-    files[PAGE_NAME], notes = view_page(analyses)
-    return notes
 
 
 def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
     """Refuses a table of the file whose files `--errors` writes."""
-    from mechkin_cli.tables import chosen, clashing
-
     built = model.built
-    named = [table.name for table in chosen(built.tables, wanted)]
-    named += [table.name for table in chosen((*built.coefficients, *built.balances), wanted)]
-    name = clashing(named, model.runs)
+    named = [table.name for table in table_room.chosen(built.tables, wanted)]
+    others = (*built.coefficients, *built.balances)
+    named += [table.name for table in table_room.chosen(others, wanted)]
+    name = table_room.clashing(named, model.runs)
     if name is not None:
         raise UsageError(
             f"--errors writes a table {name.casefold()}, and so does the file; rename the file's, "
@@ -281,17 +264,14 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
 
 
 def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
-    name, result = analysis.model.name, analysis.result
-    tables = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
-    errors = analysis.errors.columns if command.errors else None
     return Results(
-        name,
-        tables,
-        result,
+        analysis.model.name,
+        (*analysis.tables, *analysis.coefficients, *analysis.balance_tables),
+        analysis.result,
         analysis.diagnostics,
         command.threads,
         analysis.run,
-        errors,
+        analysis.errors.columns if command.errors else None,
         command.units,
     )
 

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli import bench as room, model
 from mechkin_cli.cli.messages import ExitCode, Record, put, put_json, refusal, refuse_stdin
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from rich.table import Table as RichTable
-
-    from mechkin_cli.bench.measurement import Bench
-    from mechkin_cli.bench.report import ReportTable
-    from mechkin_cli.bench.runs import Rounds, Suite
-    from mechkin_cli.bench.scene import BenchScene, Subject
+    from mechkin_cli.bench import Bench, BenchScene, ReportTable, Rounds, Suite
 
 
 def bench(
@@ -31,9 +26,7 @@ def bench(
     if stress:
         refuse_options({"files": files, "quick": quick, "out": out}, STRESS_IS_ALONE)
         return _stress(json=json)
-    from mechkin_cli.bench.runs import SUITE
-
-    return measure(SUITE, files or [], quick=quick, out=out, json=json)
+    return measure(room.SUITE, files or [], quick=quick, out=out, json=json)
 
 
 STRESS_IS_ALONE = "--stress judges mechanisms of its own and times nothing; leave {} out"
@@ -43,15 +36,15 @@ def refuse_options(given: Mapping[str, object], message: str) -> None:
     """Refuses options that mean nothing beside others.
 
     Args:
-        given: the parameters that must not be given, and whether they are.
+        given: the parameters that must not be set, and whether they are.
         message: why, and what to do, with {} for those that are.
 
     Raises:
-        UsageError: one of them is given.
+        UsageError: one of them is set.
     """
-    names = [name for name, value in given.items() if value]
-    if names:
-        words = ", ".join("FILE" if name == "files" else f"--{name}" for name in names)
+    present = [name for name, value in given.items() if value]
+    if present:
+        words = ", ".join("FILE" if name == "files" else f"--{name}" for name in present)
         raise UsageError(message.format(words))
 
 
@@ -66,30 +59,26 @@ def measure(
     Raises:
         UsageError: a file is given twice, or the folder takes no file.
     """
-    from mechkin_cli.bench.outputs import record, write
-    from mechkin_cli.bench.report import machine
-    from mechkin_cli.bench.runs import FULL, QUICK
 
-    rounds = QUICK if quick else FULL
+    rounds = room.QUICK if quick else room.FULL
     if out is not None:
-        _made(out)
-    code, subjects, refused = _read(files) if files else (int(ExitCode.OK), suite.subjects(), [])
-    scenes = [subject.scene for subject in subjects]
-    described, shown = machine(), not json
+        _make_folder(out)
+    code, scenes, refused = _read(files) if files else (int(ExitCode.OK), suite.scenes(), [])
+    machine, shown = room.machine(), not json
     if shown and scenes:
-        put(", ".join(f"{name} {value}" for name, value in described.items()) + "\n")
+        put(", ".join(f"{name} {value}" for name, value in machine.items()) + "\n")
     benches = list(_benches(suite, scenes, rounds, shown=shown))
-    tables = list(_tables(suite, subjects, rounds, shown=shown))
+    tables = list(_tables(suite, scenes, rounds, shown=shown))
     if out is not None and scenes:
         command = " ".join([suite.command, *map(str, files)])
         try:
-            written = write(out, described, benches, tables, command)
+            written = room.write(out, machine, benches, tables, command)
         except OSError as error:
             raise _not_written(out, error) from None
         if shown:
             put("\n" + "".join(f"{path}\n" for path in written))
     if json:
-        put_json(record(described, benches, tables) | ({"refused": refused} if refused else {}))
+        put_json(room.record(machine, benches, tables) | ({"refused": refused} if refused else {}))
     return code
 
 
@@ -99,25 +88,20 @@ def _stress(*, json: bool) -> int:
     Returns:
         The exit code: 1 where a row is wrong and says ok, or a file is refused.
     """
-    from mechkin_cli.bench.stress import stress, stress_table
-
-    with working("hard mechanisms", json) as tell:
-        found = stress(tell)
+    with working("hard mechanisms", json) as progress:
+        outcomes = room.judge_hard_mechanisms(progress)
     if json:
-        put_json({"mechanisms": [outcome.record() for outcome in found]})
+        put_json({"mechanisms": [outcome.record() for outcome in outcomes]})
     else:
-        show(stress_table(found))
-    return ExitCode.DIFFERENCES if any(outcome.is_wrong for outcome in found) else ExitCode.OK
+        show(room.stress_table(outcomes))
+    return ExitCode.DIFFERENCES if any(outcome.is_wrong for outcome in outcomes) else ExitCode.OK
 
 
-def _made(folder: Path) -> None:
-    """Makes the folder of the files before anything is measured."""
-    from mechkin_cli.bench.outputs import NAMES
-
+def _make_folder(folder: Path) -> None:
+    """Makes the folder, and makes sure that its files can be written, before any measurement."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for path in filter(Path.exists, (folder / name for name in NAMES.values())):
-            # to be written to; what is there stays as it is
+        for path in filter(Path.exists, (folder / name for name in room.NAMES.values())):
             path.open("r+b").close()
     except OSError as error:
         raise _not_written(folder, error) from None
@@ -128,43 +112,37 @@ def _not_written(folder: Path, error: OSError) -> UsageError:
     return UsageError(f"--out {folder}: {why}{file}; name a folder that can be written")
 
 
-def _read(files: Sequence[Path]) -> tuple[int, list[Subject], list[Record]]:
-    """The files that can be measured; others are told."""
-    from mechkin_cli.bench.scene import BenchScene, Subject
-    from mechkin_cli.model import load
-
-    code, found = int(ExitCode.OK), []
+def _read(files: Sequence[Path]) -> tuple[int, list[BenchScene], list[Record]]:
+    """The exit code, the files that can be measured, and the records of the others."""
+    code, scenes = int(ExitCode.OK), []
     refused: list[Record] = []
     for file, name in _names(files).items():
         try:
             refuse_stdin(file, "bench reads a file several times, and - is none")
-            found.append(Subject(BenchScene(name, load(file)), file))
+            scenes.append(room.BenchScene(name, model.load(file)))
         except (InvalidFile, UsageError) as error:
             own, record = refusal(file, error)
             code, refused = max(code, own), [*refused, record]
-    return code, found, refused
+    return code, scenes, refused
 
 
 def _names(files: Sequence[Path]) -> dict[Path, str]:
-    """What tables call the files: their stems, with a number where tables could not tell them
-    apart.
+    """What tables call the files: their stems, with a number where table names would be the same.
 
     Raises:
         UsageError: a file is given twice.
     """
-    from mechkin_cli.bench.report import key_of
-
     names: dict[Path, str] = {}
     taken: set[str] = set()
     for file in files:
         if file in names:
             raise UsageError(f"{file} is given twice; name it once")
         name, number = file.stem, 1
-        while key_of(name) in taken:
+        while room.key_of(name) in taken:
             number += 1
             name = f"{file.stem} {number}"
         names[file] = name
-        taken.add(key_of(name))
+        taken.add(room.key_of(name))
     return names
 
 
@@ -172,25 +150,22 @@ def _benches(
     suite: Suite, scenes: Sequence[BenchScene], rounds: Rounds, *, shown: bool
 ) -> Iterator[Bench]:
     """Each scene's measurements, shown as soon as they are there."""
-    from mechkin_cli.bench.report import bench_table
-    from mechkin_cli.bench.runs import bench as measured
-
     for number, scene in enumerate(scenes, 1):
         with working(f"measuring {scene.name}: {number} of {len(scenes)}"):
-            found = measured(scene, rounds, suite.families)
+            measured = room.bench(scene, rounds, suite.families)
         if shown:
-            show(bench_table(found))
-        yield found
+            show(room.bench_table(measured))
+        yield measured
 
 
 def _tables(
-    suite: Suite, subjects: Sequence[Subject], rounds: Rounds, *, shown: bool
+    suite: Suite, scenes: Sequence[BenchScene], rounds: Rounds, *, shown: bool
 ) -> Iterator[ReportTable]:
     """What else a suite measures, each table shown as soon as it is there."""
-    found = suite.tables(subjects, rounds) if subjects else iter(())
+    tables = suite.tables(scenes, rounds) if scenes else iter(())
     while True:
         with working(f"measuring {suite.words}"):
-            table = next(found, None)
+            table = next(tables, None)
         if table is None:
             return
         if shown:
@@ -199,42 +174,5 @@ def _tables(
 
 
 def show(table: ReportTable) -> None:
-    """Styled on a terminal wide enough, else aligned text."""
-    from mechkin_cli.bench.report import plain_text, width
-
-    if not sys.stdout.isatty():
-        put("\n" + plain_text(table))
-        return
-    from rich.console import Console
-
-    console = Console()
-    console.print()
-    # a table that does not fit would lose digits
-    if width(table) > console.width:
-        console.out(plain_text(table), end="", highlight=False)
-        return
-    console.print(_styled(table))
-    for note in table.notes:
-        console.print(note, style="dim", highlight=False, markup=False)
-
-
-def _styled(table: ReportTable) -> RichTable:
-    from rich import box
-    from rich.table import Table as RichTable
-
-    styled = RichTable(
-        title=table.title,
-        title_justify="left",
-        title_style="bold",
-        header_style="",
-        box=box.SIMPLE_HEAD,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
-    for column in table.columns:
-        justify = "left" if column.kind == "text" else "right"
-        styled.add_column(column.label, justify=justify, vertical="bottom", no_wrap=True)  # type: ignore[arg-type]
-    for row in table.texts():
-        styled.add_row(*row)
-    return styled
+    """Aligned text on stdout."""
+    put("\n" + room.plain_text(table))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli import mechanism, mobility, structure
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
@@ -52,20 +53,16 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
         text = f"{shown(path)}: ok ({_sentence(model)})\n"
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    found = (*model.diagnostics, *_input_faults(model))
-    say_diagnostics(found, shown(path))
+    diagnostics = (*model.diagnostics, *_input_faults(model))
+    say_diagnostics(diagnostics, shown(path))
     if not silent:
         put(text)
-    diagnostics = [diagnostic.record() for diagnostic in found]
-    return ExitCode.OK, {"file": shown(path), "diagnostics": diagnostics}
+    return ExitCode.OK, {"file": shown(path), "diagnostics": [d.record() for d in diagnostics]}
 
 
 def _input_faults(model: Model) -> list[Diagnostic]:
-    """What the drawing of an overconstrained mechanism tells of its inputs; by the count of their
+    """Inputs of an overconstrained mechanism that cannot move in its drawing; by the count of their
     equations its loops would be driven."""
-    from mechkin_cli.mechanism import response_problem
-    from mechkin_cli.structure import is_redundant
-
     faults = []
     for run in model.runs:
         if run == SWEEP:
@@ -73,18 +70,17 @@ def _input_faults(model: Model) -> list[Diagnostic]:
             path: tuple[str, ...] = ("motion", "inputs") if problem.motion.inputs else ("joints",)
         else:
             path = ("responses", run, "start")
-            problem = response_problem(model.problem, model.problem.responses[run])
-        if is_redundant(_graph(model, run)):
-            from mechkin_cli.mobility import drawn_faults
-
+            problem = mechanism.response_problem(model.problem, model.problem.responses[run])
+        if structure.is_redundant(_graph(model, run)):
             place = model.built.read.document.place(path)
-            faults += [fault._replace(place=place) for fault in drawn_faults(problem)]
+            faults += [fault._replace(place=place) for fault in mobility.drawn_faults(problem)]
     return faults
 
 
 def _sentence(model: Model) -> str:
     graphs = [_graph(model, run) for run in model.runs]
-    rows = sum(_rows(model, run) for run in model.runs)
+    rows = sum(model.problem.responses[run].rows for run in model.runs if run != SWEEP)
+    rows += model.problem.motion.rows if SWEEP in model.runs else 0
     counts = {"loop": max(len(graph.closings) for graph in graphs), "row": rows}
     counts |= {"response": len(model.problem.responses)} if model.problem.responses else {}
     counts |= {"table": len(model.tables)}
@@ -93,7 +89,3 @@ def _sentence(model: Model) -> str:
 
 def _graph(model: Model, run: str) -> SolverGraph:
     return model.graph if run == SWEEP else model.response_graph(run)
-
-
-def _rows(model: Model, run: str) -> int:
-    return model.problem.motion.rows if run == SWEEP else model.problem.responses[run].rows

@@ -5,14 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mechkin_cli.kernel.functions import INSTRUCTIONS, width, widths
-from mechkin_cli.mechanism import COEFFICIENT_KINDS, DERIVED_KINDS, POWER_KINDS, accelerated
+from mechkin_cli.mechanism import (
+    COEFFICIENT_KINDS,
+    DERIVED_KINDS,
+    POWER_KINDS,
+    accelerated,
+    quantities_read,
+)
 from mechkin_cli.plan import WRENCH_KINDS, Demand
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.mechanism import Joint, Wanted
-    from mechkin_cli.structure import Block, SolverGraph
 
 
 def explanation(analysis: Analysis) -> str:
@@ -21,9 +26,9 @@ def explanation(analysis: Analysis) -> str:
     of = analysis.model.name if analysis.run == SWEEP else f"the start of {analysis.run}"
     lines = [f"solver graph of {of}", "  tree"]
     for edge in graph.edges:
-        way = "" if edge.forward else ", passed from its second link to its first"
-        way = ", hung between its spheres" if edge.hung else way
-        lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, way)}")
+        words = "" if edge.forward else ", passed from its second link to its first"
+        words = ", hung between its spheres" if edge.hung else words
+        lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, words)}")
     lines.append("  loops closed at" if graph.closings else "  no loops")
     for closing in graph.closings:
         loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
@@ -35,16 +40,13 @@ def explanation(analysis: Analysis) -> str:
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):
-        unknowns = f"{len(block.unknowns)} unknowns {_unknowns(graph, block)}"
+        names = ", ".join(_freedom(graph.edges[k].joint, f) for k, f in block.unknowns)
+        unknowns = f"{len(block.unknowns)} unknowns {names}"
         more = block.equations > len(block.unknowns)
         lines.append(f"    {number}: {unknowns}" + f" from {block.equations} equations" * more)
     lines.append("demand plan")
     lines += [f"  {line}" for line in _demand_lines(analysis)]
     return "\n".join(lines) + "\n"
-
-
-def _unknowns(graph: SolverGraph, block: Block) -> str:
-    return ", ".join(_freedom(graph.edges[k].joint, freedom) for k, freedom in block.unknowns)
 
 
 def _freedom(joint: Joint, freedom: int) -> str:
@@ -85,8 +87,6 @@ def _demand_lines(analysis: Analysis) -> list[str]:
         ),
     ]
     if forces and problem.load_laws:
-        from mechkin_cli.mechanism import quantities_read
-
         read = ", ".join(quantities_read(problem))
         lines.append(f"loads that vary: evaluated with the forces, from {read}")
     lines += _derived_lines(asked)

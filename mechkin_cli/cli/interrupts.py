@@ -24,7 +24,7 @@ _final_code: int | None = None
 
 
 def then(next_step: str) -> None:
-    """What whoever interrupts this command is told to do next."""
+    """Sets what the message of an interrupt says on the next step."""
     global _next_step
     _next_step = next_step
 

@@ -1,4 +1,9 @@
-"""What the commands print: data on stdout, messages for a person on stderr."""
+"""What the commands read and print: a mechanism, data on stdout, messages for a person on stderr.
+
+At the end, diagnostics as annotations of GitHub: workflow commands, one line each. The runner takes
+them from either stream of a step and shows them at the line of the file:
+https://docs.github.com/actions/reference/workflow-commands-for-github-actions
+"""
 
 from __future__ import annotations
 
@@ -9,17 +14,16 @@ from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
+from mechkin_cli import model, reading, tables
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError, legible, whole
+from mechkin_cli.verdict import versions
 
 if TYPE_CHECKING:
     from mechkin_cli.model import Model
 
 
-# Exit codes of all commands; with several files the largest counts.
-
-
 class ExitCode(IntEnum):
-    """What the caller of a command learns."""
+    """Of all commands; with several files the largest counts."""
 
     OK = 0
     DIFFERENCES = 1
@@ -31,10 +35,8 @@ class ExitCode(IntEnum):
     """By Ctrl-C, or by a request to end (SIGTERM, SIGHUP)."""
 
 
-# The mechanism that a command line names: a file, or `-`, the text on stdin.
-
 STDIN = Path("-")
-"""Stands for the text on stdin; a file of this name is named with its folder's whole path."""
+"""Stands for the text on stdin; `./-` is a file of that name."""
 
 STDIN_NAME = "stdin"
 """What messages and the folder of its tables call the text on stdin."""
@@ -47,13 +49,10 @@ def model_of(path: Path, settings: Mapping[str, str]) -> Model:
         UsageError: it cannot be read, or an unknown parameter.
         InvalidFile: with every independent error and its place.
     """
-    from mechkin_cli.model import load, loads
-
     if not is_stdin(path):
-        return load(path, settings)
-    from mechkin_cli.reading import decoded
-
-    return loads(decoded(_piped(), STDIN_NAME), STDIN_NAME, settings, folder=Path())
+        return model.load(path, settings)
+    text = reading.decoded(_piped(), STDIN_NAME)
+    return model.loads(text, STDIN_NAME, settings, folder=Path())
 
 
 def is_stdin(path: Path) -> bool:
@@ -85,15 +84,13 @@ def refuse_stdin(path: Path, why: str) -> None:
 
 def _piped() -> bytes:
     """The bytes on stdin, no more than one above what a mechanism file may have."""
-    from mechkin_cli.reading import MOST_BYTES
-
     if sys.stdin is None:
         raise UsageError("stdin is closed, so - has nothing to read; name a file")
     try:
         descriptor = sys.stdin.fileno()
         if os.isatty(descriptor):
             say("reading the mechanism from the terminal; end it with Ctrl-D")
-        pieces, left = [], MOST_BYTES + 1
+        pieces, left = [], reading.MOST_BYTES + 1
         while left and (piece := os.read(descriptor, left)):
             pieces.append(piece)
             left -= len(piece)
@@ -109,9 +106,8 @@ Record = dict[str, object]
 _COLOURS = {"error": "\x1b[31m", "warning": "\x1b[33m", "note": "\x1b[36m"}
 _PLAIN = "\x1b[0m"
 
-
 FORMS = ("text", "github")
-"""How diagnostics are told: sentences for a person, or annotations of GitHub."""
+"""Forms of diagnostics: sentences for a person, or annotations of GitHub."""
 
 _form = FORMS[0]
 
@@ -158,12 +154,9 @@ def put_json(record: Record) -> None:
     Raises:
         UsageError: stdout takes no more.
     """
-    from mechkin_cli.tables import json_text
-    from mechkin_cli.verdict import versions
-
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
-    whole_record = versions() | record
-    put(json_text(whole_record, ascii=encoding.lower().replace("_", "-") not in ("utf-8", "utf8")))
+    is_utf8 = encoding.lower().replace("_", "-") in ("utf-8", "utf8")
+    put(tables.json_text(versions() | record, ascii=not is_utf8))
 
 
 def stdout_failed(error: OSError) -> None:
@@ -201,7 +194,6 @@ def _say(text: str, end: str = "\n") -> None:
 
 
 def _clear_progress() -> None:
-    """Clears what is shown of the work that goes on."""
     progress = sys.modules.get("mechkin_cli.cli.progress")
     if progress is not None:
         progress.pause()
@@ -262,11 +254,6 @@ def _coloured(text: str, severity: str) -> str:
     return text.replace(word, f"{_COLOURS[severity]}{word}{_PLAIN}", 1)
 
 
-# Diagnostics as annotations of GitHub: workflow commands, one line each.
-#
-# The runner takes them from either stream of a step and shows them at the line of the file:
-# https://docs.github.com/actions/reference/workflow-commands-for-github-actions
-
 _LEVELS = {"error": "error", "warning": "warning", "note": "notice"}
 
 
@@ -279,11 +266,13 @@ def annotation(diagnostic: Diagnostic, file: str | None = None) -> str:
         fields = at | fields
     elif file is not None:
         fields = {"file": _from_the_top(file)} | fields
-    shown = diagnostic._replace(place=None)
-    sentence = str(shown).removeprefix(f"{diagnostic.severity}: ")
+    sentence = str(diagnostic._replace(place=None)).removeprefix(f"{diagnostic.severity}: ")
     if place is not None and not place.in_file:
         sentence = f"{place}: {sentence}"
-    listed = ",".join(f"{name}={_property(value)}" for name, value in fields.items())
+    listed = ",".join(
+        f"{name}={_data(value).replace(':', '%3A').replace(',', '%2C')}"
+        for name, value in fields.items()
+    )
     return f"::{_LEVELS[diagnostic.severity]} {listed}::{_data(legible(sentence))}"
 
 
@@ -300,20 +289,16 @@ def _data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
 
 
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
-
-
 def parameters(settings: list[str] | None) -> dict[str, str]:
     """NAME=VALUE texts as a mapping.
 
     Raises:
         UsageError: a text without `=`.
     """
-    found = {}
+    values = {}
     for text in settings or ():
         name, equals, value = text.partition("=")
         if not equals or not name.strip() or not value.strip():
             raise UsageError(f"--set {text}: expected NAME=VALUE, for example --set P1=0.6in")
-        found[name.strip()] = value.strip()
-    return found
+        values[name.strip()] = value.strip()
+    return values

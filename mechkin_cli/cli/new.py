@@ -1,10 +1,11 @@
-"""`mechkin new`: a mechanism file to start from."""
+"""`mechkin new`: a mechanism file to start from. `mechkin schema`: JSON Schemas for editors."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
 
+from mechkin_cli import reading, schema as schemas, tables, templates
 from mechkin_cli.cli.messages import ExitCode, put, say
 from mechkin_cli.diagnostics import UsageError
 
@@ -14,16 +15,15 @@ def new(name: str | None = None, template: str = "four-bar", list_: bool = False
 
     An existing file is never written over.
     """
-    from mechkin_cli.templates import purpose, template_names, template_text
-
     if list_:
-        names = template_names()
+        names = templates.template_names()
         width = max(map(len, names))
-        put("".join(f"{one:{width}}  {purpose(template_text(one))}\n" for one in names))
+        lines = (f"{n:{width}}  {templates.purpose(templates.template_text(n))}\n" for n in names)
+        put("".join(lines))
         return ExitCode.OK
     if name is None:
         raise UsageError(
-            "name the file to write: mechkin new NAME; mechkin new --list tells of what"
+            "name the file to write: mechkin new NAME; mechkin new --list lists the templates"
         )
     stem = Path(name).name
     if not stem[:1].isalnum() and not stem.startswith("_"):
@@ -31,15 +31,15 @@ def new(name: str | None = None, template: str = "four-bar", list_: bool = False
             f"{name!r} is no name for a file: it begins with a letter or digit; such as "
             "mechkin new pump"
         )
-    text = template_text(template)
+    text = templates.template_text(template)
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
-    _write_anew(path, text)
-    say(f"{path}: {purpose(text)}")
+    _write_new(path, text)
+    say(f"{path}: {templates.purpose(text)}")
     say(f"mechkin analyze {quote(str(path))}")
     return ExitCode.OK
 
 
-def _write_anew(path: Path, text: str) -> None:
+def _write_new(path: Path, text: str) -> None:
     """Writes a file that is not there yet, whole or not at all.
 
     Raises:
@@ -60,33 +60,27 @@ def _write_anew(path: Path, text: str) -> None:
         raise UsageError(f"cannot write {path}: {reason}") from None
 
 
-# `mechkin schema`: the JSON Schemas of mechanism files and of studies, for editors.
-
 MECHANISM = "mechanism"
 
 
 def committed(name: str) -> Path:
-    """Where the schema of a name is kept."""
+    """The committed file of a schema."""
     return Path(f"schemas/{name}.schema.json")
 
 
 def schema(out: Path | None = None, check: bool = False, study: bool = False) -> ExitCode:
     """Prints the JSON Schema of mechanism files, or compares it."""
-    from mechkin_cli.schema import SCHEMAS, json_schema_text
-
     name = "study" if study else MECHANISM
     if check:
         names = [name]
         if not study and out is None:
             # studies are not everybody's
-            names += [one for one in SCHEMAS if one != name and committed(one).exists()]
-        found = [_is_up_to_date(one, out or committed(one)) for one in names]
-        return ExitCode.OK if all(found) else ExitCode.DIFFERENCES
-    text = json_schema_text(name)
+            names += [one for one in schemas.SCHEMAS if one != name and committed(one).exists()]
+        fresh = [_is_up_to_date(one, out or committed(one)) for one in names]
+        return ExitCode.OK if all(fresh) else ExitCode.DIFFERENCES
+    text = schemas.json_schema_text(name)
     if out is not None:
-        from mechkin_cli.tables import write_files
-
-        write_files(out.parent, {out.name: text.encode()})
+        tables.write_files(out.parent, {out.name: text.encode()})
     else:
         put(text)
     return ExitCode.OK
@@ -94,9 +88,7 @@ def schema(out: Path | None = None, check: bool = False, study: bool = False) ->
 
 def _is_up_to_date(name: str, path: Path) -> bool:
     """Whether the file has the schema; says so, or what to do."""
-    from mechkin_cli.schema import json_schema_text
-
-    if _content(path) == json_schema_text(name).encode():
+    if _content(path) == schemas.json_schema_text(name).encode():
         say(f"{path} is up to date")
         return True
     option = "" if name == MECHANISM else f"--{name} "
@@ -105,10 +97,8 @@ def _is_up_to_date(name: str, path: Path) -> bool:
 
 
 def _content(path: Path) -> bytes:
-    from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
-
     try:
-        return read_regular(path, MOST_TABLE_BYTES)
+        return reading.read_regular(path, reading.MOST_TABLE_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(f"cannot read {path}: {reason}") from None

@@ -26,6 +26,10 @@ HEAD = 65536
 """Characters of a file that tell whether it is a study."""
 
 
+STUDY_FORMATS = ("csv", "parquet")
+"""As `studies.FORMATS`; a shell that asks for them does not wait for numpy."""
+
+
 def mechanism_files(incomplete: str) -> Offers:
     """Mechanism files, and the folders on the way to them."""
     return _yaml_files(incomplete)
@@ -108,9 +112,7 @@ def mode_names(ctx: typer.Context, incomplete: str) -> Offers:
 
 def study_format_names(incomplete: str) -> Offers:
     """Formats of a study's results."""
-    from mechkin_cli.studies import FORMATS
-
-    return _beginning(FORMATS, incomplete)
+    return _beginning(STUDY_FORMATS, incomplete)
 
 
 def input_names(ctx: typer.Context, incomplete: str) -> Offers:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli import expressions, plots, tables
+from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     from mechkin_cli.model import Model
     from mechkin_cli.plots import Picture
 
-
-if TYPE_CHECKING:
     Drawn = tuple[Analysis, str | None]
     """A run, and the table of it that is drawn; None: what is named."""
 
@@ -45,9 +45,7 @@ def plot(
     quiet: bool = False,
 ) -> ExitCode:
     """Draws curves, coupler curves and polar diagrams of a file."""
-    from mechkin_cli.plots import format_of, image
-
-    ending = ENDING if out is None else format_of(out)
+    ending = ENDING if out is None else plots.format_of(out)
     names = [name for text in y or () for name in listed(text)]
     if names and table:
         raise UsageError("--y names what is drawn, --table too; leave one of them out")
@@ -59,36 +57,37 @@ def plot(
             if names:
                 analyses[stem_of(file)] = _run(model, run, mode), None
             if out is not None and len(analyses) > 1:
-                tables = ", ".join(analyses)
-                raise UsageError(f"-o is one picture; choose one of {tables} with --table")
+                names_of_tables = ", ".join(analyses)
+                raise UsageError(f"-o is one picture; choose one of {names_of_tables} with --table")
             files = {}
             for name, drawn in analyses.items():
                 tell(f"{shown(file)}: picture of {name}")
                 picture = _picture(drawn, names, x)
-                files[f"{name}.{ending}" if out is None else out.name] = image(picture, ending)
+                files[f"{name}.{ending}" if out is None else out.name] = plots.image(
+                    picture, ending
+                )
     except (InvalidFile, UsageError) as error:
         return refusal(file, error)[0]
     _write(file, out, files, quiet)
-    found = [analysis for analysis, _ in analyses.values()]
-    said = dict.fromkeys(one for analysis in found for one in analysis.diagnostics)
-    say_diagnostics(tuple(said), shown(file))
-    complete = all(analysis.complete for analysis in found)
+    runs = [analysis for analysis, _ in analyses.values()]
+    say_diagnostics(
+        dict.fromkeys(one for analysis in runs for one in analysis.diagnostics), shown(file)
+    )
+    complete = all(analysis.complete for analysis in runs)
     return ExitCode.OK if complete else ExitCode.ROWS_MISSING
 
 
 def _picture(drawn: Drawn, names: list[str], x: str | None) -> Picture:
     """The picture of a run: of what is named, or of its table."""
-    from mechkin_cli.expressions import ExpressionError
-
     analysis, table = drawn
     try:
         return analysis.picture(tuple(names), x, table)
-    except ExpressionError as error:
+    except expressions.ExpressionError as error:
         raise UsageError(str(error)) from error
 
 
 def listed(text: str) -> list[str]:
-    """Names with commas between them; those in brackets part nothing.
+    """Names with commas between them; commas in brackets do not separate.
 
     >>> listed("A.effort, dot(A.force, d)")
     ['A.effort', 'dot(A.force, d)']
@@ -106,17 +105,13 @@ def listed(text: str) -> list[str]:
 def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
     """The run that is named, or the first."""
     name = model.runs[0] if run is None else run
-    if name == SWEEP:
-        return model.analyze(mode=mode)
-    return model.respond(name, mode=mode)
+    return model.analyze(mode=mode) if name == SWEEP else model.respond(name, mode=mode)
 
 
 def _tables(
     model: Model, names: list[str] | None, run: str | None, mode: str | None
 ) -> dict[str, Drawn]:
     """The tables that are drawn, by name, with their runs."""
-    from mechkin_cli.cli.analyze import run_all
-
     return {
         layout.name: (analysis, layout.name)
         for analysis in run_all(model, names, mode)
@@ -126,9 +121,7 @@ def _tables(
 
 
 def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:
-    from mechkin_cli.tables import write_files
-
     folder = Path("out") / stem_of(file) if out is None else out.parent
-    written = write_files(folder, files)
+    written = tables.write_files(folder, files)
     for path in () if quiet else written:
         put(f"{path}\n")

@@ -1,8 +1,7 @@
-"""What the program is at, on a terminal's stderr, once a piece of work has taken a second.
+"""Progress on a terminal's stderr, once a piece of work has taken a second.
 
-Before that, in a pipe and with `--quiet` nothing is shown, and what was shown is gone when the work
-ends. What is printed meanwhile clears the line first (`pause`), which comes back after another
-second.
+Before that, in a pipe and with `--quiet` nothing is shown; the line goes when the work ends. What
+is printed meanwhile clears the line first (`pause`), which comes back after another second.
 """
 
 from __future__ import annotations
@@ -11,7 +10,10 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 from typing import TYPE_CHECKING, Any
+
+from mechkin_cli.diagnostics import legible
 
 if TYPE_CHECKING:
     import threading
@@ -37,13 +39,12 @@ shown: set[_Display] = set()
 
 @contextmanager
 def working(words: str, quiet: bool = False) -> Iterator[Tell]:
-    """Shows the words, and for how long, while the work inside goes on; gives what changes them."""
+    """Shows the words, and for how long, while the work inside goes on; yields a function that
+    changes them."""
     if quiet or not _can_show():
         yield lambda _: None
         return
-    import threading
-
-    display = _Display(words, threading.RLock())
+    display = _Display(words)
     running.add(display)
     try:
         display.wait()
@@ -55,10 +56,8 @@ def working(words: str, quiet: bool = False) -> Iterator[Tell]:
 
 @contextmanager
 def counting(words: str, what: str, quiet: bool = False) -> Iterator[Callable[[int, int], None]]:
-    """As `working`, for work that is counted: gives what is told how many are done, and of how
-    many; a bar, the rate and the time that is left are shown."""
-    from time import monotonic
-
+    """As `working`, for work that is counted: yields a function of how many are done, and of how
+    many; shows a bar, the rate and the remaining time."""
     begun: list[tuple[float, int]] = []
 
     with working(words, quiet) as tell:
@@ -105,9 +104,11 @@ def _can_show() -> bool:
 class _Display:
     """A line with a turning mark, the words and the time, drawn by rich in a thread of its own."""
 
-    def __init__(self, words: str, lock: threading.RLock) -> None:
+    def __init__(self, words: str) -> None:
+        import threading
+
         self._words = words
-        self._lock = lock
+        self._lock = threading.RLock()
         self._timer: threading.Timer | None = None
         self._bar: Any = None
 
@@ -143,7 +144,7 @@ class _Display:
                 self._bar.update(self._bar.tasks[0].id, description=_plain(words))
 
     def clear(self) -> None:
-        """Clears the line, or sees to it that none comes."""
+        """Clears the line, or cancels it."""
         with self._lock:
             if self._timer is not None:
                 self._timer.cancel()
@@ -155,9 +156,6 @@ class _Display:
 
 
 def _plain(words: str) -> str:
-    """The words in one line, without rich's markup."""
     from rich.markup import escape
-
-    from mechkin_cli.diagnostics import legible
 
     return escape(legible(words, also=""))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mechkin_cli import tables
 from mechkin_cli.cli.answer import Question, answer
 from mechkin_cli.cli.messages import ExitCode, Record, put, say
 
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from mechkin_cli.model import Model
-    from mechkin_cli.modes import Range, Ranges
+    from mechkin_cli.modes import Ranges
     from mechkin_cli.tables import Columns
 
 
@@ -95,56 +96,28 @@ def _closing(found: Ranges, circuit: tuple[str, ...]) -> str:
 
 def _table(found: Ranges) -> Columns:
     """Mode, both ends with what is there, circuit."""
-    import numpy as np
-
-    from mechkin_cli.tables import Columns, TableColumn, Words
-
-    def words(texts: list[str]) -> Words:
-        return Words(np.arange(len(texts), dtype=np.int32), tuple(texts))
-
-    def ends(upper: bool) -> list[TableColumn]:
-        limits = [item.upper if upper else item.lower for item in found.ranges]
-        values = [
-            _value(item, limit.value) for item, limit in zip(found.ranges, limits, strict=True)
-        ]
-        label, end = ("to", "upper end") if upper else ("from", "lower end")
-        kinds = [
-            "turns fully" if item.turns else WORDS[limit.kind]
-            for item, limit in zip(found.ranges, limits, strict=True)
-        ]
-        return [
-            TableColumn(label, found.unit, np.array(values), DECIMALS),
-            TableColumn(end, "", words(kinds)),
-        ]
-
-    columns = (
-        TableColumn("mode", "", words([item.mode for item in found.ranges])),
-        *ends(False),
-        *ends(True),
-        TableColumn("circuit", "", np.array([float(item.circuit) for item in found.ranges]), 0),
-    )
-    return Columns("ranges", f"ranges of {found.input}", columns)
-
-
-def _value(item: Range, value: float) -> float:
-    return float("nan") if item.turns else value
+    items = found.ranges
+    columns = [tables.TableColumn("mode", "", tables.words_of([item.mode for item in items]))]
+    for label, end, limits in (
+        ("from", "lower end", [item.lower for item in items]),
+        ("to", "upper end", [item.upper for item in items]),
+    ):
+        pairs = list(zip(items, limits, strict=True))
+        values = [float("nan") if item.turns else limit.value for item, limit in pairs]
+        kinds = ["turns fully" if item.turns else WORDS[limit.kind] for item, limit in pairs]
+        columns.append(tables.column_of_numbers(label, found.unit, values, DECIMALS))
+        columns.append(tables.TableColumn(end, "", tables.words_of(kinds)))
+    columns.append(tables.column_of_numbers("circuit", "", [item.circuit for item in items], 0))
+    return tables.Columns("ranges", f"ranges of {found.input}", tuple(columns))
 
 
 def _extremes(found: Ranges) -> Columns:
     """Mode, output, its extreme value and the input there."""
-    import numpy as np
-
-    from mechkin_cli.tables import Columns, TableColumn, Words
-
     rows = [(item.mode, extreme) for item in found.ranges for extreme in item.extremes]
-    number = np.arange(len(rows), dtype=np.int32)
-    return Columns(
-        "extremes",
-        "dead centres of the outputs",
-        (
-            TableColumn("mode", "", Words(number, tuple(mode for mode, _ in rows))),
-            TableColumn("output", "", Words(number, tuple(e.output for _, e in rows))),
-            TableColumn("value", "", np.array([e.value for _, e in rows]), DECIMALS),
-            TableColumn(found.input, found.unit, np.array([e.input for _, e in rows]), DECIMALS),
-        ),
+    columns = (
+        tables.TableColumn("mode", "", tables.words_of([mode for mode, _ in rows])),
+        tables.TableColumn("output", "", tables.words_of([e.output for _, e in rows])),
+        tables.column_of_numbers("value", "", [e.value for _, e in rows], DECIMALS),
+        tables.column_of_numbers(found.input, found.unit, [e.input for _, e in rows], DECIMALS),
     )
+    return tables.Columns("extremes", "dead centres of the outputs", columns)

@@ -1,4 +1,8 @@
-"""Tables on stdout: aligned columns that fit the terminal, long tables shortened in the middle."""
+"""Tables and the short summary of a run for a person.
+
+Tables are aligned columns that fit the terminal, long ones shortened in the middle. The last line
+of the summary says how many digits of all cells are right.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import response, tables
 from mechkin_cli.assembly import NEAR
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.errors import WORDS
@@ -22,7 +27,7 @@ from mechkin_cli.tables import (
     TableColumn,
     Words,
     column_texts,
-    counted_cells,
+    counted,
 )
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP, Status
@@ -52,9 +57,7 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
         if left_out:
             lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
         if table.summary is not None:
-            from mechkin_cli.tables import written_notes
-
-            notes = written_notes(table.summary, _one_line)
+            notes = tables.written_notes(table.summary, _one_line)
             lines += [line for note in notes for line in wrap(f"({note})", width)]
         yield "\n".join(lines) + "\n\n"
 
@@ -71,7 +74,8 @@ def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[s
     columns = [_texts(column, rows) for column in table.columns]
     if table.summary is not None:
         columns = _with_summary(columns, table.summary)
-    for group in _groups([_padded(cells) for cells in columns], width):
+    padded = [[cell.rjust(max(map(len, cells))) for cell in cells] for cells in columns]
+    for group in _groups(padded, width):
         yield [GAP.join(row).rstrip() for row in zip(*group, strict=True)]
 
 
@@ -108,11 +112,6 @@ def _texts(column: TableColumn, chosen: Sequence[int]) -> list[str]:
     return [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
 
 
-def _padded(cells: list[str]) -> list[str]:
-    width = max(map(len, cells))
-    return [cell.rjust(width) for cell in cells]
-
-
 def _groups(columns: list[list[str]], width: int) -> Iterator[list[list[str]]]:
     """Columns side by side within the width; the first column leads every group."""
     group = columns[:1]
@@ -124,8 +123,6 @@ def _groups(columns: list[list[str]], width: int) -> Iterator[list[list[str]]]:
         group.append(cells)
     yield group
 
-
-# The short summary that a run prints for a person.
 
 IDLE_SHOWN = 2
 """Idle freedoms that are named one by one."""
@@ -167,21 +164,19 @@ def _line(name: str, text: str) -> str:
 
 def _free(analysis: Analysis) -> str:
     """How many freedoms move under forces, where they start, what is driven and what acts."""
-    response = analysis.model.design.response(analysis.run)
-    free = response.independent
-    noun = "freedom" if len(free) == 1 else "freedoms"
-    parts = [f"{len(free)} {noun} from {', '.join(f'{joint}.{name}' for joint, name in free)}"]
-    if response.efforts:
-        parts.append(f"efforts on {', '.join(one.name for one in response.efforts)}")
-    if response.driven:
-        parts.append(f"driven: {', '.join(one.name for one in response.driven)}")
+    own = analysis.model.design.response(analysis.run)
+    noun = "freedom" if len(own.independent) == 1 else "freedoms"
+    names = ", ".join(f"{joint}.{name}" for joint, name in own.independent)
+    parts = [f"{len(own.independent)} {noun} from {names}"]
+    if own.efforts:
+        parts.append(f"efforts on {', '.join(one.name for one in own.efforts)}")
+    if own.driven:
+        parts.append(f"driven: {', '.join(one.name for one in own.driven)}")
     return "; ".join(parts)
 
 
 def _ended(analysis: Analysis) -> str:
     """By which stop, or at the last moment asked for, or before it."""
-    from mechkin_cli.response import ResponseResult
-
     result = analysis.result
     times = result.inputs["time"]
     unit = result.units.label(TIME)
@@ -194,7 +189,7 @@ def _ended(analysis: Analysis) -> str:
         return f"{at}: {result.events[last]}"
     if last == result.rows - 1:
         return f"{at}, the last moment"
-    assert isinstance(result, ResponseResult)
+    assert isinstance(result, response.ResponseResult)
     report = result.report
     moment = times[last] if report is None else float(result.units.from_si(report.time, TIME))
     return f"at {moment:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
@@ -209,8 +204,7 @@ def _branch(analysis: Analysis) -> str:
 
 
 def _driven(analysis: Analysis) -> str:
-    """How many freedoms are driven, by which inputs; a count by Kutzbach's formula that differs is
-    told too."""
+    """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
     count = freedoms - mechanism.space * mechanism.loops
@@ -264,8 +258,6 @@ def _worst(analysis: Analysis) -> str:
     return ", ".join(parts) or "nothing was solved"
 
 
-# The line of a summary that says how many digits of all cells are right.
-
 COLUMNS_SHOWN = 3
 """Columns that are named one by one."""
 
@@ -291,12 +283,12 @@ def errors_line(analysis: Analysis) -> str:
     words = [c for c in errors.columns if c.why == WORDS]
     parts += [f"words, which have no error: {_named(words)}"] if words else []
     bounds = sum(int(np.count_nonzero(c.is_bound)) for c in errors.columns)
-    parts += [f"{bounds} cells right to at least the digits told"] if bounds else []
+    parts += [f"{bounds} cells right to at least the digits given"] if bounds else []
     for why in dict.fromkeys(c.lost_why for c in errors.columns if c.lost):
         lost = sum(c.lost for c in errors.columns if c.lost_why == why)
-        parts.append(f"{counted_cells(lost)} not measured ({why})")
-    there = sum(int(np.count_nonzero(c.stands_there)) for c in errors.columns)
-    parts += [f"{counted_cells(there)} without a figure ({AT_DEAD_CENTRE})"] if there else []
+        parts.append(f"{counted(lost, 'cell')} not measured ({why})")
+    empty = sum(int(np.count_nonzero(c.at_dead_centre)) for c in errors.columns)
+    parts += [f"{counted(empty, 'cell')} without a figure ({AT_DEAD_CENTRE})"] if empty else []
     return "; ".join(parts)
 
 
@@ -316,12 +308,9 @@ def _left_out(columns: list[ColumnErrors]) -> list[str]:
     ]
 
 
-def _label(column: ColumnErrors) -> str:
-    return column.table if column.label == ALL_COLUMNS else column.label
-
-
 def _named(columns: list[ColumnErrors]) -> str:
     """The labels of some columns, the first of them one by one."""
-    labels = list(dict.fromkeys(legible(_label(column)) for column in columns))
+    names = (column.table if column.label == ALL_COLUMNS else column.label for column in columns)
+    labels = list(dict.fromkeys(map(legible, names)))
     more = len(labels) - COLUMNS_SHOWN
     return ", ".join(labels[:COLUMNS_SHOWN]) + (f" and {more} more" if more > 0 else "")

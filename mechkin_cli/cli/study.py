@@ -1,12 +1,11 @@
-"""`mechkin study`: a hundred thousand variants of a mechanism, and what is kept of each."""
+"""`mechkin study`: a hundred thousand variants of a mechanism, a few numbers of each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mechkin_cli import studies, tables
 from mechkin_cli.cli.interrupts import then
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -19,11 +18,15 @@ from mechkin_cli.cli.messages import (
     say_diagnostics,
     tell_as,
 )
+from mechkin_cli.cli.progress import counting, working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.model import load
 
 if TYPE_CHECKING:
-    from mechkin_cli.studies import Study, StudyFiles, Workers
+    from collections.abc import Sequence
+
+    from mechkin_cli.studies import Spread, Study, StudyFiles, Workers
+    from mechkin_cli.tables import Columns, TableColumn
 
 
 SHOWN_VARIANTS = 6
@@ -46,16 +49,15 @@ def study(
     quiet: bool = False,
 ) -> ExitCode:
     """Runs many variants of a mechanism and keeps a few numbers of each."""
-    from mechkin_cli.studies import Study, Workers, end_without_warnings, open_study
 
     tell_as(messages)
     record: Record = {}
     code = ExitCode.OK
     try:
-        source = open_study(file)
-        planned = Study(source.model(parameters(set_), load), source)
+        source = studies.open_study(file)
+        planned = studies.Study(source.load_model(parameters(set_), load), source)
         say_diagnostics(planned.plan.notes, str(file))
-        workers = Workers(threads, processes, None, scheduler)
+        workers = studies.Workers(threads, processes, None, scheduler)
         if dry_run:
             record = _shown_variants(planned, json)
         elif explain:
@@ -64,8 +66,8 @@ def study(
             target = Path("out", file.stem) if out is None else out
             then(", and the same command goes on with them")
             if processes:
-                end_without_warnings()
-            with _progress(planned, quiet or json) as progress:
+                studies.end_without_warnings()
+            with counting(planned.source.name, "variants", quiet or json) as progress:
                 found = planned.in_folder(target, workers, format_, again, progress)
             record = _record(found)
             if not json:
@@ -116,39 +118,35 @@ def _counts(planned: Study) -> str:
 
 
 def _values_table(planned: Study, shown: dict[int, dict[str, float]]) -> str:
-    import numpy as np
-
     from mechkin_cli.cli.show import shown_table
-    from mechkin_cli.tables import Columns, TableColumn
 
-    columns = [TableColumn("variant", "", np.array(list(shown), dtype=np.float64), 0)]
+    columns = [tables.column_of_numbers("variant", "", list(shown), 0)]
     for heading in planned.plan.question.parameters:
-        values = np.array([values[heading.label] for values in shown.values()])
-        columns.append(TableColumn(heading.label, heading.unit, values, 6))
-    return shown_table(Columns("variants", "some of the variants", tuple(columns)), len(shown))
+        values = [values[heading.label] for values in shown.values()]
+        columns.append(tables.column_of_numbers(heading.label, heading.unit, values, 6))
+    table = tables.Columns("variants", "some of the variants", tuple(columns))
+    return shown_table(table, len(shown))
 
 
 def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Record:
     """Time and size, from a trial."""
-    from mechkin_cli.cli.progress import working
-
     with working(f"{planned.source.name}: a trial of some variants", json):
-        found = planned.trial(workers, format_)
+        trial = planned.trial(workers, format_)
     if not json:
         say(_counts(planned))
         say(
-            f"  a trial of {found.variants} took {_time(found.seconds)}; all of them take about "
-            f"{_time(found.whole_seconds)} and {_size(found.whole_bytes)}, in pieces of "
+            f"  a trial of {trial.variants} took {_time(trial.seconds)}; all of them take about "
+            f"{_time(trial.whole_seconds)} and {_size(trial.whole_bytes)}, in pieces of "
             f"{planned.piece}"
         )
         run = planned.plan.question.run
-        kept = len(planned.plan.question.tables["variants"])
-        say(f"  of the run {run} {kept} columns are kept of every variant")
+        count = len(planned.plan.question.tables["variants"])
+        say(f"  each variant has {count} columns, of the run {run}")
     return {
         "variants": planned.variants,
         "piece": planned.piece,
-        "trial": {"variants": found.variants, "seconds": found.seconds},
-        "estimate": {"seconds": found.whole_seconds, "bytes": found.whole_bytes},
+        "trial": {"variants": trial.variants, "seconds": trial.seconds},
+        "estimate": {"seconds": trial.whole_seconds, "bytes": trial.whole_bytes},
     }
 
 
@@ -172,60 +170,51 @@ def _size(count: float) -> str:
     return f"{count:.3g} TB"
 
 
-@contextmanager
-def _progress(planned: Study, quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
-    """A line with how many are done, the rate and the remaining time, on a terminal."""
-    from mechkin_cli.cli.progress import counting
-
-    with counting(f"{planned.source.name}", "variants", quiet) as tell:
-        yield tell
-
-
 def _record(found: StudyFiles) -> Record:
     return {
         "name": found.name,
         "files": [str(path) for path in found.files],
         "variants": found.overview.variants,
         "verdicts": found.overview.verdicts,
-        "columns": [_finite(spread._asdict()) for spread in found.overview.spreads],
+        "columns": [_spread_record(spread) for spread in found.overview.spreads],
         "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
     }
 
 
-def _finite(fields: dict[str, Any]) -> dict[str, Any]:
-    """Without what a column without numbers does not have."""
-    return {k: v for k, v in fields.items() if fields["found"] or k in ("label", "unit", "found")}
+def _spread_record(spread: Spread) -> dict[str, Any]:
+    if spread.found:
+        return spread._asdict()
+    return {"label": spread.label, "unit": spread.unit, "found": spread.found}
 
 
 def _print(found: StudyFiles, quiet: bool) -> None:
-    import numpy as np
-
-    from mechkin_cli.cli.show import shown_table
-    from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, words_of
-
-    seen = found.overview
     for path in found.files:
         put(f"{path}\n")
     if quiet:
         return
-    spreads = seen.spreads
+    spreads = found.overview.spreads
+    if spreads:
+        from mechkin_cli.cli.show import shown_table
 
+        put(shown_table(_overview(spreads), len(spreads)))
+    verdicts = ", ".join(f"{count} {word}" for word, count in found.overview.verdicts.items())
+    say(f"{found.name}: {found.overview.variants} variants: {verdicts}")
+
+
+def _overview(spreads: Sequence[Spread]) -> Columns:
     def numbers(label: str, decimals: int | None, values: list[float]) -> TableColumn:
-        return column_of_numbers(label, "", np.array(values, dtype=np.float64), decimals)
+        return tables.column_of_numbers(label, "", values, decimals)
 
     def place(number: int) -> float:
         return float("nan") if number < 0 else float(number)
 
     columns = (
-        TableColumn("column", "", words_of([spread.label for spread in spreads])),
-        TableColumn("unit", "", words_of([spread.unit for spread in spreads])),
+        tables.TableColumn("column", "", tables.words_of([spread.label for spread in spreads])),
+        tables.TableColumn("unit", "", tables.words_of([spread.unit for spread in spreads])),
         numbers("least", 6, [spread.least for spread in spreads]),
         numbers("in variant", 0, [place(spread.least_at) for spread in spreads]),
         numbers("mean", 6, [spread.mean for spread in spreads]),
         numbers("largest", 6, [spread.largest for spread in spreads]),
         numbers("in variant", 0, [place(spread.largest_at) for spread in spreads]),
     )
-    if spreads:
-        put(shown_table(Columns("overview", "overview", columns), len(spreads)))
-    verdicts = ", ".join(f"{count} {word}" for word, count in seen.verdicts.items())
-    say(f"{found.name}: {seen.variants} variants: {verdicts}")
+    return tables.Columns("overview", "overview", columns)

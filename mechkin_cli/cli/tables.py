@@ -1,4 +1,8 @@
-"""`mechkin tables`: regenerates the tables kept beside the mechanisms, or compares them."""
+"""`mechkin tables`: regenerates the tables kept beside the mechanisms, or compares them.
+
+In reading order: the command, the files of one mechanism, `--against` (printed cells that do not
+agree), the overview page of a folder.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli import model as models, reading, tables as room, view
 from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -19,7 +24,7 @@ from mechkin_cli.cli.messages import (
     tell_as,
 )
 from mechkin_cli.cli.progress import working
-from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.record import asdict
 from mechkin_cli.tables import MARK, OVERVIEW_PAGE, OverviewRow, overview_page
 
@@ -27,7 +32,6 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.model import Model
     from mechkin_cli.tables import OutputFolder, PrintedTable
-
 
 MECHANISMS = Path("mechanisms")
 
@@ -90,15 +94,12 @@ def _one(
     Args:
         overview: the folder whose overview has the file in it.
     """
-    from mechkin_cli.model import load
-    from mechkin_cli.tables import OutputFolder
-
-    model = load(file)
+    model = models.load(file)
     if check:
         return _made(file, model, None, json, quiet, overview)
     if not file.stem.strip("."):
         raise UsageError(f"{file}: a folder for its tables would be {file.stem}; rename the file")
-    with OutputFolder(file.with_suffix("")) as output:
+    with room.OutputFolder(file.with_suffix("")) as output:
         return _made(file, model, output, json, quiet, overview)
 
 
@@ -110,28 +111,20 @@ def _made(
     quiet: bool,
     overview: Path | None,
 ) -> tuple[ExitCode, Record, OverviewRow | None]:
-    from mechkin_cli.tables import against_print, stale_in
-
-    analyses = run_all(model)
-    said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
-    say_diagnostics(said, str(file))
-    printed = [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
+    analyses, diagnostics, printed = _analyses(file, model)
     row = (
         None
         if overview is None
         else overview_row(model, file.relative_to(overview), analyses, printed)
     )
     fresh = _fresh_files(model, analyses, printed)
-    complete = all(one.complete for one in analyses)
+    complete = all(analysis.complete for analysis in analyses)
     code = ExitCode.OK if complete else ExitCode.ROWS_MISSING
-    record: Record = {
-        "file": str(file),
-        "diagnostics": [diagnostic.record() for diagnostic in said],
-    }
+    record: Record = {"file": str(file), "diagnostics": [one.record() for one in diagnostics]}
     if output is None:
         outcome, compared = _compare(file.with_suffix(""), fresh, json, quiet)
         return max(code, outcome), record | {"tables": compared}, row
-    stale = stale_in(output.folder, fresh)
+    stale = room.stale_in(output.folder, fresh)
     written = output.write(fresh, stale)
     if not quiet:
         gone = f", {len(stale)} removed ({', '.join(stale)})" if stale else ""
@@ -140,53 +133,50 @@ def _made(
     return code, record | {"removed": [str(output.folder / name) for name in stale]}, row
 
 
+def _analyses(
+    file: Path, model: Model
+) -> tuple[list[Analysis], list[Diagnostic], list[PrintedTable]]:
+    """The runs of a file, what they have to say, and the tables that have printed values."""
+    analyses = run_all(model)
+    diagnostics = list(dict.fromkeys(one for run in analyses for one in run.diagnostics))
+    say_diagnostics(diagnostics, str(file))
+    printed = [
+        table for run in analyses for table in room.against_print(file, run.layouts, run.tables)
+    ]
+    return analyses, diagnostics, printed
+
+
 def _fresh_files(
     model: Model, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> dict[str, bytes]:
     """All that stands beside a mechanism file, by name: tables, the picture, the errata page."""
-    from mechkin_cli.tables import (
-        COMMITTED_DIGITS,
-        NAME,
-        PAGE,
-        csv_bytes,
-        disagreements_csv,
-        errata_page,
-        markdown_bytes,
-    )
-
     fresh: dict[str, bytes] = {}
     for analysis in analyses:
         for table in (*analysis.tables, *analysis.coefficients, *analysis.balance_tables):
-            fresh[f"{table.name}.csv"] = csv_bytes(table, COMMITTED_DIGITS)
+            fresh[f"{table.name}.csv"] = room.csv_bytes(table, room.COMMITTED_DIGITS)
             if table.summary is not None:
-                from mechkin_cli.tables import summary_table
-
-                below = summary_table(table.name, table.title, table.summary)
-                fresh[f"{below.name}.csv"] = csv_bytes(below, COMMITTED_DIGITS)
-            fresh[f"{table.name}.md"] = markdown_bytes(table, analysis.result)
-    from mechkin_cli.view import PICTURE_NAME as PICTURE, mechanism_picture
-
-    fresh[PICTURE] = mechanism_picture(analyses[0].result).encode()
+                below = room.summary_table(table.name, table.title, table.summary)
+                fresh[f"{below.name}.csv"] = room.csv_bytes(below, room.COMMITTED_DIGITS)
+            fresh[f"{table.name}.md"] = room.markdown_bytes(table, analysis.result)
+    fresh[view.PICTURE_NAME] = view.mechanism_picture(analyses[0].result).encode()
     if printed:
-        fresh[PAGE] = errata_page(model.name, model.source, printed).encode()
-        if listed := disagreements_csv(printed):
-            fresh[NAME] = listed
+        fresh[room.PAGE] = room.errata_page(model.name, model.source, printed).encode()
+        if listed := room.disagreements_csv(printed):
+            fresh[room.NAME] = listed
     return fresh
 
 
 def _compare(
     folder: Path, fresh: dict[str, bytes], json: bool, quiet: bool
 ) -> tuple[ExitCode, list[Record]]:
-    from mechkin_cli.tables import compare_files, read_committed, report
-
-    comparisons = compare_files(fresh, read_committed(folder, fresh))
+    comparisons = room.compare_files(fresh, room.read_committed(folder, fresh))
     same = all(c.verdict == "equal" for c in comparisons)
     if same and not quiet:
         say(f"{folder}: {len(fresh)} files as committed")
     elif not same:
         say(f"{folder}: the tables on disk are not what this version computes")
         if not json:
-            put(report(comparisons))
+            put(room.report(comparisons))
     return ExitCode.OK if same else ExitCode.DIFFERENCES, [asdict(c) for c in comparisons]
 
 
@@ -202,52 +192,29 @@ def list_disagreements(files: Sequence[Path], json: bool, quiet: bool) -> ExitCo
     code, records = ExitCode.OK, []
     for file in files:
         try:
-            printed = _printed(file)
+            model = models.load(file)
+            has_print = any(table.published for table in model.tables)
+            printed = _analyses(file, model)[2] if has_print else []
         except (InvalidFile, UsageError) as error:
             outcome, record = refusal(file, error)
             code = max(code, outcome)
             records.append(record)
             continue
         if printed:
-            records.append(_told(file, printed, json, quiet))
+            if not quiet:
+                say(f"{file}: {room.counts(one.agreement for one in printed)}")
+            if not json:
+                put(room.disagreements_csv(printed).decode())
+            records.append({"file": str(file), "tables": room.against_print_record(printed)})
     if json:
         put_json({"files": records})
     return code
-
-
-def _printed(file: Path) -> list[PrintedTable]:
-    from mechkin_cli.model import load
-    from mechkin_cli.tables import against_print
-
-    model = load(file)
-    if not any(table.published for table in model.tables):
-        return []
-    analyses = run_all(model)
-    said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
-    say_diagnostics(said, str(file))
-    return [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
-
-
-def _told(file: Path, printed: Sequence[PrintedTable], json: bool, quiet: bool) -> Record:
-    from mechkin_cli.tables import against_print_record, counts, disagreements_csv
-
-    if not quiet:
-        say(f"{file}: {counts(one.agreement for one in printed)}")
-    if not json:
-        put(disagreements_csv(printed).decode())
-    return {"file": str(file), "tables": against_print_record(printed)}
-
-
-# The overview page that `mechkin tables FOLDER` keeps: what it says of a file, and its check.
 
 
 def overview_row(
     model: Model, file: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> OverviewRow:
     """A line of the overview of a folder; `file` is the path in it."""
-    from mechkin_cli.tables import counts
-    from mechkin_cli.view import PICTURE_NAME as PICTURE
-
     solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
     rows = sum(analysis.rows for analysis in analyses)
     return OverviewRow(
@@ -257,9 +224,9 @@ def overview_row(
         _mobility(model),
         _modes(model),
         str(solved) if solved == rows else f"{solved} of {rows}",
-        counts(one.agreement for one in printed) if printed else "",
+        room.counts(one.agreement for one in printed) if printed else "",
         model.source,
-        PICTURE,
+        view.PICTURE_NAME,
     )
 
 
@@ -276,9 +243,8 @@ def _mobility(model: Model) -> str:
 def _modes(model: Model) -> str:
     """Number of modes found, and whether it is proven to be all; of a file of responses alone those
     at the start of its first."""
-    found = model.modes()
-    count = len(found.modes)
-    return f"{count} (all)" if found.complete else str(count)
+    modes = model.modes()
+    return f"{len(modes.modes)} (all)" if modes.complete else str(len(modes.modes))
 
 
 def keep_overview(
@@ -296,29 +262,21 @@ def keep_overview(
             say(f"{page}: left alone, it does not begin with {MARK}")
         return ExitCode.OK, "left"
     if not check:
-        from mechkin_cli.tables import write_files
-
-        write_files(folder, {OVERVIEW_PAGE: fresh})
+        room.write_files(folder, {OVERVIEW_PAGE: fresh})
         return ExitCode.OK, "written"
-    return _compared(page, fresh, old, json)
-
-
-def _content(page: Path) -> bytes:
-    from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
-
-    try:
-        return read_regular(page, MOST_TABLE_BYTES)
-    except OSError as error:
-        raise UsageError(f"cannot read {page}: {error.strerror}; make it readable") from None
-
-
-def _compared(page: Path, fresh: bytes, old: bytes | None, json: bool) -> tuple[ExitCode, str]:
-    from mechkin_cli.tables import compare_files, report
-
-    (found,) = compare_files({OVERVIEW_PAGE: fresh}, {} if old is None else {OVERVIEW_PAGE: old})
-    if found.verdict == "equal":
+    committed = {} if old is None else {OVERVIEW_PAGE: old}
+    (comparison,) = room.compare_files({OVERVIEW_PAGE: fresh}, committed)
+    if comparison.verdict == "equal":
         return ExitCode.OK, "equal"
     say(f"{page}: the overview on disk is not what this version makes")
     if not json:
-        put(report([found]))
-    return ExitCode.DIFFERENCES, found.verdict
+        put(room.report([comparison]))
+    return ExitCode.DIFFERENCES, comparison.verdict
+
+
+def _content(page: Path) -> bytes:
+
+    try:
+        return reading.read_regular(page, reading.MOST_TABLE_BYTES)
+    except OSError as error:
+        raise UsageError(f"cannot read {page}: {error.strerror}; make it readable") from None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mechkin_cli import view as pages
 from mechkin_cli.cli.messages import (
     ExitCode,
     model_of,
@@ -36,7 +37,6 @@ def view(
     quiet: bool = False,
 ) -> ExitCode:
     """Writes a page that shows a mechanism in motion."""
-    from mechkin_cli.view import PAGE_NAME, view_page, write_view
 
     tell_as(messages)
     try:
@@ -45,12 +45,12 @@ def view(
             tell(f"{shown(file)}: rows")
             analyses = model.analyses(run, mode)
             tell(f"{shown(file)}: the page")
-            page, notes = view_page(analyses, not no_modes)
-        target = write_view(out or Path("out", stem_of(file), PAGE_NAME), page)
+            page, notes = pages.view_page(analyses, not no_modes)
+        target = pages.write_view(out or Path("out", stem_of(file), pages.PAGE_NAME), page)
     except (InvalidFile, UsageError) as error:
         return refusal(file, error)[0]
-    said = [found for analysis in analyses for found in analysis.diagnostics]
-    say_diagnostics(dict.fromkeys([*said, *notes]), shown(file))
+    diagnostics = [one for analysis in analyses for one in analysis.diagnostics]
+    say_diagnostics(dict.fromkeys([*diagnostics, *notes]), shown(file))
     put(f"{target}\n")
     if not quiet:
         say(_summary(analyses, len(page)))
@@ -61,7 +61,6 @@ def view(
 
 
 def _summary(analyses: list[Analysis], size: int) -> str:
-    """What is on the page, and how large it is."""
     model = analyses[0].model
     runs = ", ".join(f"{one.run} ({one.rows} rows)" for one in analyses)
     return f"{model.name}: {runs}; {size / 1000:.0f} kB, to be opened in a browser"

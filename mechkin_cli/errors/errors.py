@@ -211,4 +211,4 @@ class Errors(Listed):
         lost = self.repeated.lost_why or LOST
         errors = column_errors(table, column.label, column.unit, values, true, doubt, lost)
         there = self._analysis.result.status == Status.dead_centre
-        return replace(errors, there=there) if there.any() else errors
+        return replace(errors, dead_centres=there) if there.any() else errors

@@ -8,8 +8,8 @@ Over a time (`Marching`) the rates of all states and columns are in every step p
 their values at the nodes (`legendre`), by Picard's iteration: their integrals give places, these
 close along a chart and give new rates. A step is taken where the last coefficients are below a
 tolerance that is orders of magnitude below the rounding of doubles. Nothing of this is shared with
-the integrator whose rows are measured by it (kernel/core/integrator/integrator.hpp). Where forces have a kink
-the coefficients do not fall, and steps are cut until what is missed there is below the tolerance,
+the integrator whose rows are measured by it (kernel/core/integrator). Where forces have a kink the
+coefficients do not fall, and steps are cut until what is missed there is below the tolerance,
 too.
 """
 

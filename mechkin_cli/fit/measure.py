@@ -1,4 +1,8 @@
-"""What a population of variants is measured by: residuals of targets, magnitudes, margins."""
+"""Measures of a population of variants: residuals of targets, magnitudes, margins.
+
+A fit runs the file's own sweep, its curve in close rows, and single inputs. All begin with the
+file's first row, so that each continues the same assembly.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +19,12 @@ from mechkin_cli.fit.request import Constraint, FitRequest, Target
 from mechkin_cli.fit.search import Measures
 from mechkin_cli.tables import row_weights
 from mechkin_cli.tolerances import LAST_ROW
-from mechkin_cli.variants import file_values, vary, way_of, with_parameters
+from mechkin_cli.variants import (
+    file_values,
+    swept_parameter,
+    vary,
+    with_parameters,
+)
 from mechkin_cli.verdict import SWEEP, has_solution
 
 if TYPE_CHECKING:
@@ -26,13 +35,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
-# The models that a fit runs: the file's own sweep, its curve in close rows, and single inputs.
-#
-# All begin with the file's first row, so that each continues the same assembly.
-
 CURVE_ROWS = 181
 """Rows of a curve between which the nearest place is sought: 2 deg of a turn, so that ten of
-them tell the curve between to rounding."""
+them give the curve between to rounding."""
 
 LEFT_OUT = ("tables", "responses", "view")
 """Sections that no fit reads."""
@@ -89,10 +94,8 @@ class FitModels:
     @cached_property
     def curve_inputs(self) -> Floats:
         """The inputs of its rows (rows,)."""
-        written: Floats = np.asarray(
-            next(one for one in self.curve.problem.motion.inputs if np.ptp(one.written)).written
-        )
-        return written
+        inputs = self.curve.problem.motion.inputs
+        return np.asarray(next(one.written for one in inputs if np.ptp(one.written)))
 
     def listed(self, inputs: Sequence[float]) -> Solvable:
         """The file's first row, then rows at these inputs."""
@@ -114,8 +117,8 @@ class FitModels:
         for driven in self.model.problem.motion.inputs:
             written = motion["inputs"][driven.name]
             if driven.name == self.moved.name:
-                kept = {"rate", "acceleration", "jerk"} & written.keys()
-                inputs[driven.name] = rows | {key: written[key] for key in kept}
+                orders = {"rate", "acceleration", "jerk"} & written.keys()
+                inputs[driven.name] = rows | {key: written[key] for key in orders}
             elif "values" in written:
                 inputs[driven.name] = {"at": written["values"][0]}
             else:
@@ -181,8 +184,7 @@ class FitValues:
         next one, and those behind it are missing."""
         moments = self.models.model.problem.responses[run].moments.written
         with np.errstate(invalid="ignore"):
-            found: Bools = np.abs(times - moments) <= LAST_ROW * np.ptp(moments)
-        return found
+            return np.asarray(np.abs(times - moments) <= LAST_ROW * np.ptp(moments))
 
     def measure(self, unknowns: Floats) -> Measures:
         """Of a population (unknowns, S)."""
@@ -206,8 +208,8 @@ class FitValues:
         for constraint in self.request.constraints:
             margins += margins_of(constraint, rows[constraint.run][constraint.of])
         for target in self.at_moments:
-            told = rows[target.run][target.of][:, self.rows_of(target)]
-            residuals.append(deviations(target, told))
+            values_there = rows[target.run][target.of][:, self.rows_of(target)]
+            residuals.append(deviations(target, values_there))
         if self.at_inputs:
             listed = self.models.listed(self.listed_inputs)
             found, lost = self._run(listed, values, [one.of for one in self.at_inputs])
@@ -239,15 +241,13 @@ class FitValues:
             empty = ~np.isfinite(value)
             lost = lost | (empty.any(axis=2) if value.ndim == 3 else empty)
             found[text] = np.where(empty, 0.0, value)
-        missing: Floats = lost.mean(axis=1)
-        return found, missing
+        return found, np.asarray(lost.mean(axis=1))
 
 
 def deviations(target: Target, values: Floats) -> Floats:
     """Residuals (S, points * width) of values (S, points) or (S, points, width)."""
     values = values.reshape(len(values), len(target.wanted), target.width)
-    found: Floats = ((values - target.wanted) / target.within).reshape(len(values), -1)
-    return found
+    return np.asarray(((values - target.wanted) / target.within).reshape(len(values), -1))
 
 
 def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
@@ -256,15 +256,15 @@ def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
 
 
 def rms_weights(model: Solvable, run: str) -> Floats:
-    """Roots of what each row counts for in a mean over the way (rows,)."""
+    """Roots of the weights of the rows in a mean over what the run goes along (rows,)."""
     if run != SWEEP:
-        weights = row_weights(model.problem.responses[run].moments.written)
-        return np.asarray(np.sqrt(weights / weights.sum()), dtype=np.float64)
-    way = way_of(model.problem)
-    at = np.zeros(model.problem.motion.rows) if way is None else way[1]
+        at = model.problem.responses[run].moments.written
+    elif (swept := swept_parameter(model.problem)) is not None:
+        at = swept[1]
+    else:
+        at = np.zeros(model.problem.motion.rows)
     weights = row_weights(np.asarray(at, dtype=np.float64))
-    found: Floats = np.sqrt(weights / weights.sum())
-    return found
+    return np.asarray(np.sqrt(weights / weights.sum()))
 
 
 def _beside(parts: list[Floats], count: int) -> Floats:

@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.record import NamedTuple
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -26,7 +24,7 @@ NODES = 10
 HALF = 0.5 * (NODES - 1)
 POWERS = np.arange(NODES)
 TO_COEFFICIENTS = np.linalg.inv(((POWERS - HALF) / HALF)[:, None] ** POWERS)
-"""From the values at eight rows to a polynomial in z in [-1, 1]."""
+"""From the values at the rows to a polynomial in z in [-1, 1]."""
 
 STEPS = 30
 """Newton steps, each at most a row."""
@@ -37,8 +35,8 @@ def nearest_places(curves: Floats, points: Floats) -> tuple[Floats, Floats]:
 
     Returns their rows, in parts (S, points), and where they are (S, points, width).
     """
-    found = _nearest(curves, points)
-    return found.first + HALF + HALF * found.z, found.places
+    first, z, places, _ = _nearest(curves, points)
+    return first + HALF + HALF * z, places
 
 
 def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
@@ -49,8 +47,7 @@ def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
     c(z, u) the curve and r = c - point, r . c_z = 0 gives z_u = -(c_zu . r + c_u . c_z) /
     (c_z . c_z + r . c_zz), and c_u + c_z z_u is the derivative. At an end of the curve it stays.
     """
-    found = _nearest(curve[None], points)
-    first, z = found.first[0], found.z[0]
+    first, z, places, at_end = (part[0] for part in _nearest(curve[None], points))
     around = curve[first[:, None] + POWERS]
     moved = slopes[:, first[:, None] + POWERS]
     coefficients = np.einsum("pn,knw->kpw", TO_COEFFICIENTS, around)
@@ -58,47 +55,33 @@ def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
         np.einsum("kn,uknw->ukw", _powers(z, order) @ TO_COEFFICIENTS, moved) for order in (0, 1)
     )
     c_z, c_zz = (np.einsum("kp,kpw->kw", _powers(z, order), coefficients) for order in (1, 2))
-    away = found.places[0] - points
+    away = places - points
     curved = (c_z * c_z + away * c_zz).sum(axis=1)
     down = (c_zu * away + c_u * c_z).sum(axis=2)
-    stays = found.at_end[0] | (curved == 0.0)
+    stays = at_end | (curved == 0.0)
     z_u = np.where(stays, 0.0, -down / np.where(stays, 1.0, curved))
-    result: Floats = c_u + c_z * z_u[:, :, None]
-    return result
+    return np.asarray(c_u + c_z * z_u[:, :, None])
 
 
-class _CurvePlaces(NamedTuple):
-    """Of curves (S) the nearest places to points: the first rows of their polynomials and z there
-    (S, points), the places (S, points, width), and whether they are ends of the curve."""
-
-    first: NDArray[np.intp]
-    z: Floats
-    places: Floats
-    at_end: Bools
+CurvePlaces = tuple["NDArray[np.intp]", "Floats", "Floats", "Bools"]
+"""Of curves (S) the nearest places to points: the first rows of their polynomials and z there
+(S, points), the places (S, points, width), and whether they are ends of the curve."""
 
 
-def _nearest(curves: Floats, points: Floats) -> _CurvePlaces:
+def _nearest(curves: Floats, points: Floats) -> CurvePlaces:
     distances = np.square(curves[:, :, None, :] - points).sum(axis=3)
     rows = distances.argmin(axis=1)
     last = curves.shape[1] - 1
-    found = _from(curves, points, rows)
+    nearest = _from(curves, points, rows)
     # a closed curve has its ends at one place, and the nearest may lie on the other side of it
     at_end = (rows == 0) | (rows == last)
     if at_end.any():
         other = _from(curves, points, np.where(rows == 0, last, np.where(rows == last, 0, rows)))
-        nearer = at_end & (_far(other.places, points) < _far(found.places, points))
-        found = _CurvePlaces(
-            np.where(nearer, other.first, found.first),
-            np.where(nearer, other.z, found.z),
-            np.where(nearer[..., None], other.places, found.places),
-            np.where(nearer, other.at_end, found.at_end),
-        )
-    return found
-
-
-def _far(places: Floats, points: Floats) -> Floats:
-    found: Floats = np.square(places - points).sum(axis=2)
-    return found
+        there, here = (np.square(p[2] - points).sum(axis=2) for p in (other, nearest))
+        nearer = at_end & (there < here)
+        first, z, ends = (np.where(nearer, other[k], nearest[k]) for k in (0, 1, 3))
+        nearest = first, z, np.where(nearer[..., None], other[2], nearest[2]), ends
+    return nearest
 
 
 def _powers(z: Floats, order: int) -> Floats:
@@ -106,11 +89,10 @@ def _powers(z: Floats, order: int) -> Floats:
     factors = np.ones(NODES)
     for step in range(order):
         factors = factors * (POWERS - step)
-    found: Floats = factors * z[..., None] ** np.maximum(POWERS - order, 0)
-    return found
+    return np.asarray(factors * z[..., None] ** np.maximum(POWERS - order, 0))
 
 
-def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlaces:
+def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> CurvePlaces:
     """The nearest place within a row of given ones (S, points)."""
     last = curves.shape[1] - 1
     first = np.clip(rows - NODES // 2 + 1, 0, last - NODES + 1)
@@ -122,8 +104,7 @@ def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlace
 
     def at(polynomial: Floats, z: Any) -> Floats:
         powers = z[..., None] ** np.arange(polynomial.shape[2])
-        found: Floats = np.einsum("skp,skpw->skw", powers, polynomial)
-        return found
+        return np.asarray(np.einsum("skp,skpw->skw", powers, polynomial))
 
     middle = rows - first
     low = (np.maximum(middle - 1, 0) - HALF) / HALF
@@ -136,6 +117,5 @@ def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> _CurvePlace
         curved = flat + (away * bend).sum(axis=2)
         steep = np.where(curved > 0.1 * flat, curved, flat)
         z = np.clip(z - down / np.where(steep > 0.0, steep, 1.0), low, high)
-    found = first + HALF + HALF * z
-    at_end = (found <= 0.0) | (found >= last)
-    return _CurvePlaces(first, z, at(coefficients, z), at_end)
+    row = first + HALF + HALF * z
+    return first, z, at(coefficients, z), (row <= 0.0) | (row >= last)

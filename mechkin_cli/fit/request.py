@@ -1,4 +1,7 @@
-"""What a fit is asked: parameters with bounds, targets, constraints; all checked first."""
+"""The request of a fit: parameters with bounds, targets, constraints; all checked first.
+
+Its dicts are read key by key (runs, quantities, values, points, inputs, moments), then as wholes.
+"""
 
 from __future__ import annotations
 
@@ -23,11 +26,8 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# What a fit's dicts say, key by key: runs, quantities, values, points, inputs and moments.
-
-
 def run_of(problem: Problem, place: str, given: Any) -> tuple[str, Problem]:
-    """The run that is meant, the file's first without a word of it, and its problem."""
+    """The run that a dict names, else the file's first, and its problem."""
     swept = (SWEEP,) if problem.motion.inputs or not problem.responses else ()
     name = given.get("run") if isinstance(given, Mapping) else None
     try:
@@ -54,9 +54,9 @@ def quantity_of(
         expression = expressions_of([of], problem)[of]
     except UsageError as error:
         raise UsageError(f"{place}: {error}") from None
-    found = expression.evaluate(sample_of(problem), problem.units)
-    width = len(found.value.components) if isinstance(found.value, Vector) else 1
-    return of, problem.units.label(found.dimension), width
+    quantity = expression.evaluate(sample_of(problem), problem.units)
+    width = len(quantity.value.components) if isinstance(quantity.value, Vector) else 1
+    return of, problem.units.label(quantity.dimension), width
 
 
 def value_of(problem: Problem, place: str, of: str, value: Any) -> float:
@@ -77,6 +77,7 @@ def points_of(problem: Problem, place: str, of: str, given: Any, width: int) -> 
     if isinstance(given, str) or not isinstance(given, Iterable):
         given = [given]
     rows = []
+    component = of if width == 1 else f"dot({of}, {of})/norm({of})"
     for point in given:
         parts = [point] if width == 1 else point
         if isinstance(parts, str) or not isinstance(parts, Iterable):
@@ -84,7 +85,6 @@ def points_of(problem: Problem, place: str, of: str, given: Any, width: int) -> 
         parts = list(parts)
         if len(parts) != width:
             raise wrong
-        component = of if width == 1 else f"dot({of}, {of})/norm({of})"
         rows.append([value_of(problem, f"{place}: is", component, part) for part in parts])
     if not rows:
         raise wrong
@@ -132,7 +132,7 @@ def several(name: str, given: Any, example: str) -> list[Any]:
 TARGET_KEYS = ("of", "run", "is", "at", "least", "within", "label")
 CONSTRAINT_KEYS = ("of", "run", "min", "max", "label")
 LEAST = ("peak", "rms")
-"""What of a quantity can be made small."""
+"""Reductions of a quantity that can be made small."""
 
 EXAMPLE = '{"of": "C.theta", "at": [0, 40], "is": [50, 62]}, or {"of": "O.effort", "least": "peak"}'
 
@@ -191,7 +191,7 @@ class Constraint(NamedTuple):
 
 
 class FitRequest(NamedTuple):
-    """All that is asked."""
+    """Parameters, targets and constraints of a fit."""
 
     parameters: tuple[Bounds, ...]
     targets: tuple[Target, ...]
@@ -199,30 +199,30 @@ class FitRequest(NamedTuple):
 
 
 def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -> FitRequest:
-    """Checked, in the file's units.
+    """The checked request, in the file's units.
 
     Raises:
-        UsageError: what is wrong first, and what to write.
+        UsageError: the first thing that is wrong, and what to write.
     """
-    found = tuple(
+    checked = [
         _target(problem, f"targets[{k}]", one)
         for k, one in enumerate(several("targets", targets, EXAMPLE))
-    )
-    if not found:
+    ]
+    if not checked:
         raise UsageError(f"targets: there is none; give one such as {EXAMPLE}")
     example = '{"of": "C.theta", "min": "40 deg"}'
-    held = tuple(
+    limits = tuple(
         _constraint(problem, f"constraints[{k}]", one)
         for k, one in enumerate(several("constraints", constraints, example))
     )
-    units = {target.unit for target, _ in found}
-    for number, (target, has_scale) in enumerate(found):
+    units = {target.unit for target, _ in checked}
+    for number, (target, has_scale) in enumerate(checked):
         if len(units) > 1 and not has_scale:
             raise UsageError(
                 f"targets[{number}]: targets have different units ({', '.join(sorted(units))}), so "
                 f'each needs within:, the deviation that counts as one, such as "1 {target.unit}"'
             )
-    return FitRequest(_bounds(problem, parameters), tuple(t for t, _ in found), held)
+    return FitRequest(_bounds(problem, parameters), tuple(t for t, _ in checked), limits)
 
 
 def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:
@@ -239,7 +239,7 @@ def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:
         pairs[name] = (pair[0], pair[1])
     lower = parameter_values(problem, {name: pair[0] for name, pair in pairs.items()})
     upper = parameter_values(problem, {name: pair[1] for name, pair in pairs.items()})
-    found = []
+    bounds = []
     for name, low in lower.items():
         known = problem.parameters[name]
         own = float(known.value)  # type: ignore[arg-type]
@@ -250,8 +250,8 @@ def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:
                 f"parameters: the bounds of {name} are {ends[0]:g} and {ends[1]:g} {unit}".rstrip()
                 + "; write the smaller one first"
             )
-        found.append(Bounds(name, ends[0], ends[1], ends[2], unit))
-    return tuple(found)
+        bounds.append(Bounds(name, ends[0], ends[1], ends[2], unit))
+    return tuple(bounds)
 
 
 def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:

@@ -1,4 +1,8 @@
-"""What a fit has found, measured anew on the mechanism that it gives."""
+"""The result of a fit, measured again on the mechanism that it gives.
+
+In reading order: values that are lacking although rows have positions (infinite at a dead centre,
+or empty), the result, and the call.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +15,12 @@ from mechkin_cli.arguments import a_whole_number
 from mechkin_cli.fit.measure import TIME, FitModels, FitValues, deviations, margins_of
 from mechkin_cli.fit.nearest import nearest_places
 from mechkin_cli.fit.request import Constraint, Target, request
-from mechkin_cli.fit.search import Measured, Progress, found
+from mechkin_cli.fit.search import Measured, Progress, SearchResult, best_of
 from mechkin_cli.fit.slopes import FitSlopes
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
+from mechkin_cli.tables import run_parameter
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
 from mechkin_cli.variants import vary, with_parameters
 from mechkin_cli.verdict import SWEEP, Status, has_solution
@@ -29,34 +34,20 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
-# Which value a fit lacks although its rows have positions: infinite at a dead centre, or empty.
-
 END_BEFORE = "end the sweep before it, or vary a dimension that moves the dead centre"
 ASK_BEFORE = "ask for it before that, or vary a dimension that moves the dead centre"
 OTHERWISE = "ask for another quantity there, or end the run before it"
 NOT_REACHED = "ask for it at inputs that are reached, or widen the bounds"
 
 
-class Lack(NamedTuple):
-    """A value that is not finite, and where; whether it is infinite; and what to do."""
-
-    text: str
-    infinite: bool
-    hint: str
-
-    @property
-    def reason(self) -> str:
-        """What a fit says of it."""
-        return (
-            "no variant that was tried has a finite value of all that is asked for; in the best "
-            f"{self.text}; {self.hint}"
-        )
+Lack = tuple[str, bool, str]
+"""A value that is not finite, and where; whether it is infinite; and what to do."""
 
 
 def lack_of(analysis: Analysis, texts: Iterable[str]) -> Lack | None:
     """The first of some expressions that has no finite value in some row, infinite ones first."""
-    found = [lack for text in texts if (lack := _lack(analysis, text)) is not None]
-    return min(found, key=lambda one: not one.infinite, default=None)
+    lacks = [lack for text in texts if (lack := _lack(analysis, text)) is not None]
+    return min(lacks, key=lambda lack: not lack[1], default=None)
 
 
 def lack_at(text: str, values: Floats, inputs: Floats, along: str, unit: str) -> Lack | None:
@@ -64,9 +55,9 @@ def lack_at(text: str, values: Floats, inputs: Floats, along: str, unit: str) ->
     for value, place in zip(values, inputs.tolist(), strict=True):
         where = f"at {along} = {place:.9g} {unit}".rstrip()
         if np.isinf(value).any():
-            return Lack(f"{text} is infinite {where}, a dead centre", True, ASK_BEFORE)
+            return f"{text} is infinite {where}, a dead centre", True, ASK_BEFORE
         if np.isnan(value).any():
-            return Lack(f"{text} has no value {where}", False, NOT_REACHED)
+            return f"{text} has no value {where}", False, NOT_REACHED
     return None
 
 
@@ -78,22 +69,14 @@ def _lack(analysis: Analysis, text: str) -> Lack | None:
     if not without.any():
         return None
     row = int(np.argmax(without))
-    where = f"in row {row + 1}{_place(analysis, row)}"
+    where = f"in row {row + 1}"
+    if (along := run_parameter(analysis.result)) is not None:
+        where += f" ({along.name} = {along.values[row]:.9g} {along.unit}".rstrip() + ")"
     if int(analysis.result.status[row]) == Status.dead_centre:
         where += ", which stands at a dead centre"
     if infinite.any():
-        return Lack(f"{text} is infinite {where}", True, END_BEFORE)
-    return Lack(f"{text} has no value {where}", False, OTHERWISE)
-
-
-def _place(analysis: Analysis, row: int) -> str:
-    """Where a row stands along its run."""
-    from mechkin_cli.tables import run_parameter
-
-    along = run_parameter(analysis.result)
-    if along is None:
-        return ""
-    return f" ({along.name} = {along.values[row]:.9g} {along.unit}".rstrip() + ")"
+        return f"{text} is infinite {where}", True, END_BEFORE
+    return f"{text} has no value {where}", False, OTHERWISE
 
 
 FITTED = "fitted"
@@ -142,7 +125,7 @@ class ConstraintCheck(NamedTuple):
 
 
 class Fit(Listed):
-    """The dimensions that were found.
+    """The fitted dimensions.
 
     Attributes:
         parameters: values by name, in the file's units.
@@ -160,15 +143,15 @@ class Fit(Listed):
         self, values: FitValues, best: SearchResult, measured: Measured, why: dict[str, str]
     ) -> None:
         self._values, self._best = values, best
-        self._kept: dict[str, Analysis] = {}
+        self._analyses: dict[str, Analysis] = {}
         request = values.request
-        found = values.values(best.unknowns[:, None])
-        self.parameters = {name: float(value[0]) for name, value in found.items()}
+        columns = values.values(best.unknowns[:, None])
+        self.parameters = {name: float(column[0]) for name, column in columns.items()}
         self.units = {one.name: one.unit for one in request.parameters}
         self.model: Solvable = with_parameters(values.models.model, self.parameters)
         self.evaluations, self.slopes_taken = measured.evaluations, measured.slopes_taken
         self.exact_taken = measured.exact_taken
-        self.slopes = _slopes_told(measured, why)
+        self.slopes = _slopes_text(measured, why)
         self.costs = best.costs
 
     @property
@@ -196,7 +179,7 @@ class Fit(Listed):
         does not hold; `not-assembled` where rows or targets have no solution; `infinite` where they
         have, but what is asked for has no bound at a dead centre."""
         if self.rows_not_ok or self._best.measures.missing[0] > 0.0:
-            return INFINITE if self._lack is not None and self._lack.infinite else NOT_ASSEMBLED
+            return INFINITE if self._lack is not None and self._lack[1] else NOT_ASSEMBLED
         if not all(one.holds for one in self.constraints):
             return VIOLATED
         return FITTED if self._best.ended else NOT_CONVERGED
@@ -206,14 +189,18 @@ class Fit(Listed):
         """Why that is the status, in a sentence."""
         status = self.status
         if status in (NOT_ASSEMBLED, INFINITE) and self._lack is not None:
-            return self._lack.reason
+            text, _, hint = self._lack
+            return (
+                "no variant that was tried has a finite value of all that is asked for; in the "
+                f"best {text}; {hint}"
+            )
         if status == NOT_ASSEMBLED:
             runs = self._values.runs
             rows = sum(self._solved(run).size for run in runs)
-            told = " and ".join("the sweep" if run == SWEEP else run for run in runs)
-            missed = f"misses {self.rows_not_ok} of {rows} rows of {told}"
+            names = " and ".join("the sweep" if run == SWEEP else run for run in runs)
+            missed = f"misses {self.rows_not_ok} of {rows} rows of {names}"
             if not self.rows_not_ok:
-                missed = f"has all {rows} rows of {told}, but not all of the curve between them"
+                missed = f"has all {rows} rows of {names}, but not all of the curve between them"
             return (
                 f"no variant that was tried has a solution everywhere; the best {missed}; widen "
                 "the bounds, shorten the way, or take more generations"
@@ -235,7 +222,8 @@ class Fit(Listed):
     @cached_property
     def constraints(self) -> tuple[ConstraintCheck, ...]:
         """How each bound is held, where it is nearest to be exceeded."""
-        return tuple(held for one in self._values.request.constraints for held in self._held(one))
+        constraints = self._values.request.constraints
+        return tuple(check for one in constraints for check in self._checks(one))
 
     @property
     def yaml(self) -> str:
@@ -250,18 +238,16 @@ class Fit(Listed):
         rows = []
         for one in self._values.request.parameters:
             side = self.at_bounds.get(one.name)
-            told = f"{one.lower:g} to {one.upper:g}" + (f", at the {side} bound" if side else "")
-            rows.append((one.name, f"{self.parameters[one.name]:.9g}", one.unit, told))
+            words = f"{one.lower:g} to {one.upper:g}" + (f", at the {side} bound" if side else "")
+            rows.append((one.name, f"{self.parameters[one.name]:.9g}", one.unit, words))
         for met, target in zip(self.targets, self._values.request.targets, strict=True):
+            digits, words = ".3g", f"largest deviation of {len(target.wanted)}"
             if target.least:
-                rows.append((met.label, f"{met.largest:.6g}", met.unit, f"least {target.least}"))
-            else:
-                told = f"largest deviation of {len(target.wanted)}"
-                rows.append((met.label, f"{met.largest:.3g}", met.unit, told))
-        for held in self.constraints:
-            word = "holds" if held.holds else "DOES NOT HOLD"
-            told = f"bound {held.bound:g} {word}"
-            rows.append((held.label, f"{held.value:.6g}", held.unit, told))
+                digits, words = ".6g", f"least {target.least}"
+            rows.append((met.label, f"{met.largest:{digits}}", met.unit, words))
+        for check in self.constraints:
+            words = f"bound {check.bound:g} {'holds' if check.holds else 'DOES NOT HOLD'}"
+            rows.append((check.label, f"{check.value:.6g}", check.unit, words))
         head = f"{self.model.name}, fit: {self.status}"
         notes = (
             self.reason,
@@ -274,22 +260,21 @@ class Fit(Listed):
     def _solved(self, run: str) -> Bools:
         """Which of the rows that were asked for have a solution at their places."""
         rows = self._rows(run)
-        found = has_solution(rows.result.status)
+        solved = has_solution(rows.result.status)
         if run == SWEEP:
-            return found
+            return solved
         times = self._padded(run, TIME)
-        solved = np.zeros(len(times), dtype=np.bool_)
-        solved[: rows.rows] = found[: len(times)]
-        both: Bools = solved & self._values.on_time(run, times)
-        return both
+        reached = np.zeros(len(times), dtype=np.bool_)
+        reached[: rows.rows] = solved[: len(times)]
+        return np.asarray(reached & self._values.on_time(run, times))
 
     def _padded(self, run: str, text: str) -> Floats:
         """A quantity at the moments of a response, nan behind its end."""
         values = self._rows(run)[text]
         count = self.model.design.response(run).rows
-        found: Floats = np.full((count, *values.shape[1:]), np.nan)
-        found[: len(values)] = values[:count]
-        return found
+        padded = np.full((count, *values.shape[1:]), np.nan)
+        padded[: len(values)] = values[:count]
+        return padded
 
     @cached_property
     def _lack(self) -> Lack | None:
@@ -297,24 +282,24 @@ class Fit(Listed):
         if self.rows_not_ok:
             return None
         values = self._values
-        found = [lack_of(self._rows(run), values.texts(run)) for run in values.runs]
+        lacks = [lack_of(self._rows(run), values.texts(run)) for run in values.runs]
         for met, target in zip(self.targets, values.request.targets, strict=True):
             if target.at is not None and target.run == SWEEP:
                 along = values.models.moved.name, values.models.unit
-                found.append(lack_at(target.of, met.values, met.inputs, *along))
-        return next((lack for lack in found if lack is not None), None)
+                lacks.append(lack_at(target.of, met.values, met.inputs, *along))
+        return next((lack for lack in lacks if lack is not None), None)
 
     def _rows(self, run: str) -> Analysis:
-        """The rows of a run of the mechanism that was found; kept."""
-        if run not in self._kept:
+        """The rows of a run of the fitted mechanism."""
+        if run not in self._analyses:
             texts = self._values.texts(run)
             if run == SWEEP:
                 found = self.model.analyze(_names(self.model.problem, texts), tables=[])
             else:
                 known = response_problem(self.model.problem, self.model.design.response(run))
                 found = self.model.respond(run, _names(known, texts), tables=[])
-            self._kept[run] = found
-        return self._kept[run]
+            self._analyses[run] = found
+        return self._analyses[run]
 
     def _met(self, target: Target) -> Met:
         none = np.zeros(0)
@@ -328,19 +313,19 @@ class Fit(Listed):
                 size = np.array([[np.sqrt(np.nansum(np.square(parts)))]])
             return Met(target.label, target.unit, none, size, size)
         if target.run != SWEEP:
-            told = self._padded(target.run, target.of)[self._values.rows_of(target)]
-            values = told.reshape(-1, target.width)
+            rows = self._padded(target.run, target.of)[self._values.rows_of(target)]
+            values = rows.reshape(-1, target.width)
             away = deviations(target, values[None])[0].reshape(values.shape) * target.within
             return Met(target.label, target.unit, np.array(target.at), values, away)
         inputs = np.array(target.at) if target.at is not None else self._nearest(target)
         # each by itself from the first row, in the order in which they are passed
         order = np.argsort(inputs if self._values.models.ends[1] >= inputs.min() else -inputs)
         listed = self._values.models.listed(tuple(inputs[order].tolist()))
-        found = with_parameters(listed, self.parameters).analyze(
+        analysis = with_parameters(listed, self.parameters).analyze(
             _names(listed.problem, [target.of]), tables=[]
         )
         values = np.empty((len(inputs), target.width))
-        values[order] = found[target.of][1:].reshape(-1, target.width)
+        values[order] = analysis[target.of][1:].reshape(-1, target.width)
         away = deviations(target, values[None])[0].reshape(values.shape) * target.within
         return Met(target.label, target.unit, inputs, values, away)
 
@@ -353,46 +338,35 @@ class Fit(Listed):
         found: Floats = np.interp(rows[0], np.arange(len(models.curve_inputs)), models.curve_inputs)
         return found
 
-    def _held(self, constraint: Constraint) -> list[ConstraintCheck]:
+    def _checks(self, constraint: Constraint) -> list[ConstraintCheck]:
         values = self._rows(constraint.run)[constraint.of]
-        found = []
+        checks = []
         all_margins = margins_of(constraint, values)
         for (bound, _), margins in zip(constraint.bounds, all_margins, strict=True):
             row = int(np.argmin(np.where(np.isnan(margins), np.inf, margins)))
-            holds = bool((margins >= -FIT_HELD).all())
-            found.append(
-                ConstraintCheck(
-                    constraint.label, constraint.unit, bound, float(values[row]), row, holds
-                )
-            )
-        return found
+            holds, value = bool((margins >= -FIT_HELD).all()), float(values[row])
+            label, unit = constraint.label, constraint.unit
+            checks.append(ConstraintCheck(label, unit, bound, value, row, holds))
+        return checks
 
 
-def _slopes_told(measured: Measured, why: dict[str, str]) -> str:
+def _slopes_text(measured: Measured, why: dict[str, str]) -> str:
     """Which derivatives the search ended with."""
     if not measured.exact_taken:
         return "differences: no search found where everything has a value"
     if not measured.filled:
         return "exact"
-    told = "; ".join(f"{text}: {reason}" for text, reason in why.items())
+    reasons = "; ".join(f"{text}: {reason}" for text, reason in why.items())
     some = f"differences in {measured.filled} of {measured.entries} derivatives"
-    return f"{some}, which have no sensitivity ({told})"
+    return f"{some}, which have no sensitivity ({reasons})"
 
 
 def _names(problem: Problem, texts: list[str]) -> list[str]:
     """Quantities that expressions read."""
     known = problem.quantities()
-    names = []
-    for text in texts:
-        for name in sorted(problem.definitions.parse(text).names):
-            if name in known:
-                names.append(name)
-            elif name.rpartition(".")[0] in known:
-                names.append(name.rpartition(".")[0])
-    return list(dict.fromkeys(names))
-
-
-# A fit from the question to the answer.
+    names = (n for text in texts for n in sorted(problem.definitions.parse(text).names))
+    whole = (name if name in known else name.rpartition(".")[0] for name in names)
+    return [name for name in dict.fromkeys(whole) if name in known]
 
 
 def fit_of(
@@ -415,5 +389,6 @@ def fit_of(
     slopes = FitSlopes(values)
     measured = Measured(values.measure, slopes.stacked)
     own = np.array([one.own for one in asked.parameters])
-    best = found(measured, (own - values.lower) / values.width, seed, starts, generations, progress)
+    start = (own - values.lower) / values.width
+    best = best_of(measured, start, seed, starts, generations, progress)
     return Fit(values, best, measured, slopes.why)

@@ -1,5 +1,14 @@
 """From nowhere to the best unknowns: differential evolution over whole populations, then a local
 search from the best of it; the same seed gives the same answer.
+
+Unknowns u lie in [0, 1], parts of their bounds. Residuals should be small, magnitudes have a
+largest that should be small, margins should not be negative, all without units. The cost is half
+the sum of the squares of the residuals and of the largest magnitude of each group.
+
+The local search is least squares by a trust region within bounds; where constraints do not hold by
+themselves, or a largest magnitude should be small, sequential quadratic programming. A largest
+magnitude s is an unknown of its own, above all magnitudes of its group: s >= |v| in every row,
+which is smooth where the maximum is not (Nocedal & Wright, Numerical Optimization, section 12.1).
 """
 
 from __future__ import annotations
@@ -15,13 +24,6 @@ from mechkin_cli.tolerances import FIT_ENDED, FIT_HELD, FIT_NARROW_STEP, FIT_STE
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
-
-
-# What is asked of unknowns: residuals to be small, magnitudes whose largest is to be small, and
-# margins not to be negative, all without units; and their derivatives.
-#
-# Unknowns u lie in [0, 1], parts of their bounds. The cost is half the sum of the squares of the
-# residuals and of the largest magnitude of each group.
 
 
 class Measures(NamedTuple):
@@ -52,8 +54,7 @@ class Measures(NamedTuple):
     @property
     def excess(self) -> Floats:
         """(S,) the sum of what the margins lack."""
-        found: Floats = np.maximum(-self.margins, 0.0).sum(axis=1)
-        return found
+        return np.asarray(np.maximum(-self.margins, 0.0).sum(axis=1))
 
     @property
     def ranks(self) -> Floats:
@@ -119,20 +120,20 @@ class Measured:
         """Derivatives of `stacked` (all, unknowns), exact to rounding; differences where something
         has no exact one."""
         self.exact_taken += 1
-        found = self._exact(unknowns)
-        without = ~np.isfinite(found)
-        self.entries, self.filled = found.size, int(without.sum())
-        return np.where(without, self._differences(unknowns), found) if self.filled else found
+        slopes = self._exact(unknowns)
+        without = ~np.isfinite(slopes)
+        self.entries, self.filled = slopes.size, int(without.sum())
+        return np.where(without, self._differences(unknowns), slopes) if self.filled else slopes
 
     def _differences(self, unknowns: Floats) -> Floats:
         """Fourth-order differences, of all unknowns in one call; narrow or one-sided ones where
-        those leave what has values."""
+        those reach places without values."""
         count = len(unknowns)
         far, near = FIT_STEP, FIT_NARROW_STEP
         steps = np.array([-2 * far, -far, far, 2 * far])
         values, missing = self._beside(unknowns, steps)
-        found = (values[0] - values[3] - 8.0 * (values[1] - values[2])) / (12.0 * far)
-        bad = missing.any(axis=0) | ~np.isfinite(found).all(axis=1)
+        slopes = (values[0] - values[3] - 8.0 * (values[1] - values[2])) / (12.0 * far)
+        bad = missing.any(axis=0) | ~np.isfinite(slopes).all(axis=1)
         if bad.any():
             values, missing = self._beside(unknowns, np.array([-near, 0.0, near]))
             low = np.where(missing[0], 1, 0)
@@ -140,20 +141,16 @@ class Measured:
             of = np.arange(count)
             span = np.maximum(high - low, 1)[:, None] * near
             narrow = (values[high, of] - values[low, of]) / span
-            found[bad] = np.nan_to_num(narrow[bad])
-        slopes: Floats = found.T
-        return slopes
+            slopes[bad] = np.nan_to_num(narrow[bad])
+        return np.asarray(slopes.T)
 
     def _beside(self, unknowns: Floats, steps: Floats) -> tuple[Floats, Bools]:
         """`stacked` (steps, unknowns, all) one unknown moved at a time, and what is missing."""
         count = len(unknowns)
         moved = unknowns + steps[:, None, None] * np.eye(count)
-        found = self.many(moved.reshape(-1, count).T)
+        measures = self.many(moved.reshape(-1, count).T)
         shape = (len(steps), count)
-        return found.stacked.reshape(*shape, -1), found.missing.reshape(shape) > 0.0
-
-
-# scipy.optimize where it is installed; it is of the extra `fit`, and loaded when a fit begins.
+        return measures.stacked.reshape(*shape, -1), measures.missing.reshape(shape) > 0.0
 
 
 def optimizer() -> Any:
@@ -168,13 +165,6 @@ def optimizer() -> Any:
         raise UsageError("fit needs scipy: pip install 'mechkin[fit]'") from None
     return scipy.optimize
 
-
-# A local search: least squares by a trust region within bounds; where constraints do not hold by
-# themselves, or a largest magnitude is to be small, sequential quadratic programming.
-#
-# A largest magnitude s is an unknown of its own, above all magnitudes of its group: s >= |v| in
-# every row, which is smooth where the maximum is not (Nocedal & Wright, Numerical Optimization,
-# section 12.1).
 
 MOST_STEPS = 200
 """Steps of a local search."""
@@ -215,25 +205,23 @@ def refined(
 def finished(measured: Measured, end: Floats, ended: bool, reason: str) -> tuple[Floats, bool, str]:
     """`refined` once more from its `end`, a few steps with exact derivatives; that end itself
     where they find nothing better."""
-    found, of_itself, why = refined(measured, end, measured.exact_slopes, LAST_STEPS)
-    if measured.one(found).ranks[0] <= measured.one(end).ranks[0]:
-        return found, ended or of_itself, why if of_itself else reason
+    better, of_itself, why = refined(measured, end, measured.exact_slopes, LAST_STEPS)
+    if measured.one(better).ranks[0] <= measured.one(end).ranks[0]:
+        return better, ended or of_itself, why if of_itself else reason
     return end, ended, reason
 
 
 def _least_squares(
     measured: Measured, start: Floats, slopes: Slopes, steps: int
 ) -> tuple[Floats, bool, str]:
-    least_squares = optimizer().least_squares
-
     count = measured.one(start).residuals.shape[1]
     worse = WORSE * (1.0 + np.abs(measured.one(start).residuals).max(initial=0.0))
 
     def residuals(unknowns: Floats) -> Floats:
-        found = measured.one(unknowns)
-        return found.residuals[0] if found.missing[0] == 0.0 else np.full(count, worse)
+        measures = measured.one(unknowns)
+        return measures.residuals[0] if measures.missing[0] == 0.0 else np.full(count, worse)
 
-    end = least_squares(
+    end = optimizer().least_squares(
         residuals,
         np.clip(start, FIT_HELD, 1.0 - FIT_HELD),
         lambda unknowns: slopes(unknowns)[:count],
@@ -249,8 +237,6 @@ def _least_squares(
 def _constrained(
     measured: Measured, start: Floats, stacked_slopes: Slopes, steps: int
 ) -> tuple[Floats, bool, str]:
-    minimize = optimizer().minimize
-
     count, first = len(start), measured.one(start)
     residuals = first.residuals.shape[1]
     sizes = [group.shape[1] for group in first.peaks]
@@ -260,31 +246,32 @@ def _constrained(
     worse = WORSE * (1.0 + float(first.costs[0])) * scale
 
     def cost(all_unknowns: Floats) -> float:
-        found = measured.one(all_unknowns[:count])
-        if found.missing[0] > 0.0:
+        measures = measured.one(all_unknowns[:count])
+        if measures.missing[0] > 0.0:
             return worse
-        own = float(np.square(found.residuals).sum() + np.square(all_unknowns[count:]).sum())
+        own = float(np.square(measures.residuals).sum() + np.square(all_unknowns[count:]).sum())
         return 0.5 * scale * own
 
     def gradient(all_unknowns: Floats) -> Floats:
         unknowns = all_unknowns[:count]
-        found = measured.one(unknowns).residuals[0]
-        own = np.nan_to_num(found) @ slopes(unknowns)[:residuals]
-        result: Floats = scale * np.concatenate([own, all_unknowns[count:]])
-        return result
+        own = np.nan_to_num(measured.one(unknowns).residuals[0]) @ slopes(unknowns)[:residuals]
+        return np.asarray(scale * np.concatenate([own, all_unknowns[count:]]))
 
-    kept: dict[bytes, Floats] = {}
+    last: dict[bytes, Floats] = {}
 
     def slopes(unknowns: Floats) -> Floats:
         key = unknowns.tobytes()
-        if key not in kept:
-            kept.clear()
-            kept[key] = stacked_slopes(unknowns)
-        return kept[key]
+        if key not in last:
+            last.clear()
+            last[key] = stacked_slopes(unknowns)
+        return last[key]
 
     def above(all_unknowns: Floats) -> Floats:
-        found = measured.one(all_unknowns[:count])
-        return np.nan_to_num(_above(found, all_unknowns[count:]), nan=-1.0)
+        """Each top above the magnitudes of its group, and the margins."""
+        measures, parts = measured.one(all_unknowns[:count]), []
+        for top, group in zip(all_unknowns[count:], measures.peaks, strict=True):
+            parts += [top - group[0], top + group[0]]
+        return np.asarray(np.nan_to_num(np.concatenate([*parts, measures.margins[0]]), nan=-1.0))
 
     def above_slopes(all_unknowns: Floats) -> Floats:
         rows = slopes(all_unknowns[:count])[residuals:]
@@ -299,7 +286,7 @@ def _constrained(
         blocks.append(np.hstack([rest, np.zeros((len(rest), len(sizes)))]))
         return np.vstack(blocks)
 
-    end = minimize(
+    end = optimizer().minimize(
         cost,
         np.concatenate([start, tops]),
         jac=gradient,
@@ -311,16 +298,8 @@ def _constrained(
     return np.clip(end.x[:count], 0.0, 1.0), bool(end.status in (0, 8)), str(end.message)
 
 
-def _above(found: Measures, tops: Floats) -> Floats:
-    """What must not be negative: each top above the magnitudes of its group, and the margins."""
-    parts = []
-    for top, group in zip(tops, found.peaks, strict=True):
-        parts += [top - group[0], top + group[0]]
-    return np.concatenate([*parts, found.margins[0]])
-
-
 Progress = Callable[[int, int], None]
-"""Told how many steps are done, and of how many."""
+"""Called with how many steps are done, and of how many."""
 
 POPULATION = 12
 """Members for each unknown, at least `LEAST` of them."""
@@ -339,7 +318,7 @@ class SearchResult(NamedTuple):
     costs: tuple[float, ...]
 
 
-def found(
+def best_of(
     measured: Measured,
     own: Floats,
     seed: int,
@@ -384,7 +363,6 @@ def found(
 def _evolved(
     measured: Measured, own: Floats, seed: int, generations: int, tell: Callable[[int], None]
 ) -> tuple[Floats, Floats]:
-    """A population (unknowns, S) and its ranks after some generations."""
     count = len(own)
     random = np.random.default_rng(seed)
     size = max(LEAST, POPULATION * count)
@@ -395,7 +373,7 @@ def _evolved(
         return first, measured.many(first).ranks
     done = 0
 
-    def told(intermediate_result: object) -> None:
+    def advance(intermediate_result: object) -> None:
         nonlocal done
         done += 1
         tell(done)
@@ -411,7 +389,7 @@ def _evolved(
         vectorized=True,
         updating="deferred",
         seed=random,
-        callback=told,
+        callback=advance,
     )
     return end.population.T, end.population_energies
 

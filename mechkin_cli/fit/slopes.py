@@ -1,5 +1,11 @@
 """Exact derivatives of what a fit is measured by: sensitivities of the mechanism, by the chain
 rule through scales, weights and nearest places.
+
+Nearest places are those where curves, known in equal steps, come nearest to points. Between rows a
+curve is the polynomial through the ten rows around (Berrut & Trefethen 2004, Barycentric Lagrange
+interpolation, section 2): with steps h its error in the middle is below h^10 times the tenth
+derivative divided by 4000. On it the nearest place is found by Newton steps. Eight rows would do
+for the place as well, but give of the derivatives of a place only nine digits.
 """
 
 from __future__ import annotations
@@ -28,8 +34,8 @@ class FitSlopes:
     """The derivatives of `FitValues.measure`.
 
     Attributes:
-        why: what the last `stacked` has no exact derivative of, and why: verdicts of sensitivities
-            or the reason for which there are none, by expression.
+        why: expressions of which the last `stacked` has no exact derivative, and why: verdicts of
+            sensitivities, or the reason for which there are none.
     """
 
     def __init__(self, values: FitValues) -> None:
@@ -46,11 +52,10 @@ class FitSlopes:
         rows = {
             run: self._slopes(models.model, named, values.texts(run), run) for run in values.runs
         }
-        parts = [
-            _weighted(rows[one.run][one.of] / one.within, values.weights[one.run])
-            for one in values.least
-            if one.least == "rms"
-        ]
+        parts = []
+        for one in (target for target in values.least if target.least == "rms"):
+            slopes, weights = rows[one.run][one.of] / one.within, values.weights[one.run]
+            parts.append(slopes.reshape(len(slopes), len(weights), -1) * weights[:, None])
         for one in values.at_moments:
             parts.append(rows[one.run][one.of][:, values.rows_of(one)] / one.within)
         if values.at_inputs:
@@ -67,8 +72,7 @@ class FitSlopes:
                 slopes = rows[constraint.run][constraint.of]
                 parts.append(sign * slopes / (abs(bound) or 1.0))
         stacked = np.concatenate([part.reshape(len(unknowns), -1) for part in parts], axis=1)
-        found_all: Floats = (stacked * values.width[:, None]).T
-        return found_all
+        return np.asarray((stacked * values.width[:, None]).T)
 
     def _anywhere(self, named: dict[str, float], targets: Sequence[Target]) -> list[Floats]:
         """Of nearest places, each (parameters, points, width)."""
@@ -103,19 +107,13 @@ class FitSlopes:
         return {text: np.stack([found[text, name] for name in names]) for text in texts}
 
     def _note(self, found: Sensitivities, text: str) -> None:
-        """Say what a quantity has no sensitivity for."""
+        """Notes the parameters to which a quantity has no sensitivity."""
         notes = []
         for name in self._values.names:
             without = ~np.isfinite(found[text, name]).reshape(len(found.rows), -1).all(axis=1)
             if without.any():
                 words, counts = np.unique(found.verdict(text, name)[without], return_counts=True)
-                told = ", ".join(f"{n} rows {w}" for w, n in zip(words, counts, strict=True))
-                notes.append(f"{name}: {found.why(text, name) or told}")
+                verdicts = ", ".join(f"{n} rows {w}" for w, n in zip(words, counts, strict=True))
+                notes.append(f"{name}: {found.why(text, name) or verdicts}")
         if notes:
             self.why[text] = "; ".join(notes)
-
-
-def _weighted(slopes: Floats, weights: Floats) -> Floats:
-    """Rows (parameters, rows, ...) times the weights (rows,) of a mean over the way."""
-    found: Floats = slopes.reshape(len(slopes), len(weights), -1) * weights[:, None]
-    return found

@@ -5,8 +5,8 @@ kinds in this file. A kind says
 
 - between which links it stands, for which joints, and by whose name it goes (`first`, `second`,
   `joints`, `joint`);
-- its equations: how many, by which entry of the kernel (`kernel/core/joints/pairs.hpp`: residual, columns
-  of the Jacobian, right sides for velocity, acceleration and jerk), on which frames and with which
+- its equations: how many, by which entry of the kernel (`kernel/core/joints`: residual, columns of
+  the Jacobian, right sides for velocity, acceleration and jerk), on which frames and with which
   numbers of the drawing (`equations`, `code`, `frames`, `parameter`, `length`);
 - what its multipliers are: the wrench on its second link, read off at `joint`; without coordinates,
   the line of its force (`force_line`);

@@ -1,4 +1,10 @@
-"""What pictures are drawn of: columns by label, quantities and expressions, with their units."""
+"""Curves and pictures as plain data: which curves stand against what, and what is marked.
+
+A curve is a column by its label, a quantity or an expression, with its unit. Numbers stand over one
+column, a panel for each unit. Vectors are drawn in a plane with equal axes instead: a position
+gives the curve of its point, a force its polar diagram about the origin. Two columns of the same
+unit of length or force are drawn in such a plane, too.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +15,12 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.tables import TableColumn, Words, row_texts, run_parameter
+from mechkin_cli.tables import Columns, TableColumn, TableLayout, Words, row_texts, run_parameter
 from mechkin_cli.units import FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import Status
 from mechkin_cli.view import run_marks
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep import Readable
     from mechkin_cli.tables import Columns, TableLayout
@@ -50,28 +54,18 @@ def curve_of(analysis: Readable, name: str) -> PlotCurve:
     columns = (column for table in analysis.tables for column in table.columns)
     column = next((one for one in columns if one.label == name), None)
     if column is not None:
-        return column_curve(column)
+        return _column_curve(column)
     if name in row_texts(analysis.run):
-        raise _words(name)
+        raise _not_numbers(name)
     result = analysis.result
-    found = result.problem.definitions.parse(name).evaluate(result.quantity, result.units)
-    return PlotCurve(name, result.units.label(found.dimension), analysis[name])
+    quantity = result.problem.definitions.parse(name).evaluate(result.quantity, result.units)
+    return PlotCurve(name, result.units.label(quantity.dimension), analysis[name])
 
 
-def column_curve(column: TableColumn) -> PlotCurve:
-    """A column of a table.
-
-    Raises:
-        UsageError: its cells are words.
-    """
+def _column_curve(column: TableColumn) -> PlotCurve:
     if isinstance(column.values, Words):
-        raise _words(column.label)
+        raise _not_numbers(column.label)
     return PlotCurve(column.label, column.unit, column.values)
-
-
-def numbers_of(columns: Sequence[TableColumn]) -> list[PlotCurve]:
-    """The columns whose cells are numbers."""
-    return [column_curve(column) for column in columns if not isinstance(column.values, Words)]
 
 
 def parameter_curve(analysis: Readable) -> PlotCurve:
@@ -82,15 +76,9 @@ def parameter_curve(analysis: Readable) -> PlotCurve:
     return PlotCurve(along.name, along.unit, along.values)
 
 
-def _words(name: str) -> UsageError:
+def _not_numbers(name: str) -> UsageError:
     return UsageError(f"{name} is words, which cannot be drawn; take a column of numbers")
 
-
-# A picture as plain data: which curves stand against what, and what is marked.
-#
-# Numbers stand over one column, a panel for each unit. Vectors are drawn in a plane with equal axes
-# instead: a position gives the curve of its point, a force its polar diagram about the origin. Two
-# columns of the same unit of length or force are drawn in such a plane, too.
 
 COMPONENTS = "xyz"
 
@@ -102,13 +90,6 @@ class Panel(NamedTuple):
     curves: tuple[PlotCurve, ...]
 
 
-class PlotMark(NamedTuple):
-    """A place of the run's parameter, and what happens there."""
-
-    place: float
-    words: str
-
-
 class Picture(NamedTuple):
     """What is drawn.
 
@@ -118,7 +99,7 @@ class Picture(NamedTuple):
         panels: from top to bottom; in a plane one.
         is_plane: both axes are of one unit and drawn to one scale.
         parameter: what the run goes along.
-        marks: dead centres, branch points and events, by that parameter.
+        marks: dead centres, branch points and events: value of that parameter, and words.
         solved: rows with a position (rows,).
         doubtful: verdicts other than ok of rows that have one: words and rows (rows,).
     """
@@ -128,7 +109,7 @@ class Picture(NamedTuple):
     panels: tuple[Panel, ...]
     is_plane: bool
     parameter: PlotCurve
-    marks: tuple[PlotMark, ...]
+    marks: tuple[tuple[float, str], ...]
     solved: Bools
     doubtful: tuple[tuple[str, Bools], ...]
 
@@ -182,8 +163,10 @@ def _picture(
     is_plane: bool,
 ) -> Picture:
     result = analysis.result
-    found = run_marks(analysis, along.label, along.values)
-    marks = tuple(PlotMark(float(str(mark["x"])), str(mark["text"])) for mark in found)
+    marks = tuple(
+        (float(str(mark["x"])), str(mark["text"]))
+        for mark in run_marks(analysis, along.label, along.values)
+    )
     doubtful = tuple(
         (status.label, result.status == status)
         for status in Status
@@ -208,26 +191,19 @@ def _in_plane(
         )
     units = {curve.unit for curve in drawn}
     if len(units) > 1:
-        found = " and ".join(sorted(units))
-        raise UsageError(f"vectors in {found} do not go into one plane; draw them one by one")
-    first, second = _widest(np.concatenate([curve.values for curve in drawn]))
-    parts = [
-        tuple(
+        listed = " and ".join(sorted(units))
+        raise UsageError(f"vectors in {listed} do not go into one plane; draw them one by one")
+    # a vector of a plane has two components; those without a number come last
+    spreads = [_spread(values) for values in np.concatenate([c.values for c in drawn]).T]
+    first, second = sorted(sorted(range(len(spreads)), key=lambda k: -spreads[k])[:2])
+
+    def components(k: int) -> tuple[PlotCurve, ...]:
+        return tuple(
             PlotCurve(f"{curve.label}.{COMPONENTS[k]}", curve.unit, curve.values[:, k])
             for curve in drawn
         )
-        for k in (first, second)
-    ]
-    return parts[0], parts[1]
 
-
-def _widest(values: NDArray[np.float64]) -> tuple[int, int]:
-    """The two components with the widest spread, in order; those without a number last. A vector
-    of a plane has two."""
-    spreads = [_spread(component) for component in values.T]
-    ranked = sorted(range(len(spreads)), key=lambda k: -spreads[k])
-    first, second = sorted(ranked[:2])
-    return first, second
+    return components(first), components(second)
 
 
 def _spread(values: Floats) -> float:
@@ -235,13 +211,13 @@ def _spread(values: Floats) -> float:
     return float(np.ptp(known)) if known.size else -1.0
 
 
-# The picture of a table: as its `plot:` says, else all its numbers over the run's parameter.
-
-
 def table_picture(
     analysis: Readable, layout: TableLayout, table: Columns, x: str | None = None
 ) -> Picture:
-    """A table of a run; `x`, a label or an expression, goes before what its `plot:` says.
+    """The picture of a table: as its `plot:` says, else all its numbers over the run's parameter.
+
+    Args:
+        x: a label or an expression that takes the place of the one in `plot:`.
 
     Raises:
         UsageError: it has no numbers, or names a column of words.
@@ -251,9 +227,13 @@ def table_picture(
     x = (plot.x if plot else None) if x is None else x
     if plot is not None and plot.y:
         by_label = {column.label: column for column in table.columns}
-        drawn = [column_curve(by_label[label]) for label in plot.y]
+        drawn = [_column_curve(by_label[label]) for label in plot.y]
     else:
-        given = {c.label for c in layout.columns if c.expression.text.strip() in inputs}
-        given.add(parameter_curve(analysis).label if x is None else x)
-        drawn = [curve for curve in numbers_of(table.columns) if curve.label not in given]
+        left_out = {c.label for c in layout.columns if c.expression.text.strip() in inputs}
+        left_out.add(parameter_curve(analysis).label if x is None else x)
+        drawn = [
+            _column_curve(column)
+            for column in table.columns
+            if column.label not in left_out and not isinstance(column.values, Words)
+        ]
     return picture(analysis, table.title or table.name, drawn, x)

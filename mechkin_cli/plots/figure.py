@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Iterator
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.typing import ColorType
 
     from mechkin_cli.plots.curves import Picture, PlotCurve
-    from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.show import Floats
 
 
 _NO_DATES: dict[str, dict[str, None]] = {
@@ -87,7 +86,7 @@ def image(picture: Picture, ending: str) -> bytes:
 
 def _matplotlib() -> Any:
     try:
-        import matplotlib
+        import matplotlib.figure
     except ImportError:
         raise UsageError(
             "pictures are drawn by matplotlib, which is not there: pip install 'mechkin[plot]'"
@@ -95,30 +94,27 @@ def _matplotlib() -> Any:
     return matplotlib
 
 
-def _figure(width: float, height: float) -> Figure:
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), layout="constrained")
+def _figure(height: float) -> Figure:
+    figure: Figure = _matplotlib().figure.Figure(figsize=(_WIDTH, height), layout="constrained")
+    return figure
 
 
 def _over_a_column(picture: Picture) -> Figure:
     count = len(picture.panels)
-    figure = _figure(_WIDTH, _ABOVE + _HEIGHT * count)
+    figure = _figure(_ABOVE + _HEIGHT * count)
     panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     (x,) = picture.x
     over_parameter = x.label == picture.parameter.label
     for axes, panel in zip(panels, picture.panels, strict=True):
         for curve in panel.curves:
             (line,) = axes.plot(x.values, curve.values, label=curve.label)
-            colour = line.get_color()
-            _lone_rows(axes, x.values, curve.values, colour)
-            _doubtful_rows(axes, picture, x.values, curve.values, colour)
+            _single_rows(axes, picture, x.values, curve.values, line.get_color())
             if not over_parameter:
                 _marked_rows(axes, picture, x.values, curve.values)
         if over_parameter:
             _gaps(axes, picture)
-            for mark in picture.marks:
-                axes.axvline(mark.place, color=_MARKS[0], linestyle="--", linewidth=1.0)
+            for place, _ in picture.marks:
+                axes.axvline(place, color=_MARKS[0], linestyle="--", linewidth=1.0)
         names = ", ".join(dict.fromkeys(curve.label for curve in panel.curves))
         alone = len(panel.curves) == 1
         unit = f"[{panel.unit}]" if panel.unit else ""
@@ -132,15 +128,14 @@ def _over_a_column(picture: Picture) -> Figure:
 
 
 def _in_plane(picture: Picture) -> Figure:
-    figure = _figure(_WIDTH, _PLANE)
+    figure = _figure(_PLANE)
     axes = figure.subplots()
     (panel,) = picture.panels
     for x, y in zip(picture.x, panel.curves, strict=True):
         label = _vector_name(x, y)
         (line,) = axes.plot(x.values, y.values, label=label)
         colour = line.get_color()
-        _lone_rows(axes, x.values, y.values, colour)
-        _doubtful_rows(axes, picture, x.values, y.values, colour)
+        _single_rows(axes, picture, x.values, y.values, colour)
         _along(axes, picture, x.values, y.values, colour)
         _marked_rows(axes, picture, x.values, y.values)
     axes.set_aspect("equal", adjustable="datalim")
@@ -169,17 +164,14 @@ def _vector_name(x: PlotCurve, y: PlotCurve) -> str:
     return stem if stem and x.label.rpartition(".")[0] == stem else y.label
 
 
-def _lone_rows(axes: Axes, x: Floats, y: Floats, colour: ColorType) -> None:
-    """Rows between two gaps, of which a line shows nothing."""
+def _single_rows(axes: Axes, picture: Picture, x: Floats, y: Floats, colour: ColorType) -> None:
+    """Rows between two gaps, of which a line shows nothing, and rows with a doubtful verdict."""
     known = np.isfinite(x) & np.isfinite(y)
     before = np.concatenate([[False], known[:-1]])
     behind = np.concatenate([known[1:], [False]])
-    lone = known & ~before & ~behind
-    if lone.any():
-        axes.plot(x[lone], y[lone], ".", color=colour)
-
-
-def _doubtful_rows(axes: Axes, picture: Picture, x: Floats, y: Floats, colour: ColorType) -> None:
+    alone = known & ~before & ~behind
+    if alone.any():
+        axes.plot(x[alone], y[alone], ".", color=colour)
     for (_, rows), shape in zip(picture.doubtful, _DOUBTFUL, strict=False):
         axes.plot(x[rows], y[rows], shape, markersize=5, markerfacecolor="none", color=colour)
 
@@ -195,23 +187,18 @@ def _along(axes: Axes, picture: Picture, x: Floats, y: Floats, colour: ColorType
 
 def _gaps(axes: Axes, picture: Picture) -> None:
     """Shades the rows without a position."""
-    for first, last in _stretches(~picture.solved):
-        places = picture.parameter.values
-        start, end = places[max(first - 1, 0)], places[min(last + 1, places.size - 1)]
+    places = picture.parameter.values
+    edges = np.diff(np.concatenate([[0], (~picture.solved).astype(np.int8), [0]])).nonzero()[0]
+    for first, behind in edges.reshape(-1, 2).tolist():
+        start, end = places[max(first - 1, 0)], places[min(behind, places.size - 1)]
         axes.axvspan(start, end, color=_GAP, alpha=_GAP_ALPHA, linewidth=0.0)
-
-
-def _stretches(rows: Bools) -> Iterator[tuple[int, int]]:
-    """First and last of the rows that stand together."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], rows.astype(np.int8), [0]])))
-    yield from ((int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True))
 
 
 def _marked_rows(axes: Axes, picture: Picture, x: Floats, y: Floats) -> None:
     """The row with a position that is next to each mark."""
     solved = np.flatnonzero(picture.solved)
-    for mark in picture.marks if solved.size else ():
-        row = solved[np.argmin(np.abs(picture.parameter.values[solved] - mark.place))]
+    for place, _ in picture.marks if solved.size else ():
+        row = solved[np.argmin(np.abs(picture.parameter.values[solved] - place))]
         axes.plot(x[row], y[row], "X", color=_MARKS[0], markersize=7)
 
 
@@ -224,7 +211,7 @@ def _legend(axes: Axes, picture: Picture, over_parameter: bool, *, with_marks: b
         entries.append(_entry(words, color=_MARKS[1], marker=shape, markerfacecolor="none"))
     if with_marks:
         style = {"linestyle": "--"} if over_parameter else {"marker": "X"}
-        entries += [_entry(mark.words, color=_MARKS[0], **style) for mark in picture.marks]
+        entries += [_entry(words, color=_MARKS[0], **style) for _, words in picture.marks]
         if not picture.solved.all() and over_parameter:
             entries.append(Patch(color=_GAP, alpha=_GAP_ALPHA, label="no position"))
     if entries:
@@ -232,7 +219,6 @@ def _legend(axes: Axes, picture: Picture, over_parameter: bool, *, with_marks: b
 
 
 def _entry(words: str, **style: Any) -> Any:
-    """A line of a legend."""
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **{"linestyle": "", **style}, label=words)

@@ -1,4 +1,4 @@
-"""A session of a free motion, and its integration by the kernel (kernel/core/response/charted_motion.hpp).
+"""A session of a free motion, and its integration by the kernel (kernel/core/response).
 
 The plan of a free motion has a chart in place of the free inputs (`free_session`); coordinates that
 are driven along it go by their laws of time (`driven_laws`).

@@ -1,4 +1,7 @@
-"""First-order sensitivities of quantities to parameters, over the rows of a run."""
+"""First-order sensitivities of quantities to parameters, over the rows of a run.
+
+In reading order: slopes that mislead, rows by their places, the result, the call.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +13,13 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.analysis import run_name
-from mechkin_cli.arguments import a_setting, a_text, texts
+from mechkin_cli.arguments import Setting, a_setting, a_text, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.errors import NotRepeated, reason_of
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.mechanism import read_for
-from mechkin_cli.sensitivities.slopes import Shifting, Sizes, Slope, slope_of
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.sensitivities.slopes import Shifting, Slope, slope_of
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.tables import row_texts
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
@@ -32,14 +35,11 @@ if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.units import Dimension
 
 
-# Where slopes mislead: steep ones that soon bend, as beside a dead centre.
-
-
-def misleading(s: Sensitivities) -> list[str]:
-    """A sentence for each quantity with such a slope, of the one that bends soonest."""
+def bending_notes(s: Sensitivities) -> list[str]:
+    """Notes on slopes that mislead: steep ones that soon bend, as beside a dead centre. One for
+    each quantity, on the slope that bends soonest."""
     notes = []
     for quantity in s.quantities:
         part, row, name = min(_soonest(s, quantity, name) for name in s.parameters)
@@ -64,9 +64,6 @@ def _soonest(s: Sensitivities, quantity: str, name: str) -> tuple[float, int, st
     steep = known & (sizes >= np.median(sizes[known]))
     row = int(np.where(steep, reach, np.inf).argmin())
     return float(reach[row]) / s.scale_of(name), row, name
-
-
-# Rows by the places at which they stand.
 
 
 class Along:
@@ -148,7 +145,7 @@ class Sensitivities(Listed):
 
     Attributes:
         quantities, parameters: their names, in order.
-        rows: numbers of the run's rows that are told, from 0 (rows,).
+        rows: numbers of the run's rows that were chosen, from 0 (rows,).
         place: where they stand: the input that moves, or time, in the file's units (rows,).
         along: the name of that.
     """
@@ -170,11 +167,12 @@ class Sensitivities(Listed):
         chosen = np.zeros(analysis.rows, dtype=np.bool_)
         chosen[self.rows] = True
         self._expressions = {text: expression_of(analysis, text) for text in self.quantities}
+        problem = analysis.result.problem
         self._dimensions = {
-            text: _dimension(analysis.result.problem, expression)
+            text: expression.evaluate(sample_of(problem), problem.units).dimension
             for text, expression in self._expressions.items()
         }
-        known = analysis.result.problem.quantities()
+        known = problem.quantities()
         asked = [n for e in self._expressions.values() for n in used_names(e, known)]
         self._shifting = Shifting(analysis, chosen, asked)
         self._values: dict[str, Floats] = {}
@@ -188,12 +186,12 @@ class Sensitivities(Listed):
         Raises:
             UsageError: one that was not asked for.
         """
-        return self._told(pair, "slope")
+        return self._derivative(pair, "slope")
 
     def curvature(self, quantity: str, parameter: str) -> Floats:
         """The second derivative, shaped as the first: in units of the quantity by the parameter's
         squared. Half of it times a change squared is what the slope leaves out."""
-        return self._told((quantity, parameter), "curvature")
+        return self._derivative((quantity, parameter), "curvature")
 
     @property
     def texts(self) -> dict[str, str]:
@@ -207,27 +205,27 @@ class Sensitivities(Listed):
 
     def verdict(self, quantity: str, parameter: str) -> NDArray[Any]:
         """A word for each row (rows,): `ok`, the row's own verdict, or one of `SENTENCES`."""
-        found = self._found((quantity, parameter))
+        slope = self._slope((quantity, parameter))
         words = np.array([Status(code).label for code in self._analysis.result.status[self.rows]])
         words = words.astype(object)
         solved = self._analysis.result.solved[self.rows]
-        if isinstance(found, str):
+        if isinstance(slope, str):
             words[solved] = NOT_REPEATED
             return words.astype(str)
         value = self.value(quantity)
         values = value[:, None] if value.ndim == 1 else value
-        slopes = found.slope[:, self.rows]
+        slopes = slope.slope[:, self.rows]
         words[solved & ~np.isfinite(slopes).all(axis=0)] = NOT_REPEATED
         words[solved & ~np.isfinite(values).all(axis=1)] = EMPTY
-        words[solved & self._any(found.bent)] = BENT
-        words[solved & found.opened[self.rows]] = NOT_CLOSED
-        words[solved & self._any(found.lost)] = NO_POSITION
+        words[solved & self._any(slope.bent)] = BENT
+        words[solved & slope.opened[self.rows]] = NOT_CLOSED
+        words[solved & self._any(slope.lost)] = NO_POSITION
         return words.astype(str)
 
     def why(self, quantity: str, parameter: str) -> str:
         """Why there are none at all, as `errors.csv` says it; "" where there are."""
-        found = self._found((quantity, parameter))
-        return found if isinstance(found, str) else ""
+        slope = self._slope((quantity, parameter))
+        return slope if isinstance(slope, str) else ""
 
     def unit(self, quantity: str, parameter: str) -> str:
         """The unit of a sensitivity: `deg/in`."""
@@ -250,7 +248,7 @@ class Sensitivities(Listed):
 
     def reach(self, quantity: str, parameter: str) -> Floats:
         """How far the parameter may change until what the slope leaves out is a tenth of what it
-        tells (rows,), in the parameter's unit: 0.2 |slope / curvature|; 0 where the slope is zero,
+        says (rows,), in the parameter's unit: 0.2 |slope / curvature|; 0 where the slope is zero,
         infinite where nothing bends."""
         slope, curvature = self[quantity, parameter], self.curvature(quantity, parameter)
         if slope.ndim > 1:
@@ -262,16 +260,14 @@ class Sensitivities(Listed):
     @property
     def listing(self) -> Listing:
         """The largest sensitivity of each pair, where, and what is missing."""
-        rows = []
-        for quantity in self.quantities:
-            for name in self.parameters:
-                rows.append((quantity, name, *self._largest(quantity, name)))
+        pairs = [(quantity, name) for quantity in self.quantities for name in self.parameters]
+        rows = tuple((*pair, *self._largest(*pair)) for pair in pairs)
         head = (
             f"Sensitivities of {self.model.name}: {len(self.quantities)} quantities, "
             f"{len(self.parameters)} parameters, {self.rows.size} rows"
         )
-        labels = ("quantity", "parameter", "largest", "unit", f"at {self.along}", "not told")
-        return Listing(head, labels, tuple(rows), tuple(misleading(self)))
+        labels = ("quantity", "parameter", "largest", "unit", f"at {self.along}", "missing")
+        return Listing(head, labels, rows, tuple(bending_notes(self)))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A line for each row: the place, then a column for each pair, `d O4.theta / d P1`, of a
@@ -317,40 +313,35 @@ class Sensitivities(Listed):
         length, a radian, else its own value."""
         return self._shifting.scale_of(parameter)
 
-    def _largest_cell(self, text: str) -> float:
-        values = self._cells(text)
-        return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
-
-    def _usual(self, text: str) -> float:
-        """What is large for a position in this mechanism, in the file's units; 0 for others."""
-        dimension, result = self._dimensions[text], self._analysis.result
-        one = {LENGTH: result.session.layout.length, ANGLE: 1.0, DIMENSIONLESS: 1.0}.get(
-            dimension, 0.0
-        )
-        return float(result.units.from_si(one, dimension))
+    def _sizes(self, text: str) -> tuple[float, float]:
+        """The largest cell of a quantity, and what is large for a position in this mechanism, in
+        the file's units; 0 for others."""
+        values, dimension, result = self._cells(text), self._dimensions[text], self._analysis.result
+        positions = {LENGTH: result.session.layout.length, ANGLE: 1.0, DIMENSIONLESS: 1.0}
+        large = result.units.from_si(positions.get(dimension, 0.0), dimension)
+        return float(np.abs(values[np.isfinite(values)]).max(initial=0.0)), float(large)
 
     def _cells(self, text: str) -> Floats:
-        """A quantity in the chosen rows; kept."""
+        """A quantity in the chosen rows."""
         if text not in self._values:
-            found: Floats = self._analysis[self._expressions[text].text]
-            self._values[text] = found[self.rows]
+            self._values[text] = self._analysis[self._expressions[text].text][self.rows]
         return self._values[text]
 
     def _any(self, where: Bools) -> Bools:
         return np.asarray(where[:, self.rows].any(axis=0), dtype=np.bool_)
 
-    def _told(self, pair: tuple[str, str], what: str) -> Floats:
-        found = self._found(pair)
+    def _derivative(self, pair: tuple[str, str], what: str) -> Floats:
+        slope = self._slope(pair)
         value = self.value(pair[0])
-        if isinstance(found, str):
+        if isinstance(slope, str):
             return np.full(value.shape, np.nan)
-        told: Floats = getattr(found, what)[:, self.rows].copy()
-        for hidden in (self._any(found.bent), self._any(found.lost), found.opened[self.rows]):
-            told[:, hidden] = np.nan
-        told = told.T if value.ndim > 1 else told[0]
-        return np.where(np.isfinite(value), told, np.nan)
+        values: Floats = getattr(slope, what)[:, self.rows].copy()
+        for hidden in (self._any(slope.bent), self._any(slope.lost), slope.opened[self.rows]):
+            values[:, hidden] = np.nan
+        values = values.T if value.ndim > 1 else values[0]
+        return np.where(np.isfinite(value), values, np.nan)
 
-    def _found(self, pair: tuple[str, str]) -> Slope | str:
+    def _slope(self, pair: tuple[str, str]) -> Slope | str:
         self._known(pair)
         return self._slopes[pair]
 
@@ -363,7 +354,6 @@ class Sensitivities(Listed):
                 )
 
     def _measure(self, name: str) -> None:
-        """Slopes of all quantities with one parameter."""
         try:
             sides = self._shifting.sides(name)
         except NotRepeated as reason:
@@ -379,12 +369,11 @@ class Sensitivities(Listed):
         for text, expression in self._expressions.items():
             turned = self._dimensions[text] == ANGLE
             try:
-                sizes = Sizes(self._largest_cell(text), self._usual(text))
-                found = slope_of(expression, name, sides, self._shifting, turned, sizes)
+                self._slopes[text, name] = slope_of(
+                    expression, name, sides, self._shifting, turned, self._sizes(text)
+                )
             except NotRepeated as reason:
                 self._slopes[text, name] = str(reason)
-            else:
-                self._slopes[text, name] = found
 
 
 def used_names(expression: Expression, known: Any) -> list[str]:
@@ -402,19 +391,13 @@ def expression_of(analysis: Analysis, text: str) -> Expression:
     """
     if text.strip() in row_texts(analysis.run):
         raise UsageError(f"{text} is words, which have no sensitivity")
-    columns = [
-        column
-        for layout in analysis.model.built.tables_of(analysis.run)
-        for column in layout.columns
-        if column.label == text
-    ]
-    for column in columns[:1]:
-        return column.expression
-    return analysis.result.problem.definitions.parse(text)
+    return _parsed(analysis.model, analysis.result.problem, analysis.run, text)
 
 
-def _dimension(problem: Problem, expression: Expression) -> Dimension:
-    return expression.evaluate(sample_of(problem), problem.units).dimension
+def _parsed(model: Solvable, problem: Problem, run: str, text: str) -> Expression:
+    columns = (column for layout in model.built.tables_of(run) for column in layout.columns)
+    column = next((column for column in columns if column.label == text), None)
+    return problem.definitions.parse(text) if column is None else column.expression
 
 
 def sensitivities(
@@ -434,10 +417,7 @@ def sensitivities(
     read: list[str] = []
     for text in names:
         if which == SWEEP and text.strip() not in row_texts(which):
-            layouts = [c for t in model.built.tables_of(which) for c in t.columns]
-            labelled = [c.expression for c in layouts if c.label == text]
-            expression = labelled[0] if labelled else problem.definitions.parse(text)
-            read += used_names(expression, known)
+            read += used_names(_parsed(model, problem, which, text), known)
     if which == SWEEP:
         analysis = model.analyze(read, tables=[], threads=threads)
     else:
@@ -456,9 +436,9 @@ def chosen_parameters(model: Solvable, names: Iterable[str] | None) -> tuple[str
         raise UsageError(f"{model.name} has no parameters; write parameters: into the file")
     if names is None:
         return tuple(known)
-    found = texts("parameters", names, '["P1"]')
-    for name in found:
+    chosen = texts("parameters", names, '["P1"]')
+    for name in chosen:
         if name not in known:
             hint = nearest_hint(name, list(known)) or f"parameters are {', '.join(known)}"
             raise UsageError(f"there is no parameter {name[:LONGEST_NAME]}; {hint}")
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(chosen))

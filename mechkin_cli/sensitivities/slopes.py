@@ -3,6 +3,10 @@
 With values f0 at p, f- and f+ at distances b below and a above, d- = (f0 - f-)/b and
 d+ = (f+ - f0)/a, the parabola through the three has at p the slope (a d- + b d+)/(a + b) and the
 curvature 2 (d+ - d-)/(a + b); all in double-double.
+
+Where the building decides nothing otherwise, the converged rows are closed again with the tape of
+the file replayed for the shifted parameter. Else, and for responses, the model is made and run
+again with both values, and each run is repeated (`Shifting`).
 """
 
 from __future__ import annotations
@@ -49,39 +53,41 @@ class Slope(NamedTuple):
     bent: Bools
 
 
-class Sizes(NamedTuple):
-    """What a column is judged by, in the file's units.
-
-    Attributes:
-        cells: the largest of its numbers in doubles.
-        usual: what is large for anything of its dimension in this mechanism; 0 where not known.
-    """
-
-    cells: float
-    usual: float
-
-
 def slope_of(
-    expression: Expression, name: str, sides: Sides, shifting: Shifting, turned: bool, sizes: Sizes
+    expression: Expression,
+    name: str,
+    sides: Sides,
+    shifting: Shifting,
+    turned: bool,
+    sizes: tuple[float, float],
 ) -> Slope:
-    """Slope and curvature of an expression; `turned`: it is an angle, told up to whole turns.
+    """Slope and curvature of an expression.
+
+    Args:
+        turned: it is an angle, known up to whole turns.
+        sizes: in the file's units: the largest of its numbers in doubles, and what is large for
+            anything of its dimension in this mechanism; 0 where not known.
 
     Raises:
         NotRepeated: why there are none.
     """
     parts = _values(expression, sides)
-    size = max(_largest(part[1].high) for part in parts)
-    turn = _turn(shifting, turned)
-    found = [_of_part(*part, sides, turn, size, sizes) for part in parts]
-    slopes, curvatures, lost, bent, leaping = (np.stack(part) for part in zip(*found, strict=True))
+    finite = (part[1].high[np.isfinite(part[1].high)] for part in parts)
+    size = max(float(np.abs(values).max(initial=0.0)) for values in finite)
+    units: UnitSystem = shifting.model.problem.units
+    turn = DoubleDoubles.of_fraction(2 * PI / units.unit(ANGLE).factor) if turned else None
+    rows = [_of_part(*part, sides, turn, size, sizes) for part in parts]
+    slopes, curvatures, lost, bent, leaping = (np.stack(part) for part in zip(*rows, strict=True))
     opened = sides.opened()
     lost |= sides.lost()
     if leaping.any():
         nearer = shifting.sides(name, 0.25)
-        others = [
-            _of_part(*part, nearer, turn, size, sizes)[0] for part in _values(expression, nearer)
-        ]
-        bent |= leaping & ~_agree(slopes, np.stack(others))
+        others = np.stack(
+            [_of_part(*part, nearer, turn, size, sizes)[0] for part in _values(expression, nearer)]
+        )
+        with np.errstate(invalid="ignore"):
+            limit = tolerances.LEAP_AGREES * np.fmax(np.abs(slopes), np.abs(others))
+            bent |= leaping & ~(np.abs(slopes - others) <= limit)
     return Slope(slopes, curvatures, lost, opened, bent)
 
 
@@ -93,11 +99,6 @@ def _values(
     return list(zip(below, own, above, strict=True))
 
 
-def _turn(shifting: Shifting, turned: bool) -> DoubleDoubles | None:
-    units: UnitSystem = shifting.model.problem.units
-    return DoubleDoubles.of_fraction(2 * PI / units.unit(ANGLE).factor) if turned else None
-
-
 def _of_part(
     below: DoubleDoubles,
     own: DoubleDoubles,
@@ -105,9 +106,10 @@ def _of_part(
     sides: Sides,
     turn: DoubleDoubles | None,
     size: float,
-    sizes: Sizes,
+    sizes: tuple[float, float],
 ) -> tuple[Any, ...]:
     """Slope, curvature, and where rows are lost, bent, or change by much."""
+    cells, large = sizes
     with np.errstate(all="ignore"):
         down, up = _within_a_turn(own - below, turn), _within_a_turn(above - own, turn)
         left, right = down / sides.below, up / sides.above
@@ -115,16 +117,16 @@ def _of_part(
         slope = ((left * sides.above + right * sides.below) / both).high
         curvature = ((right - left) * 2.0 / both).high
         bend = np.abs((right - left).high)
-        is_zero = size <= tolerances.ZERO_BUT_FOR_ROUNDING * sizes.cells
-        noise = tolerances.ZERO_ROUNDING * sizes.cells if is_zero else 0.0
+        is_zero = size <= tolerances.ZERO_BUT_FOR_ROUNDING * cells
+        noise = tolerances.ZERO_ROUNDING * cells if is_zero else 0.0
         # a position that is zero throughout is known as well as those that are not
-        noise = max(noise, tolerances.BENT_ROUNDING * max(size, sizes.usual))
+        noise = max(noise, tolerances.BENT_ROUNDING * max(size, large))
         rounding = noise / float(sides.below.high)
         usual = _usual(slope)
         steep = np.fmax(np.abs(slope), max(usual, size / sides.scale))
         bent = bend > tolerances.BENT * steep + rounding
         change = np.fmax(np.abs(down.high), np.abs(up.high))
-        leaping = (change > max(tolerances.LEAP * max(size, sizes.cells), noise)) & ~bent
+        leaping = (change > max(tolerances.LEAP * max(size, cells), noise)) & ~bent
     is_lost = np.isfinite(own.high) & ~(np.isfinite(below.high) & np.isfinite(above.high))
     return slope, curvature, is_lost, bent, leaping
 
@@ -139,26 +141,9 @@ def _within_a_turn(change: DoubleDoubles, turn: DoubleDoubles | None) -> DoubleD
 
 def _usual(values: Floats) -> float:
     """The median of the magnitudes, which one steep row does not move."""
-    found = np.abs(values[np.isfinite(values)])
-    return float(np.median(found)) if found.size else 0.0
+    sizes = np.abs(values[np.isfinite(values)])
+    return float(np.median(sizes)) if sizes.size else 0.0
 
-
-def _largest(values: Floats) -> float:
-    return float(np.abs(values[np.isfinite(values)]).max(initial=0.0))
-
-
-def _agree(slopes: Floats, others: Floats) -> Bools:
-    sizes = np.fmax(np.abs(slopes), np.abs(others))
-    with np.errstate(invalid="ignore"):
-        found: Bools = np.abs(slopes - others) <= tolerances.LEAP_AGREES * sizes
-    return found
-
-
-# A run with one of its parameters a little less and a little more, in double-double.
-#
-# Where nothing that the building decides is decided otherwise, the converged rows are closed again
-# with the tape of the file replayed for the shifted parameter. Else, and for responses, the model
-# is made and run anew with both values, and each run is repeated.
 
 ONE_SIDE = "its file holds no value next to this one on both sides"
 OTHER_ROWS = "another value has other rows"
@@ -169,7 +154,7 @@ class Sides:
     """The rows for three values of a parameter.
 
     Attributes:
-        below, above: how far the values next to it are away (), in the file's units, both positive.
+        below, above: how far away the values next to it are, in the file's units, both positive.
         scale: of the parameter, of which the distances are small parts, in the file's units.
         rows: of the lower value, of its own, of the higher one.
         opened: (rows,) whether closure is lost with the parameter changed.
@@ -185,12 +170,12 @@ class Sides:
 
 
 class Shifting:
-    """What shifts the parameters of a run.
+    """Runs with one of the parameters a little less and a little more, in double-double.
 
     Args:
         analysis: the run.
         chosen: rows that are wanted (rows,).
-        asked: quantities that are wanted, so that a run of the model anew follows their loops.
+        asked: quantities that are wanted, so that another run of the model follows their loops.
     """
 
     def __init__(self, analysis: Analysis, chosen: Bools, asked: Sequence[str]) -> None:
@@ -213,12 +198,11 @@ class Shifting:
             precise = self._precise(name, amount)
             if precise is not None:
                 return self._replayed(precise, name, amount)
-            return self._anew(name, amount)
+            return self._run_again(name, amount)
         except (TraceLost, LookupError, NotEnclosed) as lost:
             raise NotRepeated(str(lost)) from None
 
     def _amount(self, name: str) -> Fraction:
-        """The shift in SI."""
         part = tolerances.SHIFT if self.is_sweep else tolerances.SHIFT_OF_RESPONSE
         return Fraction(part) * Fraction(self._scale(name))
 
@@ -237,7 +221,7 @@ class Shifting:
         return float(self._in_file_units(name, Fraction(self._scale(name))).high)
 
     def _precise(self, name: str, amount: Fraction) -> ShiftingPrecise | None:
-        """What replays the shift; None where the model has to be made anew."""
+        """What replays the shift; None where the model has to be made again."""
         if not self.is_sweep:
             return None
         try:
@@ -255,9 +239,9 @@ class Shifting:
             self._own[True] = repeated(Fraction(0))
         rows = repeated(-amount), self._own[True], repeated(amount)
         away = self._in_file_units(name, amount)
-        return Sides(away, away, self.scale_of(name), rows, *self._whether(rows))
+        return Sides(away, away, self.scale_of(name), rows, *self._checks(rows))
 
-    def _anew(self, name: str, amount: Fraction) -> Sides:
+    def _run_again(self, name: str, amount: Fraction) -> Sides:
         problem = self.model.problem
         value = Fraction(float(problem.parameters[name].value))  # type: ignore[arg-type]
         if False not in self._own:
@@ -266,39 +250,37 @@ class Shifting:
         exact: Any = own.wide.parameters[name].value
         around, away = [], []
         for side in (-1, 1):
-            wanted = float(value + side * amount)
-            analysis = self._run(name, wanted)
+            analysis = self._run(name, float(value + side * amount))
             around.append(repetition(analysis.result))
-            found = Fraction(float(analysis.model.problem.parameters[name].value))  # type: ignore[arg-type]
-            gap = side * (found - Fraction(float(exact.high)) - Fraction(float(exact.low)))
+            shifted = Fraction(float(analysis.model.problem.parameters[name].value))  # type: ignore[arg-type]
+            gap = side * (shifted - Fraction(float(exact.high)) - Fraction(float(exact.low)))
             away.append(self._in_file_units(name, gap))
         rows = around[0], own, around[1]
-        return Sides(away[0], away[1], self.scale_of(name), rows, *self._whether(rows))
+        return Sides(away[0], away[1], self.scale_of(name), rows, *self._checks(rows))
 
     def _run(self, name: str, value: float) -> Analysis:
         """The run with another value in SI."""
         known = self.model.problem.parameters[name]
-        given = float(self.model.problem.units.from_si(value, known.dimension))
+        in_units = float(self.model.problem.units.from_si(value, known.dimension))
         try:
-            varied = with_parameters(self.model, {name: given})
-            run = self.analysis.run
+            varied = with_parameters(self.model, {name: in_units})
             if self.is_sweep:
-                found = varied.analyze(self.asked, tables=[])
+                analysis = varied.analyze(self.asked, tables=[])
             else:
-                found = varied.respond(run, tables=[])
+                analysis = varied.respond(self.analysis.run, tables=[])
         except (InvalidFile, UsageError):
             raise NotRepeated(ONE_SIDE) from None
-        if found.result.rows != self.result.rows:
+        if analysis.result.rows != self.result.rows:
             raise NotRepeated(OTHER_ROWS)
-        return found
+        return analysis
 
     def _in_file_units(self, name: str, amount: Fraction) -> DoubleDoubles:
         dimension = self.model.problem.parameters[name].dimension
         factor = self.model.problem.units.unit(dimension).factor
         return DoubleDoubles.of_fraction(amount / factor)
 
-    def _whether(self, rows: tuple[Repeated, ...]) -> tuple[Callable[[], Bools], ...]:
-        """Questions to the rows that are closed for them at most once."""
+    def _checks(self, rows: tuple[Repeated, ...]) -> tuple[Callable[[], Bools], ...]:
+        """`Sides.opened` and `Sides.lost`: the rows are closed for them at most once."""
         return cache(lambda: self._opened(rows)), cache(lambda: self._lost(rows))
 
     def _lost(self, rows: tuple[Repeated, ...]) -> Bools:
@@ -306,8 +288,7 @@ class Shifting:
         if not self.is_sweep:
             return np.zeros(self.result.rows, dtype=np.bool_)
         below, own, above = (np.isfinite(one.wide.states.high).all(axis=0) for one in rows)
-        lost: Bools = np.asarray(own & ~(below & above), dtype=np.bool_)
-        return lost
+        return np.asarray(own & ~(below & above), dtype=np.bool_)
 
     def _opened(self, rows: tuple[Repeated, ...]) -> Bools:
         """Rows whose residual grows with the shift: their loops do not close beside it."""
@@ -316,8 +297,7 @@ class Shifting:
         below, own, above = (_residual(one) for one in rows)
         limit = tolerances.CLOSURE_LOST * tolerances.SHIFT
         with np.errstate(invalid="ignore"):
-            grown: Bools = np.fmax(np.abs(below - own), np.abs(above - own)) > limit
-        return grown
+            return np.asarray(np.fmax(np.abs(below - own), np.abs(above - own)) > limit)
 
 
 def _residual(repeated: Repeated) -> Floats:

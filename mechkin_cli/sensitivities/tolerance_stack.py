@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.arguments import a_setting, a_whole_number, refusal, shown
+from mechkin_cli.arguments import Setting, a_setting, a_whole_number, refusal, shown
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters
 
 if TYPE_CHECKING:
@@ -106,61 +106,54 @@ class Tolerances(Listed):
 
     def worst(self, quantity: str) -> tuple[Floats, Floats]:
         """The least and the largest value to first order, all parameters at their worst."""
-        least, most = (
-            np.stack([self._slope(quantity, n) * getattr(b, end) for n, b in self.bands.items()])
-            for end in ("least", "most")
-        )
-        value = self.nominal(quantity)
-        return (
-            value + np.minimum(least, most).sum(axis=0),
-            value + np.maximum(least, most).sum(axis=0),
-        )
+        slopes, value = self._slopes(quantity), self.nominal(quantity)
+        least = np.stack([g * b.least for g, b in slopes])
+        most = np.stack([g * b.most for g, b in slopes])
+        low, high = (end(least, most).sum(axis=0) for end in (np.minimum, np.maximum))
+        return value + low, value + high
 
     def root_sum_square(self, quantity: str) -> tuple[Floats, Floats]:
         """The same by the root of the sum of the squares, about the middle of the bands."""
-        effects = [self._slope(quantity, n) for n in self.bands]
-        bands = self.bands.values()
-        middle = sum(g * b.middle for g, b in zip(effects, bands, strict=True))
-        half = np.sqrt(sum((g * b.half) ** 2 for g, b in zip(effects, bands, strict=True)))
+        slopes = self._slopes(quantity)
+        middle = sum(g * b.middle for g, b in slopes)
+        half = np.sqrt(sum((g * b.half) ** 2 for g, b in slopes))
         value = self.nominal(quantity) + middle
         return value - half, value + half
 
     def scatter(self, quantity: str) -> Floats:
         """The standard deviation to first order."""
-        parts = [(self._slope(q, n) * b.half) ** 2 for q, n, b in self._each(quantity)]
-        found: Floats = np.sqrt(np.sum(parts, axis=0)) / self._sigmas
-        return found
+        parts = [(g * b.half) ** 2 for g, b in self._slopes(quantity)]
+        return np.asarray(np.sqrt(np.sum(parts, axis=0)) / self._sigmas)
 
     def shares(self, quantity: str) -> dict[str, Floats]:
         """What part of the square of the scatter each parameter makes (0 to 1), by name; the
         parameters in falling order of their share where the scatter is largest."""
-        parts = {n: (self._slope(q, n) * b.half) ** 2 for q, n, b in self._each(quantity)}
-        total = np.sum(list(parts.values()), axis=0)
+        parts = [(g * b.half) ** 2 for g, b in self._slopes(quantity)]
+        total = np.sum(parts, axis=0)
         with np.errstate(invalid="ignore"):
-            found = {name: part / total for name, part in parts.items()}
+            shares = {n: part / total for n, part in zip(self.bands, parts, strict=True)}
         row = self._widest(quantity)
-        order = sorted(found, key=lambda name: -float(np.nan_to_num(found[name][row])))
-        return {name: found[name] for name in order}
+        order = sorted(shares, key=lambda name: -float(np.nan_to_num(shares[name][row])))
+        return {name: shares[name] for name in order}
 
     def left_out(self, quantity: str) -> Floats:
         """What the slopes leave out: half the curvatures times the squared ends of the bands, added
         up, in parts of half the width between the worst cases."""
         second = [
-            0.5 * np.abs(self.slopes.curvature(q, n)) * max(abs(b.least), abs(b.most)) ** 2
-            for q, n, b in self._each(quantity)
+            0.5 * np.abs(self.slopes.curvature(quantity, n)) * max(abs(b.least), abs(b.most)) ** 2
+            for n, b in self.bands.items()
         ]
         low, high = self.worst(quantity)
         with np.errstate(divide="ignore", invalid="ignore"):
-            part: Floats = np.sum(second, axis=0) / (0.5 * (high - low))
-        return part
+            return np.asarray(np.sum(second, axis=0) / (0.5 * (high - low)))
 
     def misleads(self, quantity: str) -> Bools:
         """Rows whose stack is not to be trusted: more than a tenth is left out, a sample or an end
         of a band has no position, or there is no slope."""
         part = self.left_out(quantity)
         missing = ~np.isfinite(self.scatter(quantity))
-        found: Bools = missing | (part > tolerances.LINEAR) | (self.sampled(quantity).lost > 0)
-        return found | (self.lost_ends(quantity) > 0)
+        lost = (self.sampled(quantity).lost > 0) | (self.lost_ends(quantity) > 0)
+        return np.asarray(missing | (part > tolerances.LINEAR) | lost)
 
     def sampled(self, quantity: str) -> Sampled:
         """Mean and standard deviation of the samples, with their own standard errors."""
@@ -187,10 +180,10 @@ class Tolerances(Listed):
         if not 0.0 <= part <= 1.0:
             raise UsageError(f"part: expected a number from 0 to 1, not {shown(part)}")
         values = self.drawn(quantity)
-        found: Floats = np.full(values.shape[1], np.nan)
+        quantiles = np.full(values.shape[1], np.nan)
         some = np.isfinite(values).any(axis=0)
-        found[some] = np.nanquantile(values[:, some], part, axis=0)
-        return found
+        quantiles[some] = np.nanquantile(values[:, some], part, axis=0)
+        return quantiles
 
     def drawn(self, quantity: str) -> Floats:
         """The quantity of every sample (samples, rows)."""
@@ -271,26 +264,19 @@ class Tolerances(Listed):
             )
         return notes
 
-    def _each(self, quantity: str) -> list[tuple[str, str, Band]]:
-        return [(quantity, name, band) for name, band in self.bands.items()]
-
-    def _slope(self, quantity: str, name: str) -> Floats:
-        return self.slopes[quantity, name]
+    def _slopes(self, quantity: str) -> list[tuple[Floats, Band]]:
+        return [(self.slopes[quantity, name], band) for name, band in self.bands.items()]
 
     def _widest(self, quantity: str) -> int:
-        """The row that scatters most."""
         return int(np.nan_to_num(self.scatter(quantity), nan=-1.0).argmax())
 
     def _runs(self, quantity: str) -> Floats:
-        text = self.slopes.texts[quantity]
-        found: Floats = self._varied[text][:, self.slopes.rows]
-        return found
+        return np.asarray(self._varied[self.slopes.texts[quantity]][:, self.slopes.rows])
 
     @cached_property
     def _varied(self) -> Any:
         """All samples, then the ends of the bands, one parameter at a time."""
-        unit = draws(self._method, self.samples, len(self.bands), self._seed)
-        points = unit.stretch(0, self.samples)
+        points = draws(self._method, self.samples, len(self.bands), self._seed)(0, self.samples)
         ends = 2 * len(self.bands)
         values: dict[str, Floats] = {}
         for number, (name, band) in enumerate(self.bands.items()):

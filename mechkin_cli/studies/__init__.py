@@ -6,18 +6,19 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.studies.results import StudyFiles as StudyFiles, StudyResults as StudyResults
+    from mechkin_cli.studies.results import (
+        Spread as Spread,
+        StudyFiles as StudyFiles,
+        StudyResults as StudyResults,
+    )
     from mechkin_cli.studies.source import open_study as open_study
     from mechkin_cli.studies.study import Study as Study, Workers as Workers, study_of as study_of
     from mechkin_cli.studies.workers import end_without_warnings as end_without_warnings
 
-FORMATS = ("csv", "parquet")
-"""What results are written as; here, since a shell that asks for them shall not wait for more."""
-
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "results": ["StudyFiles", "StudyResults"],
+        "results": ["Spread", "StudyFiles", "StudyResults"],
         "source": ["open_study"],
         "study": ["Study", "Workers", "study_of"],
         "workers": ["end_without_warnings"],

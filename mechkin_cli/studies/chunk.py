@@ -1,4 +1,4 @@
-"""What is kept of a stretch of a study's variants: `Model.vary`, and the rows made into records."""
+"""A stretch of a study's variants: `Model.vary`, and its rows made into records."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.studies.formats import Heading, Records, empty_values
+from mechkin_cli.studies.formats import Heading, Records, Values, empty_values
 from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.variants import vary, with_parameters
@@ -22,11 +22,8 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Solvable
     from mechkin_cli.show import Floats
-    from mechkin_cli.studies.formats import Values
     from mechkin_cli.variants import Variants
 
-
-# What a study says of a variant that is not ok, in one line.
 
 LONGEST_MESSAGE = 300
 
@@ -39,11 +36,11 @@ def messages(
 
     Args:
         found: all rows of the variants.
-        texts: what is kept of them.
+        texts: quantities that are kept.
         along: what the run goes along, None where nothing moves.
         places: its values in the rows (variants, rows).
     """
-    told = empty_values("text", len(found))
+    texts_of = empty_values("text", len(found))
     not_ok = found.codes != Status.ok
     infinite = _infinite(found, texts)
     for number in np.flatnonzero(not_ok.any(axis=1)).tolist():
@@ -51,10 +48,10 @@ def messages(
         place = "" if places is None else _place(along, float(places[number, row]))
         reason = _reason(Status(int(found.codes[number, row])))
         text = f"row {row + 1}{place}: {reason}{infinite.get(number, '')}"
-        told[number] = text[:LONGEST_MESSAGE]
+        texts_of[number] = text[:LONGEST_MESSAGE]
     for number, error in found.errors.items():
-        told[number] = _said(error)
-    return told
+        texts_of[number] = _error_text(error)
+    return texts_of
 
 
 def _reason(status: Status) -> str:
@@ -64,17 +61,17 @@ def _reason(status: Status) -> str:
 
 
 def _infinite(found: Variants, texts: Iterable[str]) -> dict[int, str]:
-    """Which of what is kept is infinite, and in which row first, by the number of the variant."""
+    """Kept quantities that are infinite, and in which row first, by the number of the variant."""
     at = found.codes == Status.dead_centre
     numbers = np.flatnonzero(at.any(axis=1))
-    told: dict[int, str] = {}
+    words: dict[int, str] = {}
     for text in texts if numbers.size else ():
         rows = np.isinf(found[text][numbers])
         for number, where in zip(numbers.tolist(), rows, strict=True):
             if where.any():
-                one = f"{text} in row {int(np.argmax(where)) + 1}"
-                told[number] = f"{told[number]}, {one}" if number in told else f"; infinite: {one}"
-    return told
+                before = f"{words[number]}, " if number in words else "; infinite: "
+                words[number] = f"{before}{text} in row {int(np.argmax(where)) + 1}"
+    return words
 
 
 def _place(along: Heading | None, place: float) -> str:
@@ -83,8 +80,7 @@ def _place(along: Heading | None, place: float) -> str:
     return f" ({along.label} = {place:.9g} {along.unit}".rstrip() + ")"
 
 
-def _said(error: MechkinError) -> str:
-    """What was said of a variant that cannot be built."""
+def _error_text(error: MechkinError) -> str:
     text = str(error)
     if isinstance(error, InvalidFile):
         first = next((d for d in error.diagnostics if d.severity == "error"), None)
@@ -100,7 +96,7 @@ VERDICTS = (
     Heading("verdict", kind="text"),
     Heading("message", kind="text"),
 )
-"""What is told of every variant beside what is asked for."""
+"""Columns of every variant beside what is asked for."""
 
 NOT_BUILT, WORKER_DIED = "not-built", "worker-died"
 """Verdicts of variants without rows."""
@@ -132,7 +128,7 @@ class StudyQuestion:
         run: of the mechanism.
         parameter: what the run goes along, None where nothing moves.
         parameters: headings of what varies.
-        kept: columns of variants.
+        columns: of variants.
         rows: headings of quantities of which all rows are kept, their labels the quantities.
         dead_centre: heading of the place at which a branch ends; None: not asked.
     """
@@ -140,14 +136,14 @@ class StudyQuestion:
     run: str
     parameter: Heading | None
     parameters: tuple[Heading, ...]
-    kept: tuple[StudyColumn, ...]
+    columns: tuple[StudyColumn, ...]
     rows: tuple[Heading, ...]
     dead_centre: Heading | None
 
     @property
     def tables(self) -> dict[str, tuple[Heading, ...]]:
         """Headings of `variants` and, where rows are kept, of `rows`."""
-        own = tuple(kept.heading for kept in self.kept)
+        own = tuple(column.heading for column in self.columns)
         ends = () if self.dead_centre is None else (self.dead_centre,)
         found = {"variants": (VARIANT, *self.parameters, *own, *ends, *VERDICTS)}
         if self.rows:
@@ -160,14 +156,14 @@ class StudyQuestion:
 def chunk(
     model: Solvable, question: StudyQuestion, values: Mapping[str, Floats], begin: int, threads: int
 ) -> dict[str, Records]:
-    """What is kept of variants that have these values (variants,) by name, in the file's units; the
-    first has the number `begin`. By name of table."""
+    """Records of variants with these values (variants,) by name, in the file's units, by name of
+    table; the first variant has the number `begin`."""
     found, places = _varied(model, question, values, threads)
     count = len(found)
     records: Records = {VARIANT.label: np.arange(begin, begin + count, dtype=np.int64)}
     records |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
-    for kept in question.kept:
-        records[kept.heading.label] = _kept(found[kept.text], kept, places)
+    for column in question.columns:
+        records[column.heading.label] = _reduced(found[column.text], column, places)
     words = np.array([status.label for status in Status], dtype=object)
     not_ok = found.codes != Status.ok
     records[VERDICTS[0].label] = np.count_nonzero(not_ok, axis=1).astype(np.int64)
@@ -176,7 +172,9 @@ def chunk(
     if question.dead_centre is not None:
         records[question.dead_centre.label] = _dead_centres(model, values, found, places)
     records[VERDICTS[1].label] = verdicts
-    texts = dict.fromkeys([kept.text for kept in question.kept] + [h.label for h in question.rows])
+    texts = dict.fromkeys(
+        [column.text for column in question.columns] + [h.label for h in question.rows]
+    )
     records[VERDICTS[2].label] = messages(found, texts, question.parameter, places)
     tables = {"variants": records}
     if question.rows:
@@ -203,7 +201,9 @@ def _varied(
     model: Solvable, question: StudyQuestion, values: Mapping[str, Floats], threads: int
 ) -> tuple[Variants, Floats | None]:
     """The variants, with all rows of what is asked for; and the places of the rows."""
-    asked = [kept.text for kept in question.kept] + [heading.label for heading in question.rows]
+    asked = [column.text for column in question.columns] + [
+        heading.label for heading in question.rows
+    ]
     if question.parameter is not None:
         asked.append(question.parameter.label)
     found = vary(model, values, list(dict.fromkeys(asked)), run=question.run, threads=threads)
@@ -212,15 +212,15 @@ def _varied(
     return found, found[question.parameter.label]
 
 
-def _kept(values: Floats, kept: StudyColumn, places: Floats | None) -> Floats:
+def _reduced(values: Floats, column: StudyColumn, places: Floats | None) -> Floats:
     """One number of the rows of every variant, (variants,)."""
-    if kept.word == VALUE:
-        return _value_at(kept.at, values, places)
-    if kept.word in PLACES:
-        return _study_chunk_place(PLACES[kept.word](values), places)
-    if kept.word not in ("mean", "rms"):
-        return REDUCTIONS[kept.word](values)
-    over = mean if kept.word == "mean" else root_mean_square
+    if column.word == VALUE:
+        return _value_at(column.at, values, places)
+    if column.word in PLACES:
+        return _place_of_largest(PLACES[column.word](values), places)
+    if column.word not in ("mean", "rms"):
+        return REDUCTIONS[column.word](values)
+    over = mean if column.word == "mean" else root_mean_square
     return over(values, places)
 
 
@@ -231,11 +231,11 @@ def _value_at(at: float, values: Floats, places: Floats | None) -> Floats:
     off = np.where(np.isnan(places), np.inf, np.abs(places - at))
     row = np.argmin(off, axis=1)
     every = np.arange(len(values))
-    way = np.fmax.reduce(places, axis=1) - np.fmin.reduce(places, axis=1)
-    return np.where(off[every, row] <= LAST_ROW * way, values[every, row], np.nan)
+    span = np.fmax.reduce(places, axis=1) - np.fmin.reduce(places, axis=1)
+    return np.where(off[every, row] <= LAST_ROW * span, values[every, row], np.nan)
 
 
-def _study_chunk_place(sizes: Floats, places: Floats | None) -> Floats:
+def _place_of_largest(sizes: Floats, places: Floats | None) -> Floats:
     """Where the first of the largest sizes stands; the number of the row where nothing moves."""
     there = ~np.isnan(sizes)
     row = np.argmax(np.where(there, sizes, -np.inf), axis=1)
@@ -251,9 +251,8 @@ def _dead_centres(
     stands = found.codes == Status.dead_centre
     ends = np.full(len(found), np.nan)
     if places is not None and stands.any():
-        ends = np.where(
-            stands.any(axis=1), _study_chunk_place(stands.astype(np.float64), places), np.nan
-        )
+        first = _place_of_largest(stands.astype(np.float64), places)
+        ends = np.where(stands.any(axis=1), first, np.nan)
     for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
         own = {name: float(column[number]) for name, column in values.items()}
         for diagnostic in with_parameters(model, own).analyze([], tables=[]).diagnostics:

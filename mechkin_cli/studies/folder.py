@@ -22,8 +22,7 @@ from typing import Any, BinaryIO
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.studies import FORMATS
-from mechkin_cli.studies.formats import Format, Heading, Records
+from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
 from mechkin_cli.tables import Claim
 
 MANIFEST = "study.json"
@@ -94,16 +93,16 @@ class StudyFolder:
             self._claim.release()
             self._claim = None
 
-    def begin(self, anew: bool = False) -> None:
-        """Takes up what an earlier run left, or begins; with `anew` in any case.
+    def begin(self, again: bool = False) -> None:
+        """Takes up what an earlier run left, or begins; with `again` in any case.
 
         Raises:
             UsageError: the folder holds another study, or cannot be written to.
         """
-        found = None if anew else self._manifest()
+        found = None if again else self._manifest()
         with refused(self.folder):
             if found is None:
-                if not anew:
+                if not again:
                     self._refuse_foreign()
                 self._clear()
                 (self.folder / PIECES).mkdir(exist_ok=True)
@@ -163,7 +162,7 @@ class StudyFolder:
                     yield from self._format.read(path, headings)
                 except (ValueError, KeyError) as error:
                     raise UsageError(
-                        f"{path} is not as it was written: {str(error)[:120]}; begin anew with "
+                        f"{path} is not as it was written: {str(error)[:120]}; start over with "
                         "--again"
                     ) from None
 
@@ -201,12 +200,11 @@ class StudyFolder:
         if not _is_manifest(found):
             raise UsageError(
                 f"{path} does not say what the folder holds; choose another folder with --out, or "
-                "begin anew with --again"
+                "start over with --again"
             )
         return dict(found)
 
     def _check(self, found: Mapping[str, Any]) -> None:
-        """Refuses another study than this."""
         own = json.loads(json.dumps(self.contents.record()))
         if all(found.get(key) == value for key, value in own.items()):
             return
@@ -220,7 +218,7 @@ class StudyFolder:
         what = ", ".join(changed) or "columns"
         raise UsageError(
             f"{self.folder} holds results of another study: different {what}; choose another "
-            "folder with --out, or begin anew with --again"
+            "folder with --out, or start over with --again"
         )
 
     def _write_manifest(self) -> None:

@@ -1,4 +1,4 @@
-"""Files of a study's records: CSV, or Parquet with the extra `parquet`.
+"""A study's records, a line for each variant or row, and their files: CSV, or Parquet (extra).
 
 Pieces are written as they are computed, and put together at the end: bytes of the result do not
 depend on the pieces.
@@ -17,15 +17,13 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.studies import FORMATS
+from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, csv_bytes, words_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Floats
 
-
-# What is kept of variants: columns of numbers and words, a line for each variant or row.
 
 Values: TypeAlias = "NDArray[np.float64] | NDArray[np.int64] | NDArray[np.object_]"
 """Numbers (lines,), nan where there is none; whole numbers; or texts."""
@@ -77,7 +75,6 @@ class Format(Protocol):
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """A file of its own of some lines."""
-        ...
 
     def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """The lines of a file, so many at a time that memory does not grow with it.
@@ -85,24 +82,9 @@ class Format(Protocol):
         Raises:
             ValueError: it is not what was written.
         """
-        ...
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
         """Writes all pieces, one below the other, as one file."""
-        ...
-
-
-def format_of(name: str) -> Format:
-    """The format of a name.
-
-    Raises:
-        UsageError: there is no such format, or what it needs is not installed.
-    """
-    if name == "csv":
-        return Csv()
-    if name == "parquet":
-        return Parquet()
-    raise UsageError(f"there is no format {name[:60]} of studies; they are {', '.join(FORMATS)}")
 
 
 class Csv:
@@ -112,8 +94,6 @@ class Csv:
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, csv_bytes, words_of
-
         columns = [
             TableColumn(h.label, h.unit, words_of(records[h.label].tolist()))
             if h.kind == "text"
@@ -159,33 +139,59 @@ class Parquet:
 
     def __init__(self) -> None:
         try:
-            import pyarrow  # noqa: F401
+            import pyarrow.parquet
         except ImportError:
             raise UsageError("Parquet needs pyarrow: pip install 'mechkin[parquet]'") from None
+        self._arrow: Any = pyarrow
+        self._files: Any = pyarrow.parquet
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        import pyarrow.parquet
-
-        buffer = io.BytesIO()
-        pyarrow.parquet.write_table(_arrow(headings, records), buffer)
+        buffer, schema, columns = io.BytesIO(), self._schema(headings), []
+        for heading, field in zip(headings, schema, strict=True):
+            values = records[heading.label]
+            mask = np.isnan(values) if heading.kind == "number" else None
+            columns.append(self._arrow.array(values, field.type, mask=mask))
+        self._files.write_table(self._arrow.Table.from_arrays(columns, schema=schema), buffer)
         return buffer.getvalue()
 
     def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """As `Format.read`."""
-        import pyarrow.parquet
-
-        with pyarrow.parquet.ParquetFile(path) as file:
+        with self._files.ParquetFile(path) as file:
             for batch in file.iter_batches(batch_size=LINES_AT_ONCE):
                 yield {h.label: _read_arrow(h.kind, batch.column(h.label)) for h in headings}
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
         """As `Format.join`."""
-        import pyarrow.parquet
-
-        with pyarrow.parquet.ParquetWriter(file, _schema(headings)) as writer:
-            for group in _groups(pieces):
+        with self._files.ParquetWriter(file, self._schema(headings)) as writer:
+            for group in self._groups(pieces):
                 writer.write_table(group, row_group_size=ROW_GROUP)
+
+    def _schema(self, headings: Sequence[Heading]) -> Any:
+        arrow = self._arrow
+        types = {"number": arrow.float64(), "whole": arrow.int64(), "text": arrow.string()}
+        return arrow.schema(
+            [
+                arrow.field(h.label, types[h.kind], metadata={"unit": h.unit} if h.unit else None)
+                for h in headings
+            ]
+        )
+
+    def _groups(self, pieces: Iterable[Path]) -> Iterator[Any]:
+        """Tables of as many lines as a row group has, the last one of the rest."""
+        held: list[Any] = []
+        lines = 0
+        for path in pieces:
+            table = self._files.read_table(path)
+            held.append(table)
+            lines += table.num_rows
+            while lines >= ROW_GROUP:
+                whole = self._arrow.concat_tables(held)
+                yield whole.slice(0, ROW_GROUP).combine_chunks()
+                held = [whole.slice(ROW_GROUP)]
+                lines -= ROW_GROUP
+        if lines:
+            yield self._arrow.concat_tables(held).combine_chunks()
 
 
 def _read_arrow(kind: str, column: Any) -> Any:
@@ -194,45 +200,17 @@ def _read_arrow(kind: str, column: Any) -> Any:
     return np.array(column.to_pylist(), dtype=object if kind == "text" else np.int64)
 
 
-def _schema(headings: Sequence[Heading]) -> Any:
-    import pyarrow
-
-    types = {"number": pyarrow.float64(), "whole": pyarrow.int64(), "text": pyarrow.string()}
-    return pyarrow.schema(
-        [
-            pyarrow.field(h.label, types[h.kind], metadata={"unit": h.unit} if h.unit else None)
-            for h in headings
-        ]
-    )
+_FORMATS: dict[str, type[Csv] | type[Parquet]] = {"csv": Csv, "parquet": Parquet}
+FORMATS = tuple(_FORMATS)
 
 
-def _arrow(headings: Sequence[Heading], records: Records) -> Any:
-    import pyarrow
+def format_of(name: str) -> Format:
+    """The format of a name.
 
-    schema = _schema(headings)
-    columns = []
-    for heading, field in zip(headings, schema, strict=True):
-        values = records[heading.label]
-        mask = np.isnan(values) if heading.kind == "number" else None
-        columns.append(pyarrow.array(values, field.type, mask=mask))
-    return pyarrow.Table.from_arrays(columns, schema=schema)
-
-
-def _groups(pieces: Iterable[Path]) -> Iterator[Any]:
-    """Tables of as many lines as a row group has, the last one of the rest."""
-    import pyarrow
-    import pyarrow.parquet
-
-    held: list[Any] = []
-    lines = 0
-    for path in pieces:
-        table = pyarrow.parquet.read_table(path)
-        held.append(table)
-        lines += table.num_rows
-        while lines >= ROW_GROUP:
-            whole = pyarrow.concat_tables(held)
-            yield whole.slice(0, ROW_GROUP).combine_chunks()
-            held = [whole.slice(ROW_GROUP)]
-            lines -= ROW_GROUP
-    if lines:
-        yield pyarrow.concat_tables(held).combine_chunks()
+    Raises:
+        UsageError: there is no such format, or what it needs is not installed.
+    """
+    if name not in _FORMATS:
+        names = ", ".join(FORMATS)
+        raise UsageError(f"there is no format {name[:60]} of studies; they are {names}")
+    return _FORMATS[name]()

@@ -1,4 +1,8 @@
-"""A study as written to its variants and its question: every independent error at its place."""
+"""A study as written to its variants and its question: every independent error at its place.
+
+Variants are all combinations of the lists, of the lines of a table and of the samples. Of their
+numbers, those of samples change fastest, then the table's, then the last list's.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ import numpy as np
 
 from mechkin_cli.building import BadTable, by_count, by_step, table_path, table_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError, nearest_hint
-from mechkin_cli.expressions import ExpressionError, Vector
+from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.schema import study as written
@@ -27,9 +31,18 @@ from mechkin_cli.studies.chunk import (
 )
 from mechkin_cli.studies.formats import Heading
 from mechkin_cli.studies.source import Faults, in_file_units, split
-from mechkin_cli.tables import ROW_TEXTS
+from mechkin_cli.tables import ROW_TEXTS, RunParameter
 from mechkin_cli.tolerances import LAST_ROW, MOST_DRAWN, MOST_TABLE_TEXT, MOST_VARIANTS
-from mechkin_cli.variants import draws, has_scipy, needs_scipy, normal, sample_of, uniform, way_of
+from mechkin_cli.variants import (
+    Draws,
+    draws,
+    has_scipy,
+    needs_scipy,
+    normal,
+    sample_of,
+    swept_parameter,
+    uniform,
+)
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -40,26 +53,14 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.reading import Document, KeyPath
     from mechkin_cli.show import Floats
-    from mechkin_cli.variants import Draws
 
-
-# Which variants a study has: values of parameters by the number of the variant.
-#
-# Variants are all combinations of the lists, of the lines of a table and of the samples. Of the
-# numbers, those of samples change fastest, then the table's, then the last list's.
 
 Distribution = Callable[["Floats"], "Floats"]
 """From samples (n,) between 0 and 1 to values (n,)."""
 
 
-@dataclass(frozen=True)
-class Samples:
-    """What is drawn: how many samples, and the distribution of each parameter, in order of the
-    dimensions."""
-
-    count: int
-    draws: Draws
-    distributions: Mapping[str, Distribution]
+Samples = tuple[int, "Draws", Mapping[str, Distribution]]
+"""How many are drawn, how, and the distribution of each parameter, in order of the dimensions."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ class StudyVariation:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the parameters that vary."""
-        drawn = self.samples.distributions if self.samples is not None else {}
+        drawn = {} if self.samples is None else self.samples[2]
         return (*self.lists, *self.table, *drawn)
 
     @property
@@ -90,7 +91,7 @@ class StudyVariation:
         lengths = [len(values) for values in self.lists.values()]
         combinations = (lengths[0] if lengths else 1) if self.together else prod(lengths)
         lines = len(next(iter(self.table.values()))) if self.table else 1
-        return combinations, lines, 1 if self.samples is None else self.samples.count
+        return combinations, lines, 1 if self.samples is None else self.samples[0]
 
     def __len__(self) -> int:
         return prod(self.counts)
@@ -118,20 +119,13 @@ class StudyVariation:
         if self.samples is None or not numbers.size:
             return {}
         first, last = int(numbers.min()), int(numbers.max()) + 1
-        drawn = self.samples.draws.stretch(first, last)[numbers - first]
-        distributions = self.samples.distributions
+        _, drawing, distributions = self.samples
+        drawn = drawing(first, last)[numbers - first]
         return {n: shape(drawn[:, k]) for k, (n, shape) in enumerate(distributions.items())}
 
 
-# The variants of a study, from its lists, ranges, distributions and its table.
-
 TOO_MANY = "too-many-variants"
 _NOTHING = partial(uniform, least=0.0, most=0.0)
-
-
-def variation_of(file: written.StudyFile, model: Solvable, faults: Faults) -> StudyVariation:
-    """The variants that a study's sections describe; what is wrong with them goes to `faults`."""
-    return _VariationReader(file, model, faults).variation()
 
 
 def unknown_parameter(model: Solvable, name: str) -> tuple[str, str]:
@@ -144,6 +138,8 @@ def unknown_parameter(model: Solvable, name: str) -> tuple[str, str]:
 
 
 class _VariationReader:
+    """The variants that a study's sections describe; what is wrong with them goes to `faults`."""
+
     def __init__(self, file: written.StudyFile, model: Solvable, faults: Faults) -> None:
         self.file, self.model, self.faults = file, model, faults
         self.known = model.problem.parameters
@@ -154,8 +150,8 @@ class _VariationReader:
         drawn: dict[str, Distribution] = {}
         for name, form in self.file.vary.items():
             if name not in self.known:
-                said = unknown_parameter(self.model, name)
-                self.faults.error("unknown-parameter", ("vary", name), *said, at_key=True)
+                error = unknown_parameter(self.model, name)
+                self.faults.error("unknown-parameter", ("vary", name), *error, at_key=True)
             elif isinstance(form, tuple):
                 values = [self._value(name, t, k) for k, t in enumerate(form)]
                 lists[name] = np.array([value for value in values if value is not None])
@@ -170,12 +166,12 @@ class _VariationReader:
             text = f"lists that go together have different lengths: {words}"
             self.faults.error("list-lengths", ("lists",), text, "give them equally many values")
         table = self._table(self.file.table) if self.file.table is not None else {}
-        found = StudyVariation(lists, together, table, self._samples(drawn))
-        if not self.faults.are_errors and len(found) > MOST_VARIANTS:
-            counts = " x ".join(str(n) for n in found.counts if n > 1)
-            text = f"the study has {len(found)} variants, {counts} (limit {MOST_VARIANTS})"
+        variation = StudyVariation(lists, together, table, self._samples(drawn))
+        if not self.faults.are_errors and len(variation) > MOST_VARIANTS:
+            counts = " x ".join(str(n) for n in variation.counts if n > 1)
+            text = f"the study has {len(variation)} variants, {counts} (limit {MOST_VARIANTS})"
             self.faults.error(TOO_MANY, ("vary",), text, "take fewer values, or draw them")
-        return found
+        return variation
 
     def _note_replaced(self, name: str, form: written.Variation) -> None:
         """A value that is set is the own value of a parameter, about which only some forms vary."""
@@ -279,8 +275,7 @@ class _VariationReader:
         if sample.method == "sobol" and sample.count & (sample.count - 1):
             text = "a Sobol sequence is balanced where its samples are a power of 2"
             self.faults.note("sobol-count", path, text, f"take {1 << round(log2(sample.count))}")
-        found = draws(sample.method, sample.count, len(drawn), sample.seed)
-        return Samples(sample.count, found, drawn)
+        return sample.count, draws(sample.method, sample.count, len(drawn), sample.seed), drawn
 
     def _table(self, name: str) -> dict[str, Floats]:
         """The lines of a CSV file with names of parameters above them."""
@@ -338,13 +333,6 @@ class StudyPlan(NamedTuple):
     notes: tuple[Diagnostic, ...]
 
 
-class _Along(NamedTuple):
-    """What a run goes along, and its values in the file's units over the rows asked for."""
-
-    heading: Heading
-    values: Floats
-
-
 def study_plan(file: written.StudyFile, document: Document, model: Solvable) -> StudyPlan:
     """The plan of a study of a model.
 
@@ -352,13 +340,13 @@ def study_plan(file: written.StudyFile, document: Document, model: Solvable) -> 
         InvalidFile: with every independent error and its place.
     """
     faults = Faults(document)
-    variation = variation_of(file, model, faults)
-    question = _Asking(file, model, faults).question(variation)
+    variation = _VariationReader(file, model, faults).variation()
+    question = _QuestionReader(file, model, faults).question(variation)
     return StudyPlan(variation, question, faults.notes())
 
 
-class _Asking:
-    """Reads what is asked of the variants."""
+class _QuestionReader:
+    """What a study asks of its variants; what is wrong with that goes to `faults`."""
 
     def __init__(self, file: written.StudyFile, model: Solvable, faults: Faults) -> None:
         self.file, self.model, self.faults = file, model, faults
@@ -376,10 +364,10 @@ class _Asking:
         names = variation.names
         parameters = tuple(Heading(name, label(known[name].dimension)) for name in names)
         taken = {VARIANT.label, DEAD_CENTRE, *names, *(heading.label for heading in VERDICTS)}
-        kept = [
+        columns = [
             column
             for number, section in enumerate(self.file.keep)
-            for column in self._kept(("keep", number), section, taken)
+            for column in self._columns(("keep", number), section, taken)
         ]
         units = [self._unit(("rows", k), text) for k, text in enumerate(self.file.rows)]
         rows = [
@@ -387,9 +375,9 @@ class _Asking:
             for text, unit in zip(self.file.rows, units, strict=True)
             if unit is not None
         ]
-        along = None if self.along is None else self.along.heading
+        along = None if self.along is None else Heading(self.along.name, self.along.unit)
         return StudyQuestion(
-            self.run, along, parameters, tuple(kept), tuple(rows), self._dead_centre()
+            self.run, along, parameters, tuple(columns), tuple(rows), self._dead_centre()
         )
 
     def _run(self) -> str:
@@ -400,31 +388,30 @@ class _Asking:
         self.faults.error("unknown-run", ("run",), f"there is no run {name[:LONGEST_NAME]}", hint)
         return runs[0]
 
-    def _along(self) -> _Along | None:
-        known, label = self.problem.quantities(), self.problem.units.label
+    def _along(self) -> RunParameter | None:
         if self.run != SWEEP:
-            moments = self.model.problem.responses[self.run].moments.written
-            return _Along(Heading("time", label(known["time"].dimension)), moments)
-        way = way_of(self.problem)
-        if way is None:
+            name, values = "time", self.model.problem.responses[self.run].moments.written
+        elif (swept := swept_parameter(self.problem)) is not None:
+            name, values = swept
+        else:
             return None
-        name, values = way
-        return _Along(Heading(name, label(known[name].dimension)), values)
+        unit = self.problem.units.label(self.problem.quantities()[name].dimension)
+        return RunParameter(name, values, unit)
 
     def _dead_centre(self) -> Heading | None:
         if self.file.dead_centres is None:
             return None
         if self.run == SWEEP and self.along is not None:
-            return Heading(DEAD_CENTRE, self.along.heading.unit)
+            return Heading(DEAD_CENTRE, self.along.unit)
         path, hint = ("dead_centres",), "remove dead_centres:"
         self.faults.error("needless-key", path, "only a sweep has dead centres", hint, at_key=True)
         return None
 
-    def _kept(self, path: KeyPath, section: written.Kept, taken: set[str]) -> list[StudyColumn]:
+    def _columns(self, path: KeyPath, section: written.Kept, taken: set[str]) -> list[StudyColumn]:
         unit = self._unit((*path, "of"), section.of)
         if unit is None:
             return []
-        found = []
+        columns = []
         for word in section.words:
             at = self._at((*path, "at"), str(section.at)) if word == VALUE else np.nan
             label = _label(section, word)
@@ -434,21 +421,21 @@ class _Asking:
                 self.faults.error("label-clash", where, text, "give one of them another label:")
             taken.add(label)
             if word.startswith("place"):
-                own = self.along.heading.unit if self.along is not None else ""
+                own = self.along.unit if self.along is not None else ""
             else:
                 own = unit
-            found.append(StudyColumn(Heading(label, own), section.of, word, at))
-        return found
+            columns.append(StudyColumn(Heading(label, own), section.of, word, at))
+        return columns
 
     def _unit(self, path: KeyPath, text: str) -> str | None:
         """The unit of a quantity or expression of one number; None where it is none."""
         problem = self.problem
         if text.strip() in ROW_TEXTS:
-            hint = "the verdict of every variant is kept anyway"
+            hint = "every variant has its verdict anyway"
             self.faults.error("words", path, f"{text} is words, no number", hint)
             return None
         try:
-            found = problem.definitions.parse(text).evaluate(sample_of(problem), problem.units)
+            quantity = problem.definitions.parse(text).evaluate(sample_of(problem), problem.units)
         except ExpressionError as error:
             hint = error.hint or "write a quantity such as O1.theta, or an expression"
             place = self.faults.document.place_in(path, error.offset)
@@ -456,12 +443,12 @@ class _Asking:
                 Diagnostic("expression", "error", error.message, place, hint=hint)
             )
             return None
-        if isinstance(found.value, Vector):
+        if isinstance(quantity.value, Vector):
             short = text[:LONGEST_NAME]
             hint = f"write norm({short}), or a component"
             self.faults.error("vector", path, f"{short} is a vector, not one number", hint)
             return None
-        return problem.units.label(found.dimension)
+        return problem.units.label(quantity.dimension)
 
     def _at(self, path: KeyPath, text: str) -> float:
         """A place at which a row stands, in the file's units."""
@@ -470,18 +457,18 @@ class _Asking:
             text = "nothing moves, so no row has a place to name"
             self.faults.error("no-place", path, text, hint)
             return np.nan
-        heading, values = self.along.heading, self.along.values
-        dimension = self.problem.quantities()[heading.label].dimension
-        at = self.faults.value(path, heading.label, text, dimension, self.problem.units)
+        name, values, unit = self.along
+        dimension = self.problem.quantities()[name].dimension
+        at = self.faults.value(path, name, text, dimension, self.problem.units)
         if at is None:
             return np.nan
         off = np.abs(values - at)
         row = int(off.argmin())
         if off[row] > LAST_ROW * float(np.ptp(values)):
             near = sorted(set(values[np.argsort(off, kind="stable")[:2]].tolist()))
-            unit = f" {heading.unit}".rstrip()
+            unit = f" {unit}".rstrip()
             hint = f"the nearest stand at {' and '.join(f'{one:.12g}' for one in near)}{unit}"
-            self.faults.error("no-row", path, f"no row has {heading.label} = {at:.12g}{unit}", hint)
+            self.faults.error("no-row", path, f"no row has {name} = {at:.12g}{unit}", hint)
         return at
 
 

@@ -1,4 +1,4 @@
-"""Results of a study in memory: columns over the variants, as arrays and as data frames."""
+"""Results of a study: an overview in a few numbers for each column, and all in memory."""
 
 from __future__ import annotations
 
@@ -11,20 +11,14 @@ import numpy as np
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS
 from mechkin_cli.studies.folder import ROWS, VARIANTS
-from mechkin_cli.studies.formats import Heading, Records, numbers
+from mechkin_cli.studies.formats import Heading, Records, Values, numbers
 
 if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
-
-    from mechkin_cli.show import Floats
-    from mechkin_cli.studies.formats import Values
-
-
-# What a study has found, in a few numbers for each column.
 
 
 class Spread(NamedTuple):
@@ -128,20 +122,13 @@ def overview(
 def _spread(label: str, unit: str, column: _RunningColumn) -> Spread:
     if not column.count:
         return Spread(label, unit, 0, np.nan, -1, np.nan, -1, np.nan, np.nan)
+    ends = (*column.least, *column.largest)
     if column.infinite != 0.0:
-        ends = (*column.least, *column.largest)
         return Spread(label, unit, column.count, *ends, column.infinite, np.nan)
     mean = column.first / column.count
     variance = max(column.second / column.count - mean * mean, 0.0)
-    return Spread(
-        label,
-        unit,
-        column.count,
-        *column.least,
-        *column.largest,
-        column.origin + mean,
-        float(np.sqrt(variance)),
-    )
+    deviation = float(np.sqrt(variance))
+    return Spread(label, unit, column.count, *ends, column.origin + mean, deviation)
 
 
 class StudyFiles(NamedTuple):
@@ -163,13 +150,13 @@ class StudyFiles(NamedTuple):
 
 
 class StudyResults(Listed):
-    """What was kept of all variants: `r["peak(O1.effort)"]` is an array over them, in the file's
+    """The results of all variants: `r["peak(O1.effort)"]` is an array over them, in the file's
     units.
 
     Attributes:
         name: of the study.
-        rows: columns of all rows of all variants by label, empty where none were kept.
-        diagnostics: what the study has to say.
+        rows: columns of all rows of all variants by label, empty where the study keeps none.
+        diagnostics: messages on the study.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""A study, read and checked: from its file, or from the data of a program."""
+"""A study, read and checked: from its file, or from the data of a program; and its faults."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+from mechkin_cli import model, reading
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.reading import Document, in_order, read_document
+from mechkin_cli.reading import Document, KeyPath, in_order, read_document
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import InvalidDataError, validate_study
 from mechkin_cli.variants import one_value, with_parameters
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema import StudyFile
     from mechkin_cli.units import Dimension, UnitSystem
 
-
-# What is wrong with a study file, collected place by place; and its values of quantities.
 
 DIGITS = (15, 16)
 """Significant digits of a decimal number that may be the one that was written."""
@@ -77,12 +76,12 @@ def in_file_units(name: str, text: str, dimension: Dimension, units: UnitSystem)
         UsageError: the text says none.
     """
     in_si = one_value(name, text, dimension, units)
-    found = float(np.asarray(units.from_si(in_si, dimension)))
+    value = float(np.asarray(units.from_si(in_si, dimension)))
     for digits in DIGITS:
-        rounded = float(f"{found:.{digits}g}")
+        rounded = float(f"{value:.{digits}g}")
         if float(np.asarray(units.to_si(rounded, dimension))) == in_si:
             return rounded
-    return found
+    return value
 
 
 def split(error: UsageError) -> tuple[str, str]:
@@ -93,7 +92,6 @@ def split(error: UsageError) -> tuple[str, str]:
 
 DATA = "study"
 """What messages call the dict that a caller gives."""
-
 
 _OUTSIDE = "--set "
 """In front of parameters from outside the mechanism, in messages about them."""
@@ -110,7 +108,7 @@ class StudySource(NamedTuple):
         """The study's name, or that of its file."""
         return self.file.name or Path(self.document.file).stem
 
-    def model(
+    def load_model(
         self, parameters: Mapping[str, str], load: Callable[[Path, Mapping[str, str]], Solvable]
     ) -> Solvable:
         """The mechanism that the study names, loaded with the values of `set:` and these.
@@ -123,7 +121,7 @@ class StudySource(NamedTuple):
             self._refuse("missing-key", (), "the study names no mechanism", "add mechanism: FILE")
         folder = self.document.folder or Path()
         try:
-            return load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
+            return model.load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
         except UsageError as error:
             text, _, hint = str(error).partition("; ")
             named, _, own = text.removeprefix(_OUTSIDE).partition(": ")
@@ -150,7 +148,7 @@ class StudySource(NamedTuple):
         return model
 
     def _at_home(self, found: Diagnostic, parameters: Mapping[str, str]) -> Diagnostic:
-        """What was said of a value of `set:`, at its place in the study."""
+        """A message on a value of `set:`, at its place in the study."""
         place = found.place
         if place is None or place.in_file or not place.file.startswith(_OUTSIDE):
             return found
@@ -164,22 +162,19 @@ class StudySource(NamedTuple):
         raise InvalidFile([Diagnostic(code, "error", text, place, hint=hint)])
 
 
-def open_study(given: str | Path | Mapping[str, Any]) -> StudySource:
+def open_study(study: str | Path | Mapping[str, Any]) -> StudySource:
     """The study in a file, or in the sections that a dict has.
 
     Raises:
         UsageError: the file cannot be read.
         InvalidFile: with every independent error and its place.
     """
-    if isinstance(given, Mapping):
-        from mechkin_cli.reading import document_from_data
-
-        document = document_from_data({"study": 1, **given}, DATA, None)
+    if isinstance(study, Mapping):
+        document = reading.document_from_data({"study": 1, **study}, DATA, None)
     else:
-        document = read_document(given)
+        document = read_document(study)
     try:
         return StudySource(validate_study(document.data), document)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading import explain, is_mechanism  # only for messages
-
-        raise InvalidFile(is_mechanism(document) or explain(invalid.errors, document)) from None
+        errors = reading.is_mechanism(document) or reading.explain(invalid.errors, document)
+        raise InvalidFile(errors) from None

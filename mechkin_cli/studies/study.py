@@ -1,4 +1,7 @@
-"""Many variants in pieces, in memory or in a folder that the next run goes on with."""
+"""Many variants in pieces, in memory or in a folder that the next run goes on with.
+
+First what travels to those who compute a study, then the study, then who computes.
+"""
 
 from __future__ import annotations
 
@@ -26,55 +29,32 @@ from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
 from mechkin_cli.studies.formats import Records, format_of, joined
 from mechkin_cli.studies.plan import StudyPlan, study_plan
 from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
-from mechkin_cli.studies.source import open_study
-from mechkin_cli.studies.workers import Executors, Task, TaskCall, executed
+from mechkin_cli.studies.source import StudySource, open_study
+from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
 from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
 from mechkin_cli.verdict import SWEEP, version
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Solvable
     from mechkin_cli.show import Floats
-    from mechkin_cli.studies.source import StudySource
 
 
-# What travels to those who compute a study, and what they do with it.
+Parcel = tuple[bytes, str]
+"""A mechanism and what is asked of its variants, as bytes, and the version of mechkin; with the
+text of the file and of the tables that it names, so that a worker needs nothing but the package."""
 
-
-class Parcel(NamedTuple):
-    """A mechanism and what is asked of its variants, as bytes: the text of the file and of the
-    tables that it names, so that a worker needs nothing but the package."""
-
-    content: bytes
-    version: str
-
-    @classmethod
-    def of(cls, model: Solvable, question: StudyQuestion) -> Parcel:
-        """The parcel of a model and a question."""
-        return cls(pickle.dumps((model, question)), version())
-
-
-class Answer(NamedTuple):
-    """What a worker found, and which version of mechkin it has."""
-
-    tables: dict[str, Records]
-    version: str
+Answer = tuple[dict[str, Records], str]
+"""The tables that a worker has computed, and its version of mechkin."""
 
 
 def work_off(parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: int) -> Answer:
     """Done by a worker: the records of variants with these values, the first with the number
     `begin`."""
     own = version()
-    if own != parcel.version:
-        return Answer({}, own)
+    if own != parcel[1]:
+        return {}, own
     model, question = _unpacked(parcel)
-    return Answer(chunk(model, question, values, begin, threads), own)
-
-
-def submit(
-    executor: Executor, parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: int
-) -> Future[Answer]:
-    """Hands the variants to an executor."""
-    return executor.submit(work_off, parcel, values, begin, threads)
+    return chunk(model, question, values, begin, threads), own
 
 
 def check_version(found: str) -> None:
@@ -91,21 +71,17 @@ def check_version(found: str) -> None:
         )
 
 
-class _Kept(threading.local):
-    """What a thread has unpacked last: a model of its own, built once for all its tasks."""
-
-    parcel: Parcel | None = None
-    content: tuple[Solvable, StudyQuestion]
-
-
-_kept = _Kept()
+_unpacked_by_thread = threading.local()
+"""The parcel that a thread unpacked last: a model of its own, built once for all its tasks."""
 
 
 def _unpacked(parcel: Parcel) -> tuple[Solvable, StudyQuestion]:
-    if _kept.parcel != parcel:
-        _kept.content = pickle.loads(parcel.content)
-        _kept.parcel = parcel
-    return _kept.content
+    last = _unpacked_by_thread
+    if getattr(last, "parcel", None) != parcel:
+        last.content = pickle.loads(parcel[0])
+        last.parcel = parcel
+    content: tuple[Solvable, StudyQuestion] = last.content
+    return content
 
 
 PIECE_NUMBERS = 2_000_000
@@ -120,7 +96,7 @@ TRIAL_SECONDS = 0.25
 """Variants of the first trial; a trial that takes less than this is made again with more."""
 
 Progress = Callable[[int, int], None]
-"""Told how many variants are done, and of how many."""
+"""Called with how many variants are done, and of how many."""
 
 
 class Workers(NamedTuple):
@@ -177,30 +153,25 @@ class Study:
         question = self.plan.question
         if question.run != SWEEP:
             return RESPONSES_IN_PIECE
-        wide = 2 + len({kept.text for kept in question.kept}) + len(question.rows)
+        wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
         return max(1, min(MOST_IN_PIECE, PIECE_NUMBERS // (self.model.problem.motion.rows * wide)))
 
     def contents(self, file_format: str) -> Contents:
         """What a folder with this study's results holds."""
-        document = self.model.built.read.document
-        study = {
-            k: v for k, v in self.source.document.data.items() if k not in ("mechanism", "name")
-        }
+        document, known = self.model.built.read.document, self.model.problem.parameters
+        values = dict(document.overrides) | {n: repr(known[n].value) for n in known}
+        study = dict(self.source.document.data)
+        for key in ("mechanism", "name"):
+            study.pop(key, None)
         sources = {
             "mechanism": _digest(document.text.encode("utf-8", "surrogatepass")),
-            "parameters": _digest(_canonical(self._given())),
+            "parameters": _digest(_canonical(values)),
             "study": _digest(_canonical(study)),
             "version": version(),
         }
         tables = {**document.tables, **self.source.document.tables}
         sources |= {name: _digest(content) for name, content in tables.items()}
         return Contents(sources, self.variants, file_format, self.plan.question.tables)
-
-    def _given(self) -> dict[str, Any]:
-        """Values of parameters that the model was given."""
-        overrides = dict(self.model.built.read.document.overrides)
-        known = self.model.problem.parameters
-        return overrides | {name: repr(known[name].value) for name in known}
 
     def trial(self, workers: Workers, file_format: str) -> Trial:
         """Computes some variants, spread over all, as an estimate of the time and the size of all.
@@ -212,16 +183,16 @@ class Study:
         count = TRIAL
         while True:
             count = min(count, self.variants)
-            places = [number * self.variants // count for number in range(count)]
-            values = [self.plan.variation.values(place, place + 1) for place in places]
-            joint = {name: np.concatenate([one[name] for one in values]) for name in values[0]}
+            numbers = [number * self.variants // count for number in range(count)]
+            lines = [self.plan.variation.values(k, k + 1) for k in numbers]
+            values = {name: np.concatenate([one[name] for one in lines]) for name in lines[0]}
             begin = perf_counter()
-            found = chunk(self.model, self.plan.question, joint, 0, workers.threads)
+            computed = chunk(self.model, self.plan.question, values, 0, workers.threads)
             seconds = perf_counter() - begin
             if seconds > TRIAL_SECONDS or count == min(self.variants, self.piece):
                 break
             count = min(4 * count, self.piece)
-        size = sum(len(kind.piece(headings, found[name])) for name, headings in tables.items())
+        size = sum(len(kind.piece(headings, computed[name])) for name, headings in tables.items())
         share = self.variants / count
         at_once = max(workers.processes, 1)
         return Trial(count, seconds, seconds * share / at_once, size * share)
@@ -233,26 +204,27 @@ class Study:
         question, variation = self.plan.question, self.plan.variation
         with ExitStack() as stack:
             # threads of the kernel split a piece that is the only one
-            found = None if len(tasks) < 2 and workers.is_here else _executors(workers, stack)
-            if found is None:
+            is_alone = len(tasks) < 2 and workers.is_here
+            chosen = None if is_alone else _executors(workers, stack)
+            if chosen is None:
                 for task in tasks:
                     values = variation.values(task.begin, task.end)
                     yield task, chunk(self.model, question, values, task.begin, workers.threads)
                 return
-            executors, count, threads = found
-            parcel = Parcel.of(self.model, question)
+            executors, count, threads = chosen
+            parcel = pickle.dumps((self.model, question)), version()
 
-            def hand_over(executor: Executor, task: Task) -> Future[Answer]:
+            def submit(executor: Executor, task: Task) -> Future[Answer]:
                 values = variation.values(task.begin, task.end)
-                return submit(executor, parcel, values, task.begin, threads)
+                return executor.submit(work_off, parcel, values, task.begin, threads)
 
             def died(task: Task) -> Answer:
                 values = variation.values(task.begin, task.end)
-                return Answer(lost(question, values, task.begin), version())
+                return lost(question, values, task.begin), version()
 
-            for task, answer in executed(tasks, TaskCall(hand_over, died), executors, count):
-                check_version(answer.version)
-                yield task, answer.tables
+            for task, (tables, theirs) in executed(tasks, submit, died, executors, count):
+                check_version(theirs)
+                yield task, tables
 
     def in_memory(self, workers: Workers, progress: Progress | None = None) -> StudyResults:
         """All results as arrays.
@@ -262,9 +234,8 @@ class Study:
         """
         workers = _checked(workers)
         question = self.plan.question
-        width = len(question.tables[VARIANTS]) + len(question.tables.get("rows", ())) * (
-            self.model.problem.motion.rows
-        )
+        rows, tables = self.model.problem.motion.rows, question.tables
+        width = len(tables[VARIANTS]) + len(tables.get("rows", ())) * rows
         if self.variants * width > MOST_KEPT:
             raise UsageError(
                 f"the results of {self.variants} variants are {self.variants * width} numbers "
@@ -273,11 +244,10 @@ class Study:
         size = self.piece
         pieces = range(-(-self.variants // size))
         tasks = [Task(n, n * size, min((n + 1) * size, self.variants)) for n in pieces]
-        found: dict[int, dict[str, Records]] = {}
-        for task, tables in self._whole_pieces(tasks, workers, progress, 0):
-            found[task.piece] = tables
-        ordered = [found[number] for number in pieces]
-        records = {name: joined([piece[name] for piece in ordered]) for name in question.tables}
+        computed = {
+            t.piece: tables for t, tables in self._whole_pieces(tasks, workers, progress, 0)
+        }
+        records = {name: joined([computed[n][name] for n in pieces]) for name in question.tables}
         return StudyResults(self.source.name, question.tables, records, self.plan.notes)
 
     def in_folder(
@@ -285,7 +255,7 @@ class Study:
         folder: Path,
         workers: Workers,
         file_format: str = "csv",
-        anew: bool = False,
+        again: bool = False,
         progress: Progress | None = None,
     ) -> StudyFiles:
         """Writes the results into a folder; takes up what an earlier run of the same study left.
@@ -297,7 +267,7 @@ class Study:
         workers, kind = _checked(workers), format_of(file_format)
         spare(folder, [*self.model.built.read.document.files, *self.source.document.files])
         with StudyFolder(folder, self.contents(file_format), kind, self.piece) as output:
-            output.begin(anew)
+            output.begin(again)
             missing = [] if output.is_complete else output.missing()
             tasks = [Task(number, *output.stretch(number)) for number in missing]
             done = self.variants - sum(task.end - task.begin for task in tasks)
@@ -331,7 +301,7 @@ class Study:
 
 def study_of(
     model: Solvable,
-    given: str | Path | Mapping[str, Any],
+    study: str | Path | Mapping[str, Any],
     out: str | Path | None,
     file_format: str,
     again: bool,
@@ -339,51 +309,41 @@ def study_of(
     progress: Progress | None,
 ) -> StudyResults | StudyFiles:
     """`Model.study`, whose arguments these are."""
-    if not isinstance(given, Mapping):
-        given = a_path("study", given)
+    if not isinstance(study, Mapping):
+        study = a_path("study", study)
     a_text("format", file_format, '"csv"')
-    source = open_study(given)
-    study = Study(source.applied_to(model), source)
+    source = open_study(study)
+    planned = Study(source.applied_to(model), source)
     if out is None:
-        return study.in_memory(workers, progress)
-    return study.in_folder(a_path("out", out), workers, file_format, again, progress)
+        return planned.in_memory(workers, progress)
+    return planned.in_folder(a_path("out", out), workers, file_format, again, progress)
 
 
 def _checked(workers: Workers) -> Workers:
     """The same with whole numbers; UsageError where they are none, or too many."""
-    processes = a_whole_number("processes", workers.processes, "processes")
-    if processes > MOST_THREADS:
-        raise UsageError(f"processes {processes}: at most {MOST_THREADS}")
+    count = a_whole_number("processes", workers.processes, "processes")
+    if count > MOST_THREADS:
+        raise UsageError(f"processes {count}: at most {MOST_THREADS}")
     threads = a_whole_number("threads", workers.threads, "threads")
     check_threads(threads)
-    return workers._replace(threads=threads, processes=processes)
+    return workers._replace(threads=threads, processes=count)
 
 
 def _executors(workers: Workers, stack: ExitStack) -> tuple[Executors, int, int] | None:
     """Executors, how many tasks they do at a time, threads of each; None: this process computes."""
-    given = [workers.executor is not None, workers.scheduler is not None, workers.processes > 0]
-    if sum(given) > 1:
+    named = (workers.executor is not None, workers.scheduler is not None, workers.processes > 0)
+    if sum(named) > 1:
         raise UsageError("processes, executor and scheduler say who computes; give one of them")
     if workers.scheduler is not None:
-        from mechkin_cli.studies.workers import cluster
-
-        found = stack.enter_context(cluster(workers.scheduler))
-        for answer in found.ask(version).values():
-            check_version(answer)
-        return (
-            Executors(found.executor, None),
-            workers.at_once or found.workers,
-            workers.threads or 1,
-        )
+        client, count, versions = stack.enter_context(cluster(workers.scheduler, version))
+        for theirs in versions:
+            check_version(theirs)
+        return Executors(client), workers.at_once or count, workers.threads or 1
     if workers.executor is not None:
-        count = (
-            workers.at_once or getattr(workers.executor, "_max_workers", 0) or os.cpu_count() or 1
-        )
+        count = getattr(workers.executor, "_max_workers", 0) or os.cpu_count() or 1
         check_version(workers.executor.submit(version).result())
-        return Executors(workers.executor, None), count, workers.threads or 1
+        return Executors(workers.executor), workers.at_once or count, workers.threads or 1
     if workers.processes:
-        from mechkin_cli.studies.workers import processes
-
         make = partial(processes, workers.processes)
         executors = Executors(make(), make)
         stack.callback(lambda: executors.current.shutdown(wait=False, cancel_futures=True))
@@ -394,7 +354,7 @@ def _executors(workers: Workers, stack: ExitStack) -> tuple[Executors, int, int]
     # a piece to a thread: what is done beside the kernel goes on in several, too
     pool = ThreadPoolExecutor(threads)
     stack.callback(pool.shutdown, wait=False, cancel_futures=True)
-    return Executors(pool, None), threads, 1
+    return Executors(pool), threads, 1
 
 
 def _digest(content: bytes) -> str:

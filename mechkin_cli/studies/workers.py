@@ -3,6 +3,7 @@
 A task is a stretch of variants. Workers get few tasks at a time, so that memory does not grow with
 the study. Where a worker dies, the tasks that it may have died of are tried again one by one, and
 halved, until the one variant is found that kills it; that one is recorded, and the rest goes on.
+Executors are new processes of this machine, or an existing Dask cluster (extra `cluster`).
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from importlib import import_module
 from multiprocessing import resource_tracker
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError
 from mechkin_cli.record import NamedTuple
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 LONGEST_REASON = 200
 
@@ -53,26 +54,20 @@ class Task(NamedTuple):
         return self._replace(end=middle), self._replace(begin=middle)
 
 
-class TaskCall(Generic[Found]):
-    """What is done with a task.
-
-    Attributes:
-        submit: hands it to an executor.
-        lost: what is recorded of a single variant that its worker has died of.
-    """
-
-    def __init__(
-        self,
-        submit: Callable[[Executor, Task], Future[Found]],
-        lost: Callable[[Task], Found],
-    ) -> None:
-        self.submit, self.lost = submit, lost
-
-
 def executed(
-    tasks: Iterable[Task], work: TaskCall[Found], executors: Executors, workers: int
-) -> Iterator[tuple[Task, Found]]:
-    """What is found of each task, in the order in which they end.
+    tasks: Iterable[Task],
+    submit: Callable[[Executor, Task], Future[Result]],
+    lost: Callable[[Task], Result],
+    executors: Executors,
+    workers: int,
+) -> Iterator[tuple[Task, Result]]:
+    """The result of each task, in the order in which they end.
+
+    Args:
+        submit: hands a task to an executor.
+        lost: the result of a single variant that its worker has died of.
+        executors: they compute.
+        workers: how many tasks they do at a time.
 
     Raises:
         UsageError: there are no workers any more.
@@ -80,13 +75,22 @@ def executed(
     """
     queue = deque(tasks)
     suspects: deque[Task] = deque()
-    running: dict[Future[Found], Task] = {}
+    running: dict[Future[Result], Task] = {}
+
+    def start(task: Task) -> None:
+        try:
+            running[submit(executors.current, task)] = task
+        except (RuntimeError, OSError) as error:  # of which a broken executor's is one
+            if not executors.renew():
+                raise _gone(str(error)[:LONGEST_REASON] or type(error).__name__) from error
+            running[submit(executors.current, task)] = task
+
     try:
         while queue or suspects or running:
             if suspects and not running:
-                _submit(suspects.popleft(), work, executors, running)
+                start(suspects.popleft())
             while queue and not suspects and len(running) < PER_WORKER * workers:
-                _submit(queue.popleft(), work, executors, running)
+                start(queue.popleft())
             alone = len(running) == 1
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 task = running.pop(future)
@@ -95,29 +99,29 @@ def executed(
                 error = future.exception()
                 if error is None:
                     yield task, future.result()
-                elif not _is_death(error):
+                elif not isinstance(error, BrokenExecutor) and not _is_to_blame(error):
                     raise error
-                elif not (alone or _is_certain(error)):
+                elif not (alone or _is_to_blame(error)):
                     suspects.append(task)
                 elif task.end - task.begin > 1:
                     suspects.extendleft(reversed(task.halves))
                 else:
-                    yield task, work.lost(task)
+                    yield task, lost(task)
     finally:
         for future in running:
             future.cancel()
 
 
 class Executors:
-    """Gives an executor, and another one where the first is broken.
+    """An executor, and another one where it is broken.
 
     Args:
+        first: the first.
         make: starts one; None: a broken one stays, and the study ends with it.
-        given: the first.
     """
 
-    def __init__(self, given: Executor, make: Callable[[], Executor] | None = None) -> None:
-        self.current = given
+    def __init__(self, first: Executor, make: Callable[[], Executor] | None = None) -> None:
+        self.current = first
         self._make = make
 
     def renew(self) -> bool:
@@ -129,17 +133,6 @@ class Executors:
         return True
 
 
-def _submit(
-    task: Task, work: TaskCall[Found], executors: Executors, running: dict[Future[Found], Task]
-) -> None:
-    try:
-        running[work.submit(executors.current, task)] = task
-    except (RuntimeError, OSError) as error:  # of which a broken executor's is one
-        if not executors.renew():
-            raise _gone(str(error)[:LONGEST_REASON] or type(error).__name__) from error
-        running[work.submit(executors.current, task)] = task
-
-
 def _gone(reason: str) -> UsageError:
     return UsageError(
         f"the workers have gone away: {reason}; what they have computed is kept in the folder of "
@@ -147,17 +140,9 @@ def _gone(reason: str) -> UsageError:
     )
 
 
-def _is_death(error: BaseException) -> bool:
-    """Whether a worker has died while it had the task."""
-    return isinstance(error, BrokenExecutor) or _is_certain(error)
-
-
-def _is_certain(error: BaseException) -> bool:
+def _is_to_blame(error: BaseException) -> bool:
     """Whether the task itself is to blame: a cluster has tried it on several workers."""
     return type(error).__name__ == "KilledWorker"
-
-
-# Processes of this machine that compute pieces of a study.
 
 
 def processes(count: int) -> ProcessPoolExecutor:
@@ -185,15 +170,15 @@ def end_without_warnings() -> None:
     Before the first pool; a tracker that runs already is left as it is.
     """
     own = "ignore::UserWarning:multiprocessing.resource_tracker"
-    given = os.environ.get("PYTHONWARNINGS")
-    os.environ["PYTHONWARNINGS"] = own if given is None else f"{given},{own}"
+    before = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = own if before is None else f"{before},{own}"
     try:
         resource_tracker.ensure_running()
     finally:
-        if given is None:
+        if before is None:
             del os.environ["PYTHONWARNINGS"]
         else:
-            os.environ["PYTHONWARNINGS"] = given
+            os.environ["PYTHONWARNINGS"] = before
 
 
 def _begin() -> None:
@@ -209,8 +194,6 @@ def _end_with(parent: multiprocessing.process.BaseProcess) -> None:
     os._exit(1)
 
 
-# An existing Dask cluster as an executor (extra `cluster`).
-
 _ADDRESS = re.compile(
     r"inproc://\S+|(?:[a-z]+://)?(?:\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[^\s:/\[\]]+):[0-9]{1,5}"
 )
@@ -219,36 +202,16 @@ SECONDS = 10
 """How long a scheduler may take to answer."""
 
 
-class Cluster(NamedTuple):
-    """A connected cluster: its executor, how many tasks it does at a time, and what each worker
-    answers to a call."""
-
-    executor: Executor
-    workers: int
-    client: Any
-
-    def ask(self, question: Callable[[], str]) -> dict[str, str]:
-        """What every worker answers, by its address.
-
-        Raises:
-            UsageError: one cannot answer: it lacks the package.
-        """
-        found = self.client.run(question, on_error="return")
-        for worker, answer in found.items():
-            if isinstance(answer, BaseException):
-                raise UsageError(
-                    f"the worker {worker} cannot run mechkin: {type(answer).__name__}: "
-                    f"{str(answer)[:200]}; install the same version there"
-                )
-        return dict(found)
-
-
 @contextmanager
-def cluster(address: str) -> Iterator[Cluster]:
+def cluster(address: str, question: Callable[[], str]) -> Iterator[tuple[Executor, int, list[str]]]:
     """Connects to the scheduler at an address, such as tcp://host:8786.
 
+    Returns:
+        Its executor, how many tasks it does at a time, and what every worker answers to a call.
+
     Raises:
-        UsageError: dask is not installed, nobody answers, or there are no workers.
+        UsageError: dask is not installed, nobody answers, there are no workers, or one of them
+            cannot answer: it lacks the package.
     """
     if not _ADDRESS.fullmatch(address):
         raise UsageError(
@@ -260,7 +223,7 @@ def cluster(address: str) -> Iterator[Cluster]:
         distributed: Any = import_module("distributed")
     except ImportError:
         raise UsageError("--scheduler needs dask: pip install 'mechkin[cluster]'") from None
-    # what it logs of a scheduler that has gone is told in one sentence
+    # a scheduler that has gone is reported in one sentence, not by its log
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -277,6 +240,13 @@ def cluster(address: str) -> Iterator[Cluster]:
                 f"the scheduler at {address} has no workers; start some with `dask worker "
                 f"{address}`"
             )
-        yield Cluster(client.get_executor(), workers, client)
+        answers = client.run(question, on_error="return")
+        for worker, answer in answers.items():
+            if isinstance(answer, BaseException):
+                raise UsageError(
+                    f"the worker {worker} cannot run mechkin: {type(answer).__name__}: "
+                    f"{str(answer)[:200]}; install the same version there"
+                )
+        yield client.get_executor(), workers, list(answers.values())
     finally:
         client.close()

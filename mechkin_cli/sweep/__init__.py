@@ -1,7 +1,7 @@
 """Rows along the inputs: followed, judged, explained.
 
-Hides dead centres, branch points, friction's iteration and unresolved columns. Every row leaves
-with a status and its residual; where a sweep ends, a message says why.
+Hides dead centres, branch points, friction's iteration and unresolved columns. Every row gets a
+status and its residual; where a sweep ends, a message says why.
 """
 
 from __future__ import annotations

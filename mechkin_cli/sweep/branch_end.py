@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import mobility, modes, tolerances
 from mechkin_cli.assembly import MAY_BE_RIGID
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
-from mechkin_cli.modes import Passage, Walker
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import (
     BranchFold,
@@ -70,7 +69,7 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
 
 
 def crossing_note(session: Session, followed: Followed) -> Diagnostic:
-    """The branch points that a way passed straight on."""
+    """The branch points that the rows passed straight on."""
     places = [
         input_numbers(session.problem, session.layout, crossing.inputs)
         for crossing in followed.crossings
@@ -85,10 +84,10 @@ def passed_straight_on(
 
     Args:
         subject: what passed them.
-        places: numbers that tell each branch point.
+        places: numbers of each branch point.
         place: of what asked for the motion.
     """
-    shown = [", ".join(map(input_text, numbers)) for numbers in places[:MOST_SHOWN]]
+    shown = [_words(numbers) for numbers in places[:MOST_SHOWN]]
     more = len(places) - len(shown)
     return Diagnostic(
         "branch-point-passed",
@@ -105,13 +104,11 @@ def input_faults(session: Session) -> list[Diagnostic]:
     """What mobility says of inputs that are locked, dependent or too few, where by the count of
     their equations all loops would be driven.
 
-    To be asked where a run is stuck or its rank unclear from its first row on. At a branch point
-    ways of several kinds meet, and inputs that are locked on one drive another: then only freedoms
-    are named that are left undriven on all of them.
+    For runs that are stuck or whose rank is unclear from their first row on. At a branch point
+    motions of several kinds meet, and inputs that are locked on one drive another: then only
+    freedoms are named that are left undriven on all of them.
     """
-    from mechkin_cli.mobility import find_mobility, undriven_notes
-
-    found = find_mobility(session.problem, session)
+    found = mobility.find_mobility(session.problem, session)
     driven, idle, useful = session.problem.motion.driven, len(found.idle), found.useful
     codes = {"input-locked", "inputs-dependent", "undriven-freedom"}
     is_at_branch_point = found.first_order != found.mobility and not session.is_redundant
@@ -120,52 +117,51 @@ def input_faults(session: Session) -> list[Diagnostic]:
         codes = {"undriven-freedom"} if least > len(driven) + idle else set()
     elif useful and len(driven) > useful:
         # at the first row one of them may stand still by chance; together they cannot move
-        return [_too_many(driven, useful)]
-    notes = found.diagnostics if driven else undriven_notes(found.mobility or 0, idle, 0)
+        freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
+        return [
+            Diagnostic(
+                "inputs-dependent",
+                "error",
+                f"the inputs {', '.join(map('.'.join, driven))} are not independent",
+                measured=f"{len(driven)} inputs drive {freedoms}",
+                hint="drive fewer coordinates",
+            )
+        ]
+    notes = found.diagnostics if driven else mobility.undriven_notes(found.mobility or 0, idle, 0)
     return [note._replace(severity="error") for note in notes if note.code in codes]
-
-
-def _too_many(driven: Sequence[tuple[str, str]], useful: int) -> Diagnostic:
-    names = ", ".join(".".join(each) for each in driven)
-    freedoms = "one freedom" if useful == 1 else f"{useful} freedoms"
-    return Diagnostic(
-        "inputs-dependent",
-        "error",
-        f"the inputs {names} are not independent",
-        measured=f"{len(driven)} inputs drive {freedoms}",
-        hint="drive fewer coordinates",
-    )
 
 
 def locked_inputs(session: Session, moved: Floats) -> list[Diagnostic]:
     """The same of inputs that hardly `moved` (inputs,)."""
-    way = float(np.max(np.abs(moved), initial=0.0))
-    return input_faults(session) if way <= tolerances.PASSED else []
+    farthest = float(np.max(np.abs(moved), initial=0.0))
+    return input_faults(session) if farthest <= tolerances.PASSED else []
 
 
-def _row_span(rows: SweepRows) -> str:
-    missing = np.sort(rows.numbers[~rows.reached]) + 1
-    return f"row {missing[0]}" if missing.size == 1 else f"rows {missing[0]} to {missing[-1]}"
+def _words(places: Iterable[Number]) -> str:
+    return ", ".join(map(input_text, places))
 
 
 def _stay_empty(rows: SweepRows, where: str = "") -> str:
     """The missing rows in words, and `where` they lie."""
-    one = int(np.count_nonzero(~rows.reached)) == 1
-    lie = f"{'lies' if one else 'lie'} {where} and " if where else ""
-    return f"{_row_span(rows)} {lie}{'stays' if one else 'stay'} empty"
+    missing = np.sort(rows.numbers[~rows.reached]) + 1
+    lie, stay, span = "lie", "stay", f"rows {missing[0]} to {missing[-1]}"
+    if missing.size == 1:
+        lie, stay, span = "lies", "stays", f"row {missing[0]}"
+    return f"{span} {lie} {where} and {stay} empty" if where else f"{span} {stay} empty"
 
 
 def _place(
     session: Session, followed: Followed, inputs: Floats, shown: Iterable[int] | None = None
 ) -> tuple[Number, ...]:
-    """Where a way ended: the time, where inputs move by laws, and the inputs, or those `shown`."""
+    """Where the branch ended: time, where inputs move by laws, and the inputs, or those `shown`."""
     course = session.problem.motion.course
     numbers = input_numbers(session.problem, session.layout, inputs)
-    found = numbers if shown is None else tuple(numbers[number] for number in shown)
+    if shown is not None:
+        numbers = tuple(numbers[number] for number in shown)
     if followed.parameter is None or course is None or course.parameter.name != "time":
-        return found
+        return numbers
     moment = Number("time", followed.parameter, session.problem.units.label(TIME))
-    return (moment, *found)
+    return (moment, *numbers)
 
 
 def _dead_centre_note(
@@ -183,14 +179,14 @@ def _dead_centre_note(
         "dead-centre",
         "warning",
         f"the branch ends at a dead centre; {_stay_empty(rows, where)}",
-        measured=", ".join(map(input_text, shown)),
+        measured=_words(shown),
         hint=f"{cure}{_chords(session, path)}",
         numbers=shown,
     )
 
 
 def _chords(session: Session, path: Floats) -> str:
-    """What to know of rows that no law joins."""
+    """A remark on rows that no law joins."""
     course = session.problem.motion.course
     together = np.count_nonzero((path != path[:, :1]).any(axis=1)) > 1
     if not together or (course is not None and course.parameter.name != "row"):
@@ -207,11 +203,11 @@ def _assembled_again(
     if moving.size != 1 or not rows.reached[0]:
         return None
     number = int(moving[0])
-    walker = Walker(session, number, path[:, 0])
+    walker = modes.Walker(session, number, path[:, 0])
     direction = float(np.sign(followed.direction[number]))
     if walker.period is None or direction == 0.0:
         return None
-    other = walker.end(Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    other = walker.end(modes.Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
     value = other.value + direction * walker.period
     ahead = direction * (path[number, ~rows.reached] - value)
     behind = direction * (value - float(limit.inputs[number]))
@@ -228,21 +224,27 @@ def _all_beyond(limit: BranchFold, path: Floats, rows: SweepRows) -> bool:
     return bool(np.all(along <= 0.0))
 
 
+def _error(
+    code: str, rows: SweepRows, places: tuple[Number, ...], text: str, measured: str, hint: str
+) -> Diagnostic:
+    """A branch that ends at these places, in no dead centre of the mechanism."""
+    message = f"{text}; {_stay_empty(rows)}"
+    return Diagnostic(code, "error", message, measured=measured, hint=hint, numbers=places)
+
+
 def _runaway_note(
     session: Session, followed: Followed, limit: Runaway, rows: SweepRows
 ) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
     units = session.problem.units
     slide = float(units.from_si(limit.slide * session.layout.length, LENGTH))
-    return Diagnostic(
+    return _error(
         "unbounded",
-        "error",
-        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity; "
-        f"{_stay_empty(rows)}",
-        measured=f"{slide:.6g} {units.label(LENGTH)} at the last place followed, "
-        f"{', '.join(map(input_text, places))}",
-        hint="end the sweep before it, or choose another assembly",
-        numbers=places,
+        rows,
+        places,
+        f"the slide of {limit.joint} grows out of bounds, the branch seems to go to infinity",
+        f"{slide:.6g} {units.label(LENGTH)} at the last place followed, {_words(places)}",
+        "end the sweep before it, or choose another assembly",
     )
 
 
@@ -250,15 +252,15 @@ def _branch_point_note(
     session: Session, followed: Followed, point: BranchPoint, rows: SweepRows
 ) -> Diagnostic:
     places = _place(session, followed, point.inputs)
-    return Diagnostic(
+    return _error(
         "branch-point",
-        "error",
+        rows,
+        places,
         "the branch comes to a branch point, where it crosses another and the mechanism may go "
-        f"either way; {_stay_empty(rows)}",
-        measured=", ".join(map(input_text, places)),
-        hint="assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
+        "either way",
+        _words(places),
+        "assembly: {at_branch_points: straight} goes on along the smooth continuation; or "
         "begin another sweep beyond it with assembly: {near: ...}",
-        numbers=places,
     )
 
 
@@ -268,50 +270,44 @@ def _lost_hold_note(
     limit: BranchFold | Runaway | BranchPoint | None,
     rows: SweepRows,
 ) -> Diagnostic | None:
-    """If what holds an idle freedom ends the branch, and not the mechanism, that."""
-    from mechkin_cli.mobility import lost_holds
-
+    """Says where the hold of an idle freedom ends the branch, and not the mechanism."""
     at = limit if isinstance(limit, BranchFold | BranchPoint) else followed
-    held = lost_holds(session, at.inputs, at.state)
+    held = mobility.lost_holds(session, at.inputs, at.state)
     if not held:
         return None
     places = _place(session, followed, at.inputs)
     words = "; ".join(dict.fromkeys(one.words for one in held))
-    kept = ", ".join(dict.fromkeys(one.convention for one in held))
+    conventions = ", ".join(dict.fromkeys(one.convention for one in held))
     names = [one.name for one in held if one.cure == f"drive {one.name}"]
     drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
-    return Diagnostic(
+    return _error(
         "hold-ends",
-        "error",
-        f"{words}; {kept}, and cannot be kept there beyond this place, where the mechanism itself "
-        f"has no dead centre; {_stay_empty(rows)}",
-        measured=", ".join(map(input_text, places)),
-        hint=f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
-        numbers=places,
+        rows,
+        places,
+        f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
+        "itself has no dead centre",
+        _words(places),
+        f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
     )
 
 
 def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
-    return Diagnostic(
+    note = _error(
         "steps-exhausted",
-        "error",
+        rows,
+        places,
         "following the branch takes too many steps: the way to the next row is too long, or the "
-        f"mechanism turns too fast on it; {_stay_empty(rows)}",
-        measured=f"{followed.steps} steps, last place {', '.join(map(input_text, places))}",
-        limit=f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit",
-        hint="check the range of the input and its unit",
-        numbers=places,
+        "mechanism turns too fast on it",
+        f"{followed.steps} steps, last place {_words(places)}",
+        "check the range of the input and its unit",
     )
+    limit = f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit"
+    return note._replace(limit=limit)
 
 
 def _lost_note(session: Session, followed: Followed, path: Floats, rows: SweepRows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
-    return Diagnostic(
-        "branch-lost",
-        "error",
-        f"the branch could not be followed further; {_stay_empty(rows)}",
-        measured=f"last place {', '.join(map(input_text, places))}",
-        hint=(MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path),
-        numbers=places,
-    )
+    hint = (MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path)
+    text = "the branch could not be followed further"
+    return _error("branch-lost", rows, places, text, f"last place {_words(places)}", hint)

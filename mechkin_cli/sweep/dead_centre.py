@@ -1,8 +1,21 @@
 """Rows that stand at a dead centre: there a coordinate goes as the root of what is left of the
 input, so that its rates, and what a load costs the input, grow without bound.
 
-Doubles give the position there to half its digits, and of the rates none. So these are not read off
-the row: two places a little before it on its branch tell what grows towards it.
+Doubles give the position there to half its digits, and of the rates none. So these are not taken
+from the row: two places a little before it on its branch show what grows towards it.
+
+Rates of which no digit is left are found in double-double. A row's states x are closed in doubles,
+and next to a dead centre a few roundings of that, of the file's constants or of an input are a
+large part of the distance from it, with which rates go. How large is seen by one step of Newton's
+method with the numbers as the file writes them,
+
+    x + dx,   J dx = -F(x),   F in double-double,
+
+and the rates there. At a dead centre itself J is singular at the true place: the step goes half
+the way to it, from wherever rounding has left the row, and all that grows there doubles. Beside
+it the step ends at the true place but for its square. A row that has come so near that one
+rounding of an input u is as much, |x''| eps against |x'|, may be right by chance, or on the other
+branch.
 """
 
 from __future__ import annotations
@@ -12,9 +25,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import assembly
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.plan import Demand, Slot, demand_of
 from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
@@ -31,22 +45,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.plan import Slot
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import SweepRows
-
-
-# Places before a row at a dead centre, on its branch: what grows without bound shows there.
 
 
 def places_before(session: Session, rows: SweepRows, row: int) -> list[PlacesBefore]:
     """The places before a row: followed from another row that is clear of the fold; where there
     is none, left for along the branches that meet in the row: along that of other rows, or that
     which `near` means, or along both."""
-    found = _followed(session, rows, row)
-    if found is not None:
-        return [found]
+    before = _followed(session, rows, row)
+    if before is not None:
+        return [before]
     return _chosen(session, rows, row, left_for(session, row, rows.states[:, row]))
 
 
@@ -66,59 +76,47 @@ def _followed(session: Session, rows: SweepRows, row: int) -> PlacesBefore | Non
     start = numbers[np.argmin(np.abs(numbers - row))]
     parts = np.array([1.0, *(part / distance[start] for part in BEFORE_DEAD_CENTRE)])
     path = values[:, [row]] + away[:, [start]] * parts
-    found = session.follow(path, rows.states[:, start], every_row=True)
-    if found.reached < parts.size:
+    followed = session.follow(path, rows.states[:, start], every_row=True)
+    if followed.reached < parts.size:
         return None
     places = np.ascontiguousarray(path[:, 1:])
-    batch = session.close(places, np.ascontiguousarray(found.guess[:, 1:]))
+    batch = session.close(places, np.ascontiguousarray(followed.guess[:, 1:]))
     return PlacesBefore(row, places, batch.states) if batch.good.all() else None
 
 
 def _chosen(
-    session: Session, rows: SweepRows, row: int, ways: list[PlacesBefore]
+    session: Session, rows: SweepRows, row: int, branches: list[PlacesBefore]
 ) -> list[PlacesBefore]:
-    """Those of two branches on which other rows lie, or which `near` means; both where nothing
-    tells."""
-    if len(ways) < 2:
-        return ways
-    apart = ways[0].states[:, :1] - ways[1].states[:, :1]
+    """Of two branches the one on which other rows lie, or which `near` means; both where neither
+    decides."""
+    if len(branches) < 2:
+        return branches
+    apart = branches[0].states[:, :1] - branches[1].states[:, :1]
     others = rows.reached & (rows.section == rows.section[row])
     along = _products(apart, rows.states - rows.states[:, [row]])
     seen = np.flatnonzero(others & (np.abs(along) > ON_FOLD * _products(apart, apart)))
     if seen.size:
         nearest = seen[np.argmin(np.abs(seen - row))]
-        return [ways[0 if along[nearest] > 0.0 else 1]]
+        return [branches[0 if along[nearest] > 0.0 else 1]]
     # a variant's branch is the base's, which `near` names where the base stands
     if not session.problem.assembly.near or continued_start(session) is not None:
-        return ways
-    from mechkin_cli.assembly import distances_of, is_unclear
+        return branches
+    states = np.stack([branch.states[:, 0] for branch in branches], axis=1)
+    distances, _ = assembly.distances_of(session, branches[0].inputs[:, 0], states)
+    return (
+        branches
+        if assembly.is_unclear(*sorted(distances))
+        else [branches[int(np.argmin(distances))]]
+    )
 
-    states = np.stack([way.states[:, 0] for way in ways], axis=1)
-    distances, _ = distances_of(session, ways[0].inputs[:, 0], states)
-    return ways if is_unclear(*sorted(distances)) else [ways[int(np.argmin(distances))]]
 
-
-def _products(way: Floats, states: Floats) -> Floats:
-    """Scalar products (places,) with a way (states, 1), added up in the order of the states."""
+def _products(direction: Floats, states: Floats) -> Floats:
+    """Scalar products (places,) with a direction (states, 1), added up in the order of the
+    states."""
     total = np.zeros(states.shape[1])
-    for along, state in zip(way[:, 0], states, strict=True):
+    for along, state in zip(direction[:, 0], states, strict=True):
         total = total + along * state
     return total
-
-
-# Rates of which no digit is left, measured in double-double.
-#
-# A row's states x are closed in doubles, and next to a dead centre a few roundings of that, of the
-# file's constants or of an input are a large part of the distance from it, with which rates go. How
-# large is seen by one step of Newton's method with the numbers as the file writes them,
-#
-#     x + dx,   J dx = -F(x),   F in double-double,
-#
-# and the rates there. At a dead centre itself J is singular at the true place: the step goes half
-# the way to it, from wherever rounding has left the row, and all that grows there doubles. Beside
-# it the step ends at the true place but for its square. A row that has come so near that one
-# rounding of an input u is as much, |x''| eps against |x'|, may be right by chance, or on the other
-# branch.
 
 
 def lost_rates(session: Session, rows: NDArray[np.intp], states: Floats) -> Bools:
@@ -170,16 +168,15 @@ def judge_dead_centres(session: Session, rows: SweepRows, condition: Floats) -> 
     if not near.any() or not session.driven:
         return
     for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():
-        found = [way for way in places_before(session, rows, row) if _grows(session, way)]
-        if found:
-            rows.dead_centres += found
+        before = [places for places in places_before(session, rows, row) if _grows(session, places)]
+        if before:
+            rows.dead_centres += before
             rows.status[row] = Status.dead_centre
     if rows.dead_centres:
         rows.diagnostics.append(_note(rows))
 
 
 def _is_lost(session: Session, rows: SweepRows, near: Bools) -> Bools:
-    """Rows (rows,) whose rates say nothing."""
     lost: Bools = np.asarray(rows.status == Status.rank_unclear)
     numbers = np.flatnonzero(near & ~lost)
     if numbers.size:
@@ -189,9 +186,9 @@ def _is_lost(session: Session, rows: SweepRows, near: Bools) -> Bools:
 
 
 def _grows(session: Session, before: PlacesBefore) -> bool:
-    """Whether rates along the way to a dead centre grow without bound."""
-    way = before.inputs[:, 1] - before.inputs[:, 0]
-    rates = np.repeat((way / np.abs(way).max())[:, None], 2, axis=1)
+    """Whether rates towards a dead centre grow without bound."""
+    move = before.inputs[:, 1] - before.inputs[:, 0]
+    rates = np.repeat((move / np.abs(move).max())[:, None], 2, axis=1)
     rows = RowInputs(before.inputs, before.states, rates)
     batch = session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
     assert batch.first is not None
@@ -206,11 +203,8 @@ def put_unbounded(
     without bound towards a row at a dead centre; others that take rates or reactions have no value.
 
     Args:
-        session: the one that ran.
-        states: its rows.
-        rows: what it was given for them.
-        ask: what it was asked for.
-        batch: what it found.
+        session, states, rows, ask: of the run.
+        batch: its result.
     """
     assert batch.outputs is not None
     assert ask.readout is not None
@@ -235,11 +229,11 @@ def put_unbounded(
             level = np.abs(close).max(where=np.isfinite(close), initial=0.0)
             grows &= np.abs(close) > REACTION_ROUNDING * level
             grows &= not rests
-            told = np.where(grows, np.copysign(np.inf, close), np.nan)
+            infinite = np.where(grows, np.copysign(np.inf, close), np.nan)
             if before.row in put:
                 # of two branches that meet in the row
-                told[told != batch.outputs[lost, before.row]] = np.nan
-            batch.outputs[lost, before.row] = told
+                infinite[infinite != batch.outputs[lost, before.row]] = np.nan
+            batch.outputs[lost, before.row] = infinite
         put.add(before.row)
 
 
@@ -253,21 +247,20 @@ def _comes_to_rest(rates: Floats | None, row: int) -> bool:
 
 
 def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]:
-    """The output rows of some quantities."""
     return [slots[q.name].first + part for q in quantities for part in range(slots[q.name].width)]
 
 
 def _note(rows: SweepRows) -> Diagnostic:
-    ways = [before.row + 1 for before in rows.dead_centres]
-    numbers = list(dict.fromkeys(ways))
+    standing = [before.row + 1 for before in rows.dead_centres]
+    numbers = list(dict.fromkeys(standing))
     where = f"row {numbers[0]} stands" if len(numbers) == 1 else f"{len(numbers)} rows stand"
     first = "" if len(numbers) == 1 else f", the first is row {numbers[0]}"
-    lone = [number for number in numbers if ways.count(number) > 1]
+    double = [number for number in numbers if standing.count(number) > 1]
     both = ""
-    if lone:
+    if double:
         both = (
-            f"; nothing tells on which of two branches row {lone[0]} is, so what is infinite with "
-            "another sign on each is empty, too"
+            f"; it is undecided on which of two branches row {double[0]} is, so what is infinite "
+            "with another sign on each is empty, too"
         )
     return Diagnostic(
         "at-dead-centre",

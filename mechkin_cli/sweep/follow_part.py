@@ -28,9 +28,7 @@ def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
         return session
     needed = _needed_blocks(problem, session.graph, wanted)
     left_out = tuple(b for b in range(len(session.graph.blocks)) if b not in needed)
-    if not left_out:
-        return session
-    return _without_blocks(session, left_out)
+    return _without_blocks(session, left_out) if left_out else session
 
 
 @remembered
@@ -39,7 +37,6 @@ def _without_blocks(session: Session, left_out: tuple[int, ...]) -> Session:
 
 
 def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Problem:
-    """The problem without some blocks."""
     mechanism = _without(problem.mechanism, graph, left_out)
     note = _note(graph, left_out)
     near = {k: v for k, v in problem.assembly.near.items() if k in mechanism.coordinates}
@@ -99,7 +96,6 @@ def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
 
 
 def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
-    """The links that a quantity is about."""
     if quantity.owner in mechanism.joints:
         joint = mechanism.joints[quantity.owner]
         return (joint.first, joint.second)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import ORIENTATION, turn_count
 from mechkin_cli.sweep.rows import SweepRows
@@ -37,13 +37,13 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for step in (-1, 1):
-            way = slice(start.row, None, step)
+            onward = slice(start.row, None, step)
             followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
-            part = rows.part(way)
+            part = rows.part(onward)
             part.take(followed, 0)
             part.section *= step
             rows.nodes += followed.steps
-            _explain(session, np.ascontiguousarray(values[:, way]), followed, part)
+            _explain(session, np.ascontiguousarray(values[:, onward]), followed, part)
     _count_from_first(session, rows)
     return rows
 
@@ -60,15 +60,11 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
 
 
 def _explain(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
-    """Says which branch points a way passed, and what ended it, if it ended."""
+    """Says which branch points were passed, and what ended the branch, if it ended."""
     if followed.crossings:
-        from mechkin_cli.sweep.branch_end import crossing_note
-
-        rows.diagnostics.append(crossing_note(session, followed))
+        rows.diagnostics.append(sweep.crossing_note(session, followed))
     if followed.end != TrackEnd.FINISHED and not rows.reached.all():
-        from mechkin_cli.sweep.branch_end import explain_end
-
-        explain_end(session, path, followed, rows)
+        sweep.explain_end(session, path, followed, rows)
 
 
 def _count_from_first(session: Session, rows: SweepRows) -> None:

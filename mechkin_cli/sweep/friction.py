@@ -1,4 +1,7 @@
-"""What a sweep has to say of friction: rows without an answer, self-locking, loads not counted."""
+"""Friction in a sweep: rows without an answer, self-locking, loads that it does not count.
+
+Rows are judged when forces are read for the first time (`FrictionRows`).
+"""
 
 from __future__ import annotations
 
@@ -7,19 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import idle, sweep, tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.units import FORCE, MOMENT
+from mechkin_cli.units import FORCE, MOMENT, Dimension
 from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, Rubbing, Wanted
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.rows import RunRows
-    from mechkin_cli.units import Dimension
 
 
 CODE = "friction-undecided"
@@ -39,16 +39,12 @@ _WHY = {
         "make the coefficient smaller, or move the sweep by a fraction of its step",
     ),
 }
-"""What is said of a row without an answer, and what to do."""
+"""Why a row has no answer, and what to do."""
 
 
-class FrictionVerdict(NamedTuple):
-    """Rows (rows,) in which some forces have no value, those of them in which all would be
-    unfounded, and what to say."""
-
-    lost: Bools
-    unfounded: Bools
-    diagnostics: list[Diagnostic]
+FrictionVerdict = tuple["Bools", "Bools", list[Diagnostic]]
+"""Rows (rows,) in which some forces have no value, those of them in which all would be unfounded,
+and messages."""
 
 
 def verdict_quantities(problem: Problem) -> list[Wanted]:
@@ -61,17 +57,15 @@ def verdict_quantities(problem: Problem) -> list[Wanted]:
 
 def _holding(problem: Problem) -> list[Wanted]:
     """What holds the idle freedoms, where the file does not accept that something does."""
-    from mechkin_cli.idle import idle_freedoms
-
     if problem.hold_idle:
         return []
     known = problem.quantities()
-    return [known[name] for name in dict.fromkeys(i.holding for i in idle_freedoms(problem))]
+    return [known[name] for name in dict.fromkeys(i.holding for i in idle.idle_freedoms(problem))]
 
 
-def friction_verdict(result: RunRows) -> FrictionVerdict:
+def friction_verdict(result: sweep.Result) -> FrictionVerdict:
     """The verdict on the friction of a result, whose verdict quantities have been read."""
-    rows, problem = result.row_states, result.problem
+    rows = result.row_states
     judged = rows.reached & has_rates(rows.status)
     lost, unfounded = np.zeros((2, judged.size), dtype=bool)
     diagnostics = []
@@ -84,21 +78,26 @@ def friction_verdict(result: RunRows) -> FrictionVerdict:
     lost |= unfounded
     locking = judged & (result.columns[SELF_LOCKING.name][0] > 0.0) & ~lost
     if locking.any():
-        diagnostics.append(_self_locking(problem, locking))
-    return FrictionVerdict(lost, unfounded, diagnostics)
+        text = (
+            f"in {_rows(locking)} a drive would brake without friction and has to push with it: "
+            "the loads alone do not move the mechanism there"
+        )
+        diagnostics.append(Diagnostic("self-locking", "note", text))
+    return lost, unfounded, diagnostics
 
 
-Finding = Iterator[tuple["Bools", Diagnostic]]
+Findings = Iterator[tuple["Bools", Diagnostic]]
+"""Rows (rows,) with a message on them."""
 
 
-def _undecided(result: RunRows, judged: Bools) -> Finding:
+def _undecided(result: sweep.Result, judged: Bools) -> Findings:
     frictions = result.problem.mechanism.frictions
     states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
     for code, (why, cure) in _WHY.items():
-        found = [judged & (state == int(code)) for state in states]
-        named = [one for one, where in zip(frictions, found, strict=True) if where.any()]
+        masks = [judged & (state == int(code)) for state in states]
+        named = [one for one, where in zip(frictions, masks, strict=True) if where.any()]
         if named:
-            where = np.any(found, axis=0)
+            where = np.any(masks, axis=0)
             if code is FrictionState.AT_REST and not result.problem.motion.inputs:
                 cure = "while all rests, each friction takes what holds it: positions are known"
             text = f"{why.format(_list(named))}; forces stay empty in {_rows(where)}"
@@ -109,7 +108,7 @@ def _list(named: Sequence[Rubbing]) -> str:
     return ", ".join(one.joint for one in named)
 
 
-def _not_unique(result: RunRows, judged: Bools) -> Finding:
+def _not_unique(result: sweep.Result, judged: Bools) -> Findings:
     """Friction by a reaction that redundant constraints leave arbitrary."""
     known = result.problem.quantities()
     frictions = result.problem.mechanism.frictions if result.shifts else ()
@@ -123,7 +122,8 @@ def _not_unique(result: RunRows, judged: Bools) -> Finding:
     for rubbing, name in zip(frictions, names, strict=True):
         own, *others = (np.abs(each[name][0]) for each in columns)
         limit = tolerances.UNIQUE_CELL * np.fmax(own, level)
-        where = judged & np.isfinite(own) & ~_all_near(own, others, limit)
+        is_unique = np.all([np.abs(other - own) <= limit for other in others], axis=0)
+        where = judged & np.isfinite(own) & ~is_unique
         if where.any() and rubbing.at_rest != 0.0:
             lost |= where
             named.append(rubbing)
@@ -131,18 +131,11 @@ def _not_unique(result: RunRows, judged: Bools) -> Finding:
         yield lost, arbitrary_friction(named)
 
 
-def _all_near(own: Floats, others: Sequence[Floats], limit: Floats) -> Bools:
-    near = np.ones(own.size, dtype=bool)
-    for other in others:
-        near &= np.abs(other - own) <= limit
-    return near
-
-
 def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     """Friction that goes by reactions which are not unique, and how to make them so."""
     lengths = ("length", "collar", "width")
-    given = [key for key in lengths if any(getattr(one, key) is not None for one in named)]
-    without = f", or leave out {' and '.join(given)}" if given else ""
+    written = [key for key in lengths if any(getattr(one, key) is not None for one in named)]
+    without = f", or leave out {' and '.join(written)}" if written else ""
     return Diagnostic(
         "friction-not-unique",
         "error",
@@ -153,29 +146,27 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     )
 
 
-def _spinning(result: RunRows, judged: Bools) -> Finding:
+def _spinning(result: sweep.Result, judged: Bools) -> Findings:
     """Friction that would drive an idle freedom."""
-    from mechkin_cli.idle import idle_freedoms
-
     problem = result.problem
     level, length = result.columns[REACTION_LEVEL.name][0], result.session.layout.length
-    for idle in idle_freedoms(problem) if _holding(problem) else ():
-        unit = 1.0 if idle.slides else length
-        holding = np.sqrt(sum(part * part for part in result.columns[idle.holding]))
+    for freedom in idle.idle_freedoms(problem) if _holding(problem) else ():
+        unit = 1.0 if freedom.slides else length
+        holding = np.sqrt(sum(part * part for part in result.columns[freedom.holding]))
         where = judged & (holding > tolerances.UNIQUE_CELL * level * unit)
         if where.any():
-            dimension = FORCE if idle.slides else MOMENT
+            dimension = FORCE if freedom.slides else MOMENT
             most = float(problem.units.from_si(float(np.max(holding[where])), dimension))
-            motion, what = ("slide", "a force") if idle.slides else ("spin", "a moment")
+            motion, what = ("slide", "a force") if freedom.slides else ("spin", "a moment")
             yield (
                 where,
                 Diagnostic(
                     "loaded-spin",
                     "error",
-                    f"{idle.words}, and friction drives it in {_rows(where)}: the {motion} is a "
+                    f"{freedom.words}, and friction drives it in {_rows(where)}: the {motion} is a "
                     "dynamic freedom, forces depend on it",
                     measured=f"{most:.6g} {problem.units.label(dimension)}",
-                    hint=f"{idle.cure}, or accept {what} that holds it with idle: hold",
+                    hint=f"{freedom.cure}, or accept {what} that holds it with idle: hold",
                 ),
             )
 
@@ -183,36 +174,25 @@ def _spinning(result: RunRows, judged: Bools) -> Finding:
 def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | None:
     """Why a motion cannot be integrated with its friction: reactions that are arbitrary, or a
     joint that rubs at an idle link."""
-    from mechkin_cli.idle import idle_freedoms
-
     frictions, joints = problem.mechanism.frictions, problem.mechanism.joints
     if frictions and redundant:
         return arbitrary_friction(frictions)
-    for idle in idle_freedoms(problem) if frictions and not problem.hold_idle else ():
+    for freedom in idle.idle_freedoms(problem) if frictions and not problem.hold_idle else ():
         for rubbing in frictions:
             joint = joints[rubbing.joint]
-            if (joint.first in idle.links) != (joint.second in idle.links):
+            if (joint.first in freedom.links) != (joint.second in freedom.links):
                 return Diagnostic(
                     "loaded-spin",
                     "error",
-                    f"{idle.words}, and friction of {joint.name} may drive it: that is a dynamic "
-                    "freedom, on which the motion depends",
+                    f"{freedom.words}, and friction of {joint.name} may drive it: that is a "
+                    "dynamic freedom, on which the motion depends",
                     rubbing.place,
-                    hint=f"{idle.cure}, or accept that it is held with idle: hold",
+                    hint=f"{freedom.cure}, or accept that it is held with idle: hold",
                 )
     return None
 
 
-def _self_locking(problem: Problem, locking: Bools) -> Diagnostic:
-    return Diagnostic(
-        "self-locking",
-        "note",
-        f"in {_rows(locking)} a drive would brake without friction and has to push with it: the "
-        "loads alone do not move the mechanism there",
-    )
-
-
-def uncounted_notes(result: RunRows) -> list[Diagnostic]:
+def uncounted_notes(result: sweep.Result) -> list[Diagnostic]:
     """Loads of joints that rub which their friction does not go by, for lack of a length."""
     notes: list[Diagnostic] = []
     problem, known = result.problem, result.problem.quantities()
@@ -276,14 +256,10 @@ def _rows(where: Bools) -> str:
     return f"{numbers.size} rows, first in row {numbers[0]}"
 
 
-# The rows' verdict on friction, found when forces are read for the first time.
-
-
 def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
     """What forces with friction are judged by, to be read in the run of `wanted`."""
     if not (demand & Demand.FORCES and problem.mechanism.frictions):
         return []
-
     known = {quantity.name for quantity in wanted}
     return [q for q in verdict_quantities(problem) if q.name not in known]
 
@@ -297,25 +273,28 @@ class FrictionRows:
     @property
     def is_lost(self) -> bool:
         """Whether a row has no forces for want of a friction."""
-        return self.verdict is not None and bool(self.verdict.lost.any())
+        return self.verdict is not None and bool(self.verdict[0].any())
 
     def beside(self, problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
         """What `judged_by` names, until the rows are judged."""
         return [] if self.verdict is not None else judged_by(problem, wanted, demand)
 
-    def judge(self, result: RunRows, wanted: Iterable[Wanted], demand: Demand) -> None:
+    def judge(self, result: sweep.Result, wanted: Iterable[Wanted], demand: Demand) -> None:
         """Judges the rows once; empties forces, new and known, that have no ground."""
         if not (demand & Demand.FORCES and result.problem.mechanism.frictions):
             return
         read = list(wanted)
+        is_first = self.verdict is None
         if self.verdict is None:
-            self.verdict, rows = friction_verdict(result), result.row_states
-            rows.diagnostics += self.verdict.diagnostics
-            rows.status[self.verdict.lost] = Status.friction_undecided
+            self.verdict = friction_verdict(result)
+        lost, unfounded, diagnostics = self.verdict
+        if is_first:
+            result.row_states.diagnostics += diagnostics
+            result.row_states.status[lost] = Status.friction_undecided
             known = result.problem.quantities()
             read += [known[name] for name in result.columns if name in known]
-            if result.power_error.size and self.verdict.unfounded.any():
-                result.power_error[self.verdict.unfounded] = np.nan
+            if result.power_error.size and unfounded.any():
+                result.power_error[unfounded] = np.nan
         for quantity in read:
             if quantity.kind in FORCE_KINDS and quantity.name in result.columns:
-                result.columns[quantity.name][:, self.verdict.unfounded] = np.nan
+                result.columns[quantity.name][:, unfounded] = np.nan

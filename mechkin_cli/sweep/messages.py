@@ -1,4 +1,9 @@
-"""What a sweep has to say about its rows beside their verdicts."""
+"""Messages of a sweep about its rows beside their verdicts.
+
+In reading order: turns that do not close, redundant constraints, conditions, poses in gimbal lock
+(where the middle one of three turns is a quarter turn, the others go about one axis, and their
+rates are lost), sets of actuators that cannot hold the mechanism, loads without a value.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.assembly import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number, UsageError
 from mechkin_cli.expressions import parse
@@ -20,7 +25,6 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
@@ -32,19 +36,11 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Joint, Problem, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.rows import RunRows, SweepRows
+    from mechkin_cli.sweep.rows import SweepRows
 
 
 LOADS_NAMED = 4
 """Unique bearing loads that are named one by one."""
-
-
-class _Turn(NamedTuple):
-    """A row that is some whole turns of an input away from the first."""
-
-    name: str
-    row: int
-    turns: int
 
 
 def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
@@ -53,23 +49,24 @@ def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnost
     A thread that advances with the turn, and what moves with it, is not meant to be. `states`
     (states, rows) in kernel units.
     """
-    turns = _whole_turns(session)
-    turn = next((turn for turn in turns if reached[turn.row]), None)
-    if turn is None or not reached[0] or not stands_elsewhere(session, states[:, [0, turn.row]]):
+    row, turns, name = next(
+        (turn for turn in _whole_turns(session) if reached[turn[0]]), (0, 0, "")
+    )
+    if not name or not reached[0] or not stands_elsewhere(session, states[:, [0, row]]):
         return None
     return Diagnostic(
         "turn-not-closed",
         "note",
-        f"after {turn.turns} full turn{'s' * (turn.turns > 1)} of {turn.name}, in row "
-        f"{turn.row + 1}, the mechanism is not back at its first row's position: it has gone on to "
-        "another assembly",
+        f"after {turns} full turn{'s' * (turns > 1)} of {name}, in row {row + 1}, the "
+        "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
 
 
 @remembered
-def _whole_turns(session: Session) -> list[_Turn]:
-    """The rows that are whole turns of the one moving input away from the first, in order."""
+def _whole_turns(session: Session) -> list[tuple[int, int, str]]:
+    """The rows that are whole turns of the one moving input away from the first, in order, how many
+    turns, and of which input."""
     inputs = session.inputs.values
     moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
     if moving.size != 1:
@@ -82,7 +79,7 @@ def _whole_turns(session: Session) -> list[_Turn]:
     rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
     whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
     rows = np.flatnonzero(whole).tolist()
-    return [_Turn(item.name, row, round(abs(float(turns[row])))) for row in rows]
+    return [(row, round(abs(float(turns[row]))), item.name) for row in rows]
 
 
 def stands_elsewhere(session: Session, both: Floats) -> bool:
@@ -112,7 +109,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     return found
 
 
-def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
+def redundancy_note(result: sweep.Result, asked: Sequence[Wanted]) -> Diagnostic:
     """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
     are unique nevertheless."""
     graph = result.graph
@@ -135,7 +132,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     )
 
 
-def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
+def _unique_loads(result: sweep.Result, asked: Sequence[Wanted]) -> list[str]:
     """The bearing loads of the reactions asked for that are unique in every row, where the
     reactions are not; along a slide there is none."""
     known, joints = result.problem.quantities(), result.problem.mechanism.joints
@@ -151,15 +148,12 @@ def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
     return found
 
 
-def _is_unique(result: RunRows, text: str) -> bool:
-    """Whether an expression of reactions is in every row that has a position."""
+def _is_unique(result: sweep.Result, text: str) -> bool:
     expression, reached = parse(text), result.row_states.reached
 
-    def values(source: RunRows) -> Floats:
-        found = np.broadcast_to(
-            np.asarray(expression.evaluate(source.quantity).value), reached.shape
-        )
-        return found[reached]
+    def values(source: sweep.Result) -> Floats:
+        value = np.asarray(expression.evaluate(source.quantity).value)
+        return np.broadcast_to(value, reached.shape)[reached]
 
     others = [values(other) for other in result.alternatives]
     disturbed = [values(other) for other in result.disturbed]
@@ -213,9 +207,6 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     )
 
 
-# Poses that are told by three turns: where the middle one is a quarter turn, the others go about
-# one axis, and their rates are lost (gimbal lock).
-
 _TROUBLE = (Status.branch_lost, Status.near_singular, Status.rank_unclear)
 
 
@@ -228,7 +219,7 @@ def middle_turn(joint: Joint) -> str | None:
     return None
 
 
-def locked_in(result: RunRows, rows: Bools) -> str | None:
+def locked_in(result: sweep.Result, rows: Bools) -> str | None:
     """The middle turn of a pose that is a quarter turn in some of the rows."""
     for joint in result.problem.mechanism.joints.values():
         name = middle_turn(joint)
@@ -241,8 +232,8 @@ def locked_in(result: RunRows, rows: Bools) -> str | None:
     return None
 
 
-def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
-    """Says of poses whose turns are not given that rows may be lost through them alone."""
+def locked_pose_notes(result: sweep.Result) -> list[Diagnostic]:
+    """Warns that rows may be lost by gimbal lock of a pose whose turns are not driven."""
     if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
         return []
     driven = {f"{joint}.{coordinate}" for joint, coordinate in result.problem.driven}
@@ -253,29 +244,27 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
             continue
         text = (
             f"where {name} is a quarter turn the turns before and after it go about one axis: "
-            f"rows may be lost or singular there by how {joint.name} tells its pose alone"
+            f"rows may be lost or singular there by the coordinates of {joint.name} alone"
         )
         hint = f"remove {joint.name} and read points and directions, or drive its turns"
         found.append(Diagnostic("locked-pose", "note", text, hint=hint))
     return found
 
 
-# Rows in which the actuators cannot hold the mechanism, whatever their efforts are.
-
 SHOWN = 6
 """Rows that a message names one by one."""
 
 
 def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
-    """What tells whether the actuators hold the mechanism, where forces are asked for."""
-
+    """The quantity that shows whether the actuators hold the mechanism, where forces are asked
+    for."""
     drives = problem.mechanism.drives
     if drives is None or not drives.actuators:
         return []
     return [ACTUATION] if demand_of(problem.mechanism, asked) & Demand.FORCES else []
 
 
-def unheld(result: RunRows) -> Bools | None:
+def unheld(result: sweep.Result) -> Bools | None:
     """Rows (rows,) in which the set is singular; None where that was not looked at."""
     if ACTUATION.name not in result.columns:
         return None
@@ -283,13 +272,13 @@ def unheld(result: RunRows) -> Bools | None:
     return np.asarray(result.solved & ~(least > tolerances.ACTUATORS_AT_REST))
 
 
-def is_held(result: RunRows) -> bool:
+def is_held(result: sweep.Result) -> bool:
     """Whether the actuators hold the mechanism in every row, as far as that was looked at."""
     lost = unheld(result)
     return lost is None or not lost.any()
 
 
-def actuation_notes(result: RunRows) -> list[Diagnostic]:
+def actuation_notes(result: sweep.Result) -> list[Diagnostic]:
     """Names the set and the rows where it is singular, or next to that."""
     lost, drives = unheld(result), result.problem.mechanism.drives
     if lost is None or drives is None:
@@ -314,7 +303,7 @@ def actuation_notes(result: RunRows) -> list[Diagnostic]:
     return notes
 
 
-def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> Diagnostic:
+def _note(code: str, result: sweep.Result, rows: Bools, text: str, limit: float) -> Diagnostic:
     least = float(np.min(result.columns[ACTUATION.name][0][rows]))
     hint = "put an actuator elsewhere, add one, or keep away from that position"
     turn = locked_in(result, rows)
@@ -342,14 +331,11 @@ def _rows(rows: Bools) -> str:
     return f"{len(numbers)} rows, the first is row {numbers[0]}"
 
 
-# Loads that vary where one has no value: which, and what to say.
-
-
-def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
+def undefined_loads(result: sweep.Result, lost: Bools) -> list[Diagnostic]:
     """What to say of the rows (rows,) of a result in which some load has no value.
 
     The laws are evaluated once more, from the same quantities as in the kernel and with the same
-    bits, to tell them apart.
+    bits, to identify them.
     """
     known = result.problem.quantities()
     result.read([known[name] for name in quantities_read(result.problem)])

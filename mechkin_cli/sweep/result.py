@@ -1,7 +1,7 @@
-"""A finished run: the states of all rows, their verdicts, and every quantity read off them.
+"""A finished run: the states of all rows, their verdicts, and every quantity computed from them.
 
 Quantities are evaluated on the stored states when they are asked for, at the first reading or
-later; nothing is searched or followed again. What was read is kept.
+later; nothing is searched or followed again.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import assembly, derived, proofs, sweep
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
-from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of, forces_demand
+from mechkin_cli.plan import WRENCH_KINDS, Demand, Readout, demand_of, forces_demand
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
-from mechkin_cli.sweep.messages import is_held
-from mechkin_cli.sweep.rows import Columns, make_continuous
+from mechkin_cli.sweep.messages import is_held, undefined_loads
+from mechkin_cli.sweep.rows import Columns, SweepRows, make_continuous
 from mechkin_cli.sweep.uniqueness import (
     DISTURBANCES,
     SHIFTS,
@@ -37,83 +38,15 @@ if TYPE_CHECKING:
     from mechkin_cli.derived import OtherMoments
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Mechanism, Problem, Wanted
-    from mechkin_cli.plan import Readout
-    from mechkin_cli.proofs import DeadCentreProof, SweepProofs
+    from mechkin_cli.proofs import SweepProofs
     from mechkin_cli.session import Batch, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.structure import SolverGraph
-    from mechkin_cli.sweep.rows import SweepRows
 
 
-# The proofs of a run's rows, made when they are asked for.
-
-
-class Proven:
-    """What a result knows of the proofs of its rows."""
-
-    session: Session
-    row_states: SweepRows
-    _certificate: SweepProofs | None = None
-    if TYPE_CHECKING:
-
-        @cached_property
-        def solved(self) -> Bools:
-            """Rows that have a position (rows,)."""
-
-    @property
-    def certificate(self) -> SweepProofs:
-        """What is proven of the rows."""
-        if self._certificate is None:
-            from mechkin_cli.proofs import certify
-
-            rows = self.row_states
-            solved = self.solved & rows.reached
-            self._certificate = certify(self.session, rows.states, solved, rows.ends)
-        return self._certificate
-
-    @property
-    def is_certified(self) -> bool:
-        """Whether proofs have been asked for."""
-        return self._certificate is not None
-
-    @property
-    def proven_way(self) -> tuple[bool, int]:
-        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
-        return bool(self.certificate.is_complete), int(self.certificate.tubes)
-
-    @property
-    def proven_dead_centres(self) -> list[dict[str, object]]:
-        """What is proven of the dead centres beyond which rows are missing, as plain data in the
-        file's units: bounds are None where none is proven to exist; rows count from 1."""
-        return [self._dead_centre_record(found) for found in self.certificate.dead_centres]
-
-    def _dead_centre_record(self, found: DeadCentreProof) -> dict[str, object]:
-        from mechkin_cli.proofs import input_bounds
-
-        session, number = self.session, found.number
-        there = input_number(session.problem, session.layout, number, float(found.place[number]))
-        low, high = (x if isfinite(x) else None for x in input_bounds(session, found))
-        proof = Proof.not_proven if found.why else Proof.proven
-        bounds = {"low": low, "high": high, "last_row": found.row + 1, "tubes": found.tubes}
-        return there.record() | bounds | {"proof": proof.label}
-
-    @property
-    def proof(self) -> NDArray[np.int8]:
-        """What is proven of every row, codes of `Proof` (rows,)."""
-        return self.certificate.status
-
-
-# The outputs of a run by name, as far as the rows' verdicts let them stand.
-
-
-def read_off(
-    rows: SweepRows,
-    mechanism: Mechanism,
-    readout: Readout,
-    batch: Batch,
-) -> dict[str, Floats]:
-    """Quantities (width, rows); nan in rows without a position, and what depends on a rank that is
-    unclear."""
+def columns_of(rows: SweepRows, mechanism: Mechanism, readout: Readout, batch: Batch) -> Columns:
+    """The outputs of a run by name, (width, rows); nan in rows without a position, and what depends
+    on a rank that is unclear."""
     values = batch.outputs
     assert values is not None
     if not rows.reached.all():
@@ -134,7 +67,7 @@ ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "
 """Verdicts that are numbers, by the names of their quantities."""
 
 
-class Result(Proven):
+class Result:
     """The rows of a sweep with a position and a verdict each.
 
     Args:
@@ -167,6 +100,7 @@ class Result(Proven):
         self._condition: Floats | None = None
         self._power_error: Floats | None = None
         self._unloaded: bool | None = None
+        self._certificate: SweepProofs | None = None
         self.friction = FrictionRows()
 
     @property
@@ -183,16 +117,12 @@ class Result(Proven):
     def mode(self) -> str:
         """The letter of the rows' assembly mode where a short search proves that it knows all
         modes; else `near` or `home`."""
-        from mechkin_cli.assembly import mode_letter
-
-        return mode_letter(self.session, self.start, thorough=False)
+        return assembly.mode_letter(self.session, self.start, thorough=False)
 
     @cached_property
     def letter(self) -> str:
         """The letter of the assembly mode, searched for if it is not known yet."""
-        from mechkin_cli.assembly import mode_letter
-
-        return mode_letter(self.session, self.start)
+        return assembly.mode_letter(self.session, self.start)
 
     @property
     def how(self) -> str:
@@ -216,7 +146,7 @@ class Result(Proven):
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Everything that the run has to say."""
+        """All messages of the run."""
         own = (*self.start.diagnostics, *self.row_states.diagnostics)
         return (*self.problem.diagnostics, *own)
 
@@ -232,8 +162,8 @@ class Result(Proven):
 
     @cached_property
     def inputs(self) -> Mapping[str, Floats]:
-        """What the rows were given, in the file's units exactly as written: time where there is
-        one, then the inputs' values."""
+        """Time where there is one, then the inputs' values, in the file's units exactly as
+        written."""
         time = self.problem.motion.time
         inputs = {i.name: i.written for i in self.problem.motion.inputs}
         return inputs if time is None else {"time": time.written, **inputs}
@@ -296,6 +226,44 @@ class Result(Proven):
         return found
 
     @property
+    def certificate(self) -> SweepProofs:
+        """What is proven of the rows."""
+        if self._certificate is None:
+            rows = self.row_states
+            solved = self.solved & rows.reached
+            self._certificate = proofs.certify(self.session, rows.states, solved, rows.ends)
+        return self._certificate
+
+    @property
+    def is_certified(self) -> bool:
+        """Whether proofs have been asked for."""
+        return self._certificate is not None
+
+    @property
+    def proven_way(self) -> tuple[bool, int]:
+        """Whether all rows are proven to lie on one branch, and how many tubes join them."""
+        return bool(self.certificate.is_complete), int(self.certificate.tubes)
+
+    @property
+    def proven_dead_centres(self) -> list[dict[str, object]]:
+        """What is proven of the dead centres beyond which rows are missing, as plain data in the
+        file's units: bounds are None where none is proven to exist; rows count from 1."""
+        records, session = [], self.session
+        for found in self.certificate.dead_centres:
+            place = float(found.place[found.number])
+            record = input_number(session.problem, session.layout, found.number, place).record()
+            low, high = (x if isfinite(x) else None for x in proofs.input_bounds(session, found))
+            record |= {"low": low, "high": high, "last_row": found.row + 1, "tubes": found.tubes}
+            proof = Proof.not_proven if found.why else Proof.proven
+            records.append(record | {"proof": proof.label})
+        return records
+
+    @property
+    def proof(self) -> NDArray[np.int8]:
+        """What is proven of every row, codes of `Proof` (rows,)."""
+        return self.certificate.status
+
+    @property
     def columns(self) -> Mapping[str, Floats]:
         """What has been read, see `Columns`."""
         return self._columns
@@ -303,12 +271,21 @@ class Result(Proven):
     @cached_property
     def alternatives(self) -> tuple[Result, ...]:
         """The same rows with other reactions in equilibrium (redundant constraints)."""
-        return told_anew(self, "_alternative", len(self.shifts))
+        return self._with_other_reactions("_alternative", len(self.shifts))
 
     @cached_property
     def disturbed(self) -> tuple[Result, ...]:
         """The same rows with reactions off by their rounding, where some may not be unique."""
-        return told_anew(self, "_disturbance", len(DISTURBANCES) if self.shifts else 0)
+        return self._with_other_reactions("_disturbance", len(DISTURBANCES) if self.shifts else 0)
+
+    def _with_other_reactions(self, attribute: str, count: int) -> tuple[Result, ...]:
+        results = []
+        for number in range(count):
+            other = copy(self)  # of the same rows, with what has been read of them
+            other.alternatives = other.disturbed = ()
+            setattr(other, attribute, number)
+            results.append(other)
+        return tuple(results)
 
     @cached_property
     def _rounding(self) -> Floats:
@@ -330,8 +307,8 @@ class Result(Proven):
             raise UnknownName(name, sorted(self._columns), problem.why_not(name))
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self.quantity)
-        if (given := self._given(name)) is not None:
-            return Quantity(given, wanted.dimension, input_rest(self.session, name))
+        if (values := self._prescribed(name)) is not None:
+            return Quantity(values, wanted.dimension, input_rest(self.session, name))
         if name not in self._columns:
             self.read([wanted])
         columns = self._columns[name]
@@ -344,7 +321,7 @@ class Result(Proven):
             return Quantity(wanted.value(columns), wanted.dimension)
         return Quantity(columns[0], wanted.dimension, self._rests.get(name))
 
-    def _given(self, name: str) -> Floats | None:
+    def _prescribed(self, name: str) -> Floats | None:
         """Time, an input's value or its rates in SI; None for what is computed."""
         motion = self.problem.motion
         if name == "time" and motion.time is not None:
@@ -362,21 +339,17 @@ class Result(Proven):
         for name in (ROW_NUMBERS[q.name] for q in wanted if q.name in ROW_NUMBERS):
             self._verdict(name)
         new = [q for q in wanted if q.name not in self._columns and q.owner != "row"]
-        derived = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
+        later = [quantity for quantity in new if quantity.kind in DERIVED_KINDS]
         plain = [quantity for quantity in new if quantity.kind not in DERIVED_KINDS]
-        if derived:
-            from mechkin_cli.derived import basis_of
-
-            basis = basis_of(self.problem.mechanism, derived)
+        if later:
+            basis = derived.basis_of(self.problem.mechanism, later)
             plain += [quantity for quantity in basis if quantity.name not in self._columns]
         if plain:
             self._read_plain(plain)
-        if derived:
-            from mechkin_cli.derived import BasisQuantities, derived_columns
-
+        if later:
             between = None if self._between is None else self._between(self)
-            run = BasisQuantities(self, self._columns, self.session.inputs, between)
-            self._columns |= derived_columns(run, derived)
+            run = derived.BasisQuantities(self, self._columns, self.session.inputs, between)
+            self._columns |= derived.derived_columns(run, later)
 
     def _read_plain(self, wanted: list[Wanted]) -> None:
         demand = demand_of(self.problem.mechanism, wanted)
@@ -415,8 +388,8 @@ class Result(Proven):
         demand: Demand = Demand.POSITION,
         shift: int = 0,
     ) -> Columns:
-        """Quantities on the stored states, not kept: with other `inputs` (rates), of a session that
-        differs in masses and loads alone, or with the reactions of a `shift`."""
+        """Quantities on the stored states, without storing them: with other `inputs` (rates), of a
+        session that differs in masses and loads alone, or with the reactions of a `shift`."""
         own = session or self.session
         demand |= demand_of(own.problem.mechanism, wanted)
         readout = own.readout(wanted)
@@ -435,9 +408,7 @@ class Result(Proven):
             rows = rows.at(np.where(reached, np.arange(reached.size), reached.argmax()))
         batch = session.run(rows, ask)
         if states.dead_centres and ask.readout is not None:
-            from mechkin_cli.sweep.dead_centre import put_unbounded
-
-            put_unbounded(session, states, rows, ask, batch)
+            sweep.put_unbounded(session, states, rows, ask, batch)
         return batch
 
     def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
@@ -445,7 +416,7 @@ class Result(Proven):
         return session.row_inputs(self.row_states.states, self.row_states.turns, inputs)
 
     def _split(self, readout: Readout, batch: Batch) -> Columns:
-        return read_off(self.row_states, self.problem.mechanism, readout, batch)
+        return columns_of(self.row_states, self.problem.mechanism, readout, batch)
 
     def _store_verdicts(self, batch: Batch) -> None:
         missing = ~self.row_states.reached
@@ -457,17 +428,4 @@ class Result(Proven):
             lost = batch.undefined.astype(bool) & ~missing
             self._unloaded = bool(lost.any())
             if self._unloaded:
-                from mechkin_cli.sweep.messages import undefined_loads
-
                 self.row_states.diagnostics += undefined_loads(self, lost)
-
-
-def told_anew(result: Result, name: str, count: int) -> tuple[Result, ...]:
-    """The same rows with other reactions, told apart by the numbers in an attribute."""
-    found = []
-    for number in range(count):
-        other = copy(result)  # of the same rows, with what has been read of them
-        other.alternatives = other.disturbed = ()
-        setattr(other, name, number)
-        found.append(other)
-    return tuple(found)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.plan import ClosingJoint, HungLinks, TreeJoint, flatten, plan_records
 from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
@@ -30,13 +30,12 @@ if TYPE_CHECKING:
 
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows
 
 
 _ROUNDING = ldexp(1.0, -53)
 
 
-def error_bound(result: RunRows) -> Floats:
+def error_bound(result: sweep.Result) -> Floats:
     """The bound (rows,); nan in rows without a position, and where none is known."""
     rows = result.row_states
     if not rows.reached.any():
@@ -49,11 +48,10 @@ def error_bound(result: RunRows) -> Floats:
         if result.graph.blocks:
             condition = np.asarray(result.quantity("row.condition").value)
             bound = bound + condition * result.residual
-    found: Floats = np.where(rows.reached & np.isfinite(bound), bound, np.nan)
-    return found
+    return np.where(rows.reached & np.isfinite(bound), bound, np.nan)
 
 
-def largest_move(result: RunRows) -> Floats:
+def largest_move(result: sweep.Result) -> Floats:
     """The largest move of any state (rows,) in some runs with constants and inputs slightly off;
     nan where one of them did not close."""
     session, rows = result.session, result.row_states
@@ -64,11 +62,14 @@ def largest_move(result: RunRows) -> Floats:
     sizes = _input_sizes(session)
     constants, placing = _constants(session)
     for _ in range(tolerances.ERROR_PROBES):
-        other = session.with_constants(_off(constants, placing, stream))
+        off = constants.copy()
+        count = int(np.count_nonzero(placing))
+        off[placing] *= 1.0 + _signed(stream, count) * tolerances.ERROR_PROBE
+        other = session.with_constants(off)
         inputs = session.inputs
-        off = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
+        shift = _signed(stream, len(sizes))[:, None] * tolerances.ERROR_PROBE * sizes
         batch = result.run(
-            POSITIONS, session=other, inputs=inputs._replace(reduced=inputs.reduced + off)
+            POSITIONS, session=other, inputs=inputs._replace(reduced=inputs.reduced + shift)
         )
         move = np.max(np.abs(batch.states - rows.states), axis=0)
         # of a row far from its place the move says nothing
@@ -96,12 +97,6 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
         isinstance(r, TreeJoint | ClosingJoint | HungLinks) for r in records for _ in flatten([r])
     ]
     return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
-
-
-def _off(constants: Floats, placing: NDArray[np.bool_], stream: RandomStarts) -> Floats:
-    found = constants.copy()
-    found[placing] *= 1.0 + _signed(stream, int(np.count_nonzero(placing))) * tolerances.ERROR_PROBE
-    return found
 
 
 def _signed(stream: RandomStarts, count: int) -> Floats:

@@ -1,13 +1,18 @@
-"""The rows of a sweep: states, and what is known of each row."""
+"""The rows of a sweep: states, what is known of each row, and continuous angles.
+
+The kernel gives angles within a turn; following the branch counts whole turns
+(`session.turn_slots`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from math import pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import sweep
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import dataclass, field
@@ -21,30 +26,33 @@ if TYPE_CHECKING:
 
     from mechkin_cli.assembly import PlacesBefore
     from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.expressions import Quantity
-    from mechkin_cli.mechanism import Problem, Wanted
-    from mechkin_cli.session import Ask, Batch, EndOfRows, Followed, KernelInputs, Session
+    from mechkin_cli.mechanism import Wanted
+    from mechkin_cli.session import EndOfRows, Followed, Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.structure import SolverGraph
 
 
-def sections(found: Followed, rows: int) -> NDArray[np.int64]:
+def sections(followed: Followed, rows: int) -> NDArray[np.int64]:
     """The number of branch points that a way passed before each row (rows,)."""
-    if not found.crossings:
+    if not followed.crossings:
         return np.zeros(rows, dtype=np.int64)
-    passed = [crossing.row for crossing in found.crossings]
+    passed = [crossing.row for crossing in followed.crossings]
     return np.searchsorted(np.sort(np.array(passed)), np.arange(rows), side="right")
 
 
 @dataclass
 class SweepRows:
-    """States (states, rows), guesses until they are closed, and what is known about rows that have
-    none; `limit` is the largest correction that a guess may still need, `numbers` counts the rows
-    from 0 as the file does, `nodes` the steps with which they were followed. `turns` (turn slots,
-    rows) are angles and quaternions of closing joints as following carried them along
-    (`solver.closing_turns`). `section` (rows,) tells rows apart between which a branch point was
-    passed; numbers say nothing but that. `ends` are the dead centres beyond which rows are missing,
-    `dead_centres` the rows that stand at one, twice where either of two branches may be meant.
+    """The rows of a sweep while they are followed, closed and judged.
+
+    Attributes:
+        states: (states, rows), guesses until they are closed.
+        limit: (rows,) the largest correction that a guess may still need.
+        nodes: steps with which the rows were followed.
+        numbers: (rows,) counts them from 0 as the file does.
+        turns: (turn slots, rows) angles and quaternions of closing joints as following carried
+            them along.
+        section: (rows,) differs between rows between which a branch point was passed.
+        ends: the dead centres beyond which rows are missing.
+        dead_centres: rows that stand at one, twice where either of two branches may be meant.
     """
 
     states: Floats
@@ -115,147 +123,57 @@ class SweepRows:
         return bool((self.status == Status.not_converged).any())
 
 
-# Following the branch of the first assembly along all rows: a guess for every row it reaches.
-
-
-# Continuous angles: the kernel gives them within a turn, following counts whole turns
-# (`solver.closing_turns`).
-
-
-@dataclass
-class _Turning:
-    """Angles of one sort: their names, outputs, and the rows of `Followed.turns` that count their
-    turns; of inputs, their numbers."""
-
-    names: list[str] = field(default_factory=list)
-    outputs: list[int] = field(default_factory=list)
-    turns: list[int] = field(default_factory=list)
-
-    def add(self, name: str, output: int, turn: int) -> None:
-        self.names.append(name)
-        self.outputs.append(output)
-        self.turns.append(turn)
-
-
-@dataclass(frozen=True)
-class _Angles:
-    """The angles among some outputs: of inputs, of the tree and of closing joints."""
-
-    driven: _Turning = field(default_factory=_Turning)
-    tree: _Turning = field(default_factory=_Turning)
-    closing: _Turning = field(default_factory=_Turning)
-
-
-class RunRows(Protocol):
-    """What is read of a run of rows; `Result` is one."""
-
-    row_states: SweepRows
-    residual: Floats
-    shifts: tuple[int, ...]
-
-    @property
-    def session(self) -> Session:
-        """The part of the mechanism that was followed."""
-
-    @property
-    def problem(self) -> Problem:
-        """Mechanism, motion and assembly of that part."""
-
-    @property
-    def graph(self) -> SolverGraph:
-        """Tree, cut joints and blocks."""
-
-    @property
-    def rows(self) -> int:
-        """Number of rows asked for."""
-
-    @property
-    def status(self) -> NDArray[np.int8]:
-        """Verdict of every row, codes of `Status` (rows,)."""
-
-    @property
-    def solved(self) -> Bools:
-        """Rows that have a position (rows,)."""
-
-    @property
-    def sound(self) -> bool:
-        """Whether every row is `ok`."""
-
-    @property
-    def power_error(self) -> Floats:
-        """|sum of powers| / sum of |powers| of every row (rows,)."""
-
-    @property
-    def columns(self) -> Mapping[str, Floats]:
-        """What has been read."""
-
-    @property
-    def alternatives(self) -> Sequence[RunRows]:
-        """The same rows with other reactions in equilibrium."""
-
-    @property
-    def disturbed(self) -> Sequence[RunRows]:
-        """The same rows with reactions off by their rounding."""
-
-    def quantity(self, name: str) -> Quantity:
-        """A parameter, direction or result by name, in SI."""
-
-    def read(self, wanted: Iterable[Wanted]) -> None:
-        """Evaluates the quantities that have not been read yet."""
-
-    def evaluated(self, wanted: Sequence[Wanted], *, shift: int = 0) -> Columns:
-        """Quantities on the stored states, not kept, with the reactions of a `shift`."""
-
-    def run(
-        self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None
-    ) -> Batch:
-        """One call of the kernel over all rows on their states."""
-
-
 Columns = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
 
 
-def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
+Angles = list[tuple[str, int, int]]
+"""Names of angles, their outputs, and the rows of `SweepRows.turns` that count their turns."""
+
+
+def make_continuous(result: sweep.Result, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
     """Makes the angles among some outputs (outputs, rows) continuous from the first row, in place.
 
     Returns:
         What they are within a turn, of those that have turns.
     """
     rows, session = result.row_states, result.session
-    angles = _angles(session, tuple(wanted))
+    driven, tree, closing = _angles(session, tuple(wanted))
     reached = rows.reached
-    for output, number in zip(angles.driven.outputs, angles.driven.turns, strict=True):
+    for _, output, number in driven:
         values = result.problem.motion.inputs[number].values
         outputs[output] = np.where(reached, values, outputs[output])
     rests: Columns = {}
-    for some in (angles.tree, angles.closing):
-        if not some.names:
+    for angles in (tree, closing):
+        if not angles:
             continue
-        rest, turns = outputs[some.outputs], rows.turns[some.turns]
-        if some is angles.closing:
+        names, slots, counters = map(list, zip(*angles, strict=True))
+        rest, turns = outputs[slots], rows.turns[counters]
+        if angles is closing:
             continuous = continuous_angle(rest, turns)
         else:
             continuous = rest + turns * (2.0 * pi)
-        outputs[some.outputs] = continuous
+        outputs[slots] = continuous
         turned = ((continuous != rest) & reached).any(axis=1)
-        rests |= {some.names[k]: rest[k] for k in np.flatnonzero(turned)}
+        rests |= {names[k]: rest[k] for k in np.flatnonzero(turned)}
     return rests
 
 
 @remembered
-def _angles(session: Session, wanted: tuple[Wanted, ...]) -> _Angles:
-    found, layout, slots = _Angles(), session.layout, session.readout(wanted).slots
+def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angles, Angles]:
+    """The angles of inputs, with the inputs' numbers; of the tree; of closing joints."""
+    driven, tree, closing = Angles(), Angles(), Angles()
+    layout, slots = session.layout, session.readout(wanted).slots
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
         name, output = quantity.name, slots[quantity.name].first
         turn = session.turn_slots.of_angle(layout, quantity)
         if name in inputs:
-            found.driven.add(name, output, inputs[name])
+            driven.append((name, output, inputs[name]))
         elif turn is not None:
-            closing = layout.joint_reference[quantity.owner] < 0
-            (found.closing if closing else found.tree).add(name, output, turn)
-    return found
+            angles = closing if layout.joint_reference[quantity.owner] < 0 else tree
+            angles.append((name, output, turn))
+    return driven, tree, closing
 
 
 def has_turns(quantity: Wanted) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import idle, sweep, tolerances
 from mechkin_cli.assembly import choose_start
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
@@ -17,6 +17,7 @@ from mechkin_cli.mechanism import (
     base_name,
     base_quantity,
     dimension_of,
+    quantities_read,
     read_for,
 )
 from mechkin_cli.memo import remembered
@@ -24,7 +25,7 @@ from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows
-from mechkin_cli.sweep.friction import judged_by
+from mechkin_cli.sweep.friction import judged_by, uncounted_notes
 from mechkin_cli.sweep.messages import (
     actuation_notes,
     condition_notes,
@@ -47,17 +48,13 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.rows import SweepRows
 
 
-# What a sweep is asked, worked out once for a session and kept there: runs that ask the same only
-# run.
-
-
 @dataclass(frozen=True)
 class SweepQuantities:
     """The quantities of a sweep.
 
     Attributes:
         asked: those asked for, and those by which the rows are judged beside them.
-        ask: what the run that closes the rows computes and reads off: no derived quantities.
+        ask: what the run that closes the rows computes: no derived quantities.
         rests_on_reactions: whether some are not unique where reactions are not.
     """
 
@@ -83,17 +80,15 @@ def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
     """The moments that hold idle freedoms, where forces are computed and they are not asked for."""
     if not (problem.hold_idle and demand_of(problem.mechanism, asked) & Demand.FORCES):
         return []
-    from mechkin_cli.idle import idle_freedoms
-
     known = problem.quantities()
-    moments = {known[idle.holding] for idle in idle_freedoms(problem)}
+    moments = {known[freedom.holding] for freedom in idle.idle_freedoms(problem)}
     return sorted(moments.difference(asked))
 
 
 def at_once(
     session: Session, asked: Sequence[Wanted], verdicts: bool
 ) -> tuple[list[Wanted], Demand]:
-    """What the run that closes the rows reads off, and its demand: no derived quantities."""
+    """Quantities of the run that closes the rows, and its demand: no derived ones."""
     mechanism = session.problem.mechanism
     wanted = [q for q in asked if q.kind not in DERIVED_KINDS and q.owner != "row"]
     demand = demand_of(mechanism, wanted)
@@ -129,12 +124,11 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     names = list(dict.fromkeys(quantities))
     known = session.problem.quantities() if names else {}
     asked = [known[name] for name in read_for(names, known)]
-    session = _followed_part(session, asked)
+    if session.problem.follow is not None:
+        session = sweep.followed_session(session, asked)
     session, start = first_assembly(session)
     if start.stuck:
-        from mechkin_cli.sweep.branch_end import input_faults
-
-        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
+        start = replace(start, diagnostics=sweep.input_faults(session) or start.diagnostics)
     wanted = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, wanted)
     result.read(wanted.asked)
@@ -171,15 +165,6 @@ def _in_parts_of_its_size(session: Session) -> Session:
     assert start.state is not None
     inputs = session.inputs.reduced[:, start.row]
     return session.sized(assembly_size(session.plan, inputs, start.state))
-
-
-def _followed_part(session: Session, asked: list[Wanted]) -> Session:
-    """The session of the loops that `follow:` leaves."""
-    if session.problem.follow is None:
-        return session
-    from mechkin_cli.sweep.follow_part import followed_session
-
-    return followed_session(session, asked)
 
 
 def _closed(session: Session, start: AssemblyStart, asked: SweepQuantities) -> Result:
@@ -229,13 +214,12 @@ def _is_near_singular(batch: Batch) -> Bools:
     """Rows (rows,) above that condition, as far as it was computed."""
     if batch.condition is None:
         return np.zeros(batch.residual.size, dtype=bool)
-    found: Bools = batch.condition > tolerances.CONDITION_NEAR_SINGULAR
-    return found
+    return np.asarray(batch.condition > tolerances.CONDITION_NEAR_SINGULAR)
 
 
 def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
     """The run with so many steps that rows on a fold close, too, where each only halves what is
-    left; and with conditions, which tell that they do."""
+    left; and with conditions, which show that they do."""
     demand = asked.ask.demand | Demand.CONDITION
     return result.run(asked.ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
 
@@ -261,13 +245,13 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
     if not (batch.side != batch.side[:, :1]).any():
         return failed
     # on a fold or a branch point a sign is rounding
-    told = rows.reached.copy()
+    certain = rows.reached.copy()
     if batch.condition is not None:
-        told &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
+        certain &= batch.condition <= tolerances.CONDITION_SIDE_UNCLEAR
     # where a branch point was passed sides change with it: each section has its own
-    turned = np.zeros(told.size, dtype=bool)
-    for section in set(rows.section[told].tolist()):
-        own = np.flatnonzero(told & (rows.section == section))
+    turned = np.zeros(certain.size, dtype=bool)
+    for section in set(rows.section[certain].tolist()):
+        own = np.flatnonzero(certain & (rows.section == section))
         turned[own] = (batch.side[:, own] != batch.side[:, own[:1]]).any(axis=0)
     return failed | rows.reached & turned
 
@@ -279,24 +263,21 @@ def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
         return
     judged = rows.reached & (rows.status == Status.ok)
     rows.status[judged] = by_condition(condition[judged])
-    from mechkin_cli.sweep.dead_centre import judge_dead_centres
-
-    judge_dead_centres(session, rows, condition)
+    sweep.judge_dead_centres(session, rows, condition)
     rows.diagnostics += condition_notes(rows, condition)
 
 
 def _judge_inputs(session: Session, rows: SweepRows) -> None:
     """Names inputs that cannot move; the rates of no row mean anything where they are to move: more
-    equations than unknowns leave a least square, whose condition tells nothing."""
+    equations than unknowns leave a least square, whose condition means nothing."""
     if not session.is_redundant or not session.driven or not rows.reached.any():
         return
     from mechkin_cli.session import moves_freely
-    from mechkin_cli.sweep.branch_end import input_faults
 
     row = int(np.argmax(rows.reached))
     if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
         return
-    faults = input_faults(session)
+    faults = sweep.input_faults(session)
     rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
     if faults and any(moved.any() for moved in session.inputs.orders[1:]):
         rows.status[rows.reached] = Status.rank_unclear
@@ -307,17 +288,13 @@ def _read_by_loads(result: Result) -> list[Wanted]:
     """What loads that vary read, where forces are computed."""
     if not (result.demand & Demand.FORCES and result.problem.load_laws):
         return []
-    from mechkin_cli.mechanism import quantities_read
-
     known = result.problem.quantities()
     return [known[name] for name in quantities_read(result.problem)]
 
 
 @remembered
 def _conventional_notes(session: Session, read: tuple[Wanted, ...]) -> list[Diagnostic]:
-    from mechkin_cli.idle import conventional_notes
-
-    return conventional_notes(session.problem, read)
+    return idle.conventional_notes(session.problem, read)
 
 
 def row_notes(
@@ -327,37 +304,24 @@ def row_notes(
     problem, session, rows = result.problem, result.session, result.row_states
     notes: list[Diagnostic] = []
     if problem.has_idle:
-        from mechkin_cli.idle import (
-            holding_notes,
-            idle_freedoms,
-            nearly_common_notes,
-        )
-
-        notes += nearly_common_notes(problem)
+        notes += idle.nearly_common_notes(problem)
         read = [*asked, *_read_by_loads(result)]
         notes += _conventional_notes(session, tuple(read))
         if problem.hold_idle:
-            named = {idle.holding for idle in idle_freedoms(problem)}
+            named = {freedom.holding for freedom in idle.idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
-            notes += holding_notes(problem, found)
+            notes += idle.holding_notes(problem, found)
     unclear = rows.status == Status.rank_unclear
     if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
-        from mechkin_cli.sweep.branch_end import input_faults
-
         said = {diagnostic.code for diagnostic in rows.diagnostics}
-        notes += [fault for fault in input_faults(session) if fault.code not in said]
+        notes += [fault for fault in sweep.input_faults(session) if fault.code not in said]
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
-        from mechkin_cli.sweep.friction import uncounted_notes
-
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(result, asked))
     return notes
-
-
-# A sweep in time at other moments: the same branch, followed by the same laws.
 
 
 class Between(NamedTuple):

@@ -2,7 +2,7 @@
 by rounding.
 
 Where constraints are redundant, a cell is unique if it changes no more with the former than with
-the latter (mechkin_cli/uniqueness.py).
+the latter (`tables.unique_cells`).
 """
 
 from __future__ import annotations
@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import sweep, tolerances
 from mechkin_cli.mechanism import REACTION_LEVEL
 from mechkin_cli.units import FORCE
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows
 
 
 SHIFTS = (1, 2)
@@ -30,12 +29,12 @@ DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
 leave an expression unchanged by chance."""
 
 
-def reaction_rounding(result: RunRows) -> Floats:
+def reaction_rounding(result: sweep.Result) -> Floats:
     """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
     unit.
 
     It goes with the largest reaction of the run. A row without any load has none but those of the
-    null space, whose rounding is what tells its zeros.
+    null space, whose rounding decides what is zero.
     """
     level = _level(result, 0)
     largest = float(np.max(level[np.isfinite(level)], initial=0.0))
@@ -45,14 +44,12 @@ def reaction_rounding(result: RunRows) -> Floats:
     return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
 
 
-def _level(result: RunRows, shift: int) -> Floats:
+def _level(result: sweep.Result, shift: int) -> Floats:
     """The largest reaction of each row (rows,), of those of a `shift`."""
-    level: Floats = result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0]
-    return level
+    return np.asarray(result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0])
 
 
 def disturbed(columns: Floats, wanted: Wanted, off: Floats, length: float, number: int) -> Floats:
     """A reaction (3, rows) whose components are `off` by rounding (rows,); `length` unit in m."""
     off = off if wanted.dimension == FORCE else off * length
-    found: Floats = columns + off * np.array(DISTURBANCES[number])[:, None]
-    return found
+    return np.asarray(columns + off * np.array(DISTURBANCES[number])[:, None])

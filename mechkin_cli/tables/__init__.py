@@ -11,12 +11,15 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.tables.columns import (
+        Columns as Columns,
         FloatArray as FloatArray,
+        RunParameter as RunParameter,
         TableColumn as TableColumn,
         Words as Words,
         column_of as column_of,
         column_of_numbers as column_of_numbers,
         component_text as component_text,
+        evaluate as evaluate,
         row_words as row_words,
         run_parameter as run_parameter,
         solved_rows as solved_rows,
@@ -53,7 +56,6 @@ if TYPE_CHECKING:
         ColumnErrors as ColumnErrors,
         clashing as clashing,
         column_errors as column_errors,
-        counted_cells as counted_cells,
         least_digits as least_digits,
         not_repeated as not_repeated,
         worst_column as worst_column,
@@ -75,6 +77,7 @@ if TYPE_CHECKING:
         Remark as Remark,
         TableLayout as TableLayout,
         chosen as chosen,
+        counted as counted,
         default_table as default_table,
         effort_names as effort_names,
         row_texts as row_texts,
@@ -84,7 +87,6 @@ if TYPE_CHECKING:
         rows_table as rows_table,
     )
     from mechkin_cli.tables.print import read_table_text as read_table_text
-    from mechkin_cli.tables.results import Results as Results
     from mechkin_cli.tables.summary import (
         OVER_THE_WAY as OVER_THE_WAY,
         REDUCTIONS as REDUCTIONS,
@@ -97,16 +99,13 @@ if TYPE_CHECKING:
         row_weights as row_weights,
         statistics as statistics,
         summary_of as summary_of,
-        written_notes as written_notes,
-    )
-    from mechkin_cli.tables.table import (
-        Columns as Columns,
-        evaluate as evaluate,
         summary_table as summary_table,
+        written_notes as written_notes,
     )
     from mechkin_cli.tables.writers import (
         USUAL_FORMATS as USUAL_FORMATS,
         WRITERS as WRITERS,
+        Results as Results,
         written_files as written_files,
     )
 
@@ -114,12 +113,15 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": [
+            "Columns",
             "FloatArray",
+            "RunParameter",
             "TableColumn",
             "Words",
             "column_of",
             "column_of_numbers",
             "component_text",
+            "evaluate",
             "row_words",
             "run_parameter",
             "solved_rows",
@@ -151,7 +153,6 @@ __getattr__, __dir__ = lazy_names(
             "ZERO",
             "clashing",
             "column_errors",
-            "counted_cells",
             "least_digits",
             "not_repeated",
             "worst_column",
@@ -169,13 +170,13 @@ __getattr__, __dir__ = lazy_names(
             "Remark",
             "TableLayout",
             "chosen",
+            "counted",
             "default_table",
             "effort_names",
             "row_texts",
         ],
         "markdown": ["markdown_bytes", "rows_table"],
         "print": ["read_table_text"],
-        "results": ["Results"],
         "summary": [
             "Extreme",
             "OVER_THE_WAY",
@@ -188,9 +189,9 @@ __getattr__, __dir__ = lazy_names(
             "row_weights",
             "statistics",
             "summary_of",
+            "summary_table",
             "written_notes",
         ],
-        "table": ["Columns", "evaluate", "summary_table"],
-        "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],
+        "writers": ["Results", "USUAL_FORMATS", "WRITERS", "written_files"],
     },
 )

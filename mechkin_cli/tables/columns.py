@@ -1,21 +1,35 @@
-"""Column values of a table: expressions evaluated over all rows, in the units of the file.
+"""Tables: what they need of results, uniqueness of cells, columns, and whole tables.
 
-Values are float64 arrays of shape (rows,), nan where a cell stays empty. In a row without solution
-only inputs, `row.mode`, `row.status` and `row.proof` keep their cells.
+Columns are expressions evaluated over all rows, in the units of the file: float64 arrays of shape
+(rows,), nan where a cell stays empty. In a row without solution only inputs, `row.mode`,
+`row.status` and `row.proof` keep their cells.
+
+With redundant constraints some reactions are arbitrary. A cell is evaluated for the reactions of
+least norm and for two others that are in equilibrium too; where it changes it is not unique and
+becomes nan. So sums of reactions that are unique stay, though each part is not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli import tables
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.record import NamedTuple, dataclass, replace
-from mechkin_cli.tables.layout import ROW_EVENT, ROW_NUMBERS, ROW_PROOF, ColumnLayout
+from mechkin_cli.show import Listed, Listing
+from mechkin_cli.tables.decimals import column_texts
+from mechkin_cli.tables.layout import (
+    ROW_EVENT,
+    ROW_NUMBERS,
+    ROW_PROOF,
+    ColumnLayout,
+    TableLayout,
+)
 from mechkin_cli.tolerances import UNIQUE_CELL
 from mechkin_cli.units import DIMENSIONLESS
 from mechkin_cli.verdict import Proof, Status, has_solution
@@ -23,9 +37,6 @@ from mechkin_cli.verdict import Proof, Status, has_solution
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.units import UnitSystem
-
-
-# What tables ask of the results of an analysis: rows, inputs, verdicts and quantities by name.
 
 FloatArray = NDArray[np.float64]
 StatusArray = NDArray[np.int8]
@@ -37,34 +48,28 @@ class TableSource(Protocol):
     @property
     def rows(self) -> int:
         """Number of rows asked for."""
-        ...
 
     @property
     def coordinates(self) -> Sequence[str]:
         """Scalar joint coordinates in joint order, such as `O1.theta`."""
-        ...
 
     @property
     def inputs(self) -> Mapping[str, FloatArray]:
         """Time where there is one, and values of the driven coordinates, in file units exactly as
         written."""
-        ...
 
     @property
     def input_rates(self) -> Mapping[str, FloatArray]:
         """Rates of the driven coordinates, in file units as written; nan in rows without a
         solution."""
-        ...
 
     @property
     def mode(self) -> str:
         """Name of the assembly mode that the rows follow."""
-        ...
 
     @property
     def letter(self) -> str:
         """The same by its letter, which may have to be searched for."""
-        ...
 
     @property
     def events(self) -> Sequence[str]:
@@ -74,58 +79,47 @@ class TableSource(Protocol):
     @property
     def status(self) -> StatusArray:
         """Codes of `mechkin_cli.verdict.Status`."""
-        ...
 
     @property
     def is_certified(self) -> bool:
         """Whether proofs of the rows have been asked for."""
-        ...
 
     @property
     def proven_way(self) -> tuple[bool, int]:
         """Whether all rows are proven to lie on one branch, and how many tubes join them."""
-        ...
 
     @property
     def proven_dead_centres(self) -> Sequence[Mapping[str, object]]:
         """What is proven of the dead centres beyond which rows are missing, as plain data."""
-        ...
 
     @property
     def proof(self) -> StatusArray:
         """Codes of `mechkin_cli.verdict.Proof`, found now if they were not."""
-        ...
 
     @property
     def residual(self) -> FloatArray:
         """Largest closure component of the row, dimensionless; nan where not computed."""
-        ...
 
     @property
     def condition(self) -> FloatArray:
         """Condition of the row's closure, dimensionless; nan where not computed."""
-        ...
 
     @property
     def power_error(self) -> FloatArray:
         """|sum of powers| / sum of |powers|, dimensionless; nan where not computed."""
-        ...
 
     @property
     def units(self) -> UnitSystem:
         """Units of the mechanism file; tables are written in them."""
-        ...
 
     @property
     def alternatives(self) -> Sequence[TableSource]:
         """The same rows with other reactions in equilibrium, where constraints are redundant."""
-        ...
 
     @property
     def disturbed(self) -> Sequence[TableSource]:
         """The same rows with reactions that are off by their rounding, where constraints are
         redundant."""
-        ...
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by its dotted name, in SI.
@@ -133,14 +127,6 @@ class TableSource(Protocol):
         Raises:
             UnknownName: nothing has this name.
         """
-        ...
-
-
-# Uniqueness of cells: with redundant constraints some reactions are arbitrary, others are not.
-#
-# A cell is evaluated for the reactions of least norm and for two others that are in equilibrium
-# too; where it changes it is not unique and becomes nan. So sums of reactions that are unique stay,
-# though each part is not.
 
 
 def unique_cells(
@@ -170,6 +156,8 @@ def unique_cells(
 
 
 INFINITE = "inf"
+AT = "at"
+"""In front of the places of extremes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -244,9 +232,10 @@ class TableColumn:
 
 
 def column_of_numbers(
-    label: str, unit: str, numbers: FloatArray, decimals: int | None = None
+    label: str, unit: str, numbers: FloatArray | Sequence[float], decimals: int | None = None
 ) -> TableColumn:
     """A column of numbers (rows,), of which some may be infinite."""
+    numbers = np.asarray(numbers, dtype=np.float64)
     infinite = np.isinf(numbers)
     if not infinite.any():
         return TableColumn(label, unit, numbers, decimals)
@@ -254,40 +243,21 @@ def column_of_numbers(
     return TableColumn(label, unit, np.where(infinite, np.nan, numbers), decimals, unbounded)
 
 
-def status_words(source: TableSource) -> Words:
-    """The status label of every row."""
-    codes = source.status.astype(np.int32)
-    return Words(codes, tuple(status.label for status in Status))
-
-
-def proof_words(source: TableSource) -> Words:
-    """What is proven of every row of a sweep."""
-    return Words(source.proof.astype(np.int32), tuple(proof.label for proof in Proof))
-
-
-def mode_words(source: TableSource) -> Words:
-    """The letter of every row's assembly mode."""
-    return Words(np.zeros(source.rows, dtype=np.int32), (source.letter,))
-
-
-def event_words(source: TableSource) -> Words:
-    """What happened at every row of a response; "" where nothing did."""
-    known = tuple(dict.fromkeys(source.events))
-    numbers = {text: number for number, text in enumerate(known)}
-    return Words(np.array([numbers[text] for text in source.events], dtype=np.int32), known)
-
-
-_WORDS = {
-    "row.mode": mode_words,
-    "row.status": status_words,
-    ROW_PROOF: proof_words,
-    ROW_EVENT: event_words,
+_ROW_WORDS: Mapping[str, Callable[[TableSource], Words]] = {
+    "row.mode": lambda source: Words(np.zeros(source.rows, np.int32), (source.letter,)),
+    "row.status": lambda source: Words(
+        source.status.astype(np.int32), tuple(status.label for status in Status)
+    ),
+    ROW_PROOF: lambda source: Words(
+        source.proof.astype(np.int32), tuple(proof.label for proof in Proof)
+    ),
+    ROW_EVENT: lambda source: words_of(source.events),
 }
 
 
 def row_words(name: str, source: TableSource) -> Words:
     """A quantity of the rows that is a text, by its name."""
-    return _WORDS[name](source)
+    return _ROW_WORDS[name](source)
 
 
 def solved_rows(source: TableSource) -> NDArray[np.bool_]:
@@ -305,12 +275,12 @@ def _solved_codes() -> NDArray[np.bool_]:
 def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:
     """One column in file units; cells that are not unique are nan. Raises as `evaluate`."""
     name = layout.expression.text.strip()
-    if name in _WORDS:
+    if name in _ROW_WORDS:
         return TableColumn(layout.label, "", row_words(name, source))
-    given = source.inputs.get(name, source.input_rates.get(name))
-    if given is not None:
+    values = source.inputs.get(name, source.input_rates.get(name))
+    if values is not None:
         unit = source.units.label(source.quantity(name).dimension)
-        return TableColumn(layout.label, unit, given, layout.decimals)
+        return TableColumn(layout.label, unit, values, layout.decimals)
     column = _evaluated(layout, source)
     others = [_evaluated(layout, other).values for other in source.alternatives]
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]
@@ -337,7 +307,7 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
 
 
 def _resolve(name: str, source: TableSource) -> Quantity:
-    if name in _WORDS:
+    if name in _ROW_WORDS:
         raise ExpressionError(
             f"{name} is a text and cannot be computed with", 0, "make it a column of its own"
         )
@@ -357,11 +327,8 @@ def component_text(text: str, axis: str) -> str:
     return f"{text}.{axis}" if bare else f"({text}).{axis}"
 
 
-# What a run goes along: time where it has one, else its first input that moves.
-
-
 class RunParameter(NamedTuple):
-    """Its name, its values (rows,) in the file's units, and their unit."""
+    """What a run goes along: its name, its values (rows,) in the file's units, and their unit."""
 
     name: str
     values: FloatArray
@@ -369,7 +336,7 @@ class RunParameter(NamedTuple):
 
 
 def run_parameter(source: TableSource) -> RunParameter | None:
-    """The parameter of a run; None where nothing moves."""
+    """Time where a run has one, else its first input that moves; None where nothing moves."""
     for name, values in source.inputs.items():
         if bool((values != values[0]).any()):
             unit = source.units.label(source.quantity(name).dimension)
@@ -377,4 +344,39 @@ def run_parameter(source: TableSource) -> RunParameter | None:
     return None
 
 
-AT = "at"
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Columns(Listed):
+    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
+    below it."""
+
+    name: str
+    title: str
+    columns: tuple[TableColumn, ...]
+    of_rows: bool = True
+    summary: tables.Summary | None = None
+
+    @property
+    def listing(self) -> Listing:
+        """The cells as files write them, below labels with units."""
+        labels = tuple(f"{c.label} [{c.unit}]" if c.unit else c.label for c in self.columns)
+        rows = tuple(zip(*(_cells(column) for column in self.columns), strict=True))
+        return Listing(f"{self.name}: {self.title}" if self.title else self.name, labels, rows)
+
+
+def _cells(column: TableColumn) -> list[str]:
+    if isinstance(column.values, Words):
+        return column.values.texts(range(column.rows))
+    return column.texts(column_texts(column.values, column.decimals))
+
+
+def evaluate(table: TableLayout, source: TableSource) -> Columns:
+    """All columns of a table, in file units.
+
+    Raises:
+        ExpressionError: a column is no number per row, or names what the source does not have.
+    """
+    columns = tuple(column_of(layout, source) for layout in table.columns)
+    summary = None
+    if table.summary:
+        summary = tables.summary_of(table.summary, table.columns, columns, source)
+    return Columns(table.name, table.title, columns, summary=summary)

@@ -1,8 +1,13 @@
 """Comparison of fresh tables with committed ones, byte by byte, explained cell by cell.
 
 The relative change of a cell is |fresh - committed| / max(|fresh|, |committed|); the scaled change
-is the same difference over the column's largest committed magnitude, which tells rounding near a
-zero crossing from a change that matters.
+is the same difference over the column's largest committed magnitude, which separates rounding near
+a zero crossing from a change that matters.
+
+A file beside a mechanism for which there is no table any more is stale only if it shows that
+mechkin wrote it, since stale files are removed: a table has two files of one name, CSV and
+Markdown, with the same labels and as many rows, and perhaps its summary beside them; the errata
+page and the list of disagreements have the words and the header that they always have.
 """
 
 from __future__ import annotations
@@ -20,14 +25,16 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.record import dataclass
 from mechkin_cli.tables.errata import HEAD, HEADER, NAME, PAGE
+from mechkin_cli.tables.layout import counted
 from mechkin_cli.tables.print import TableText, read_table_text
 
-# Which files beside a mechanism were written by mechkin for a table that it has no more.
-#
-# Nothing else may ever be removed, so a file must show where it comes from: a table has two files
-# of one name, CSV and Markdown, with the same labels and as many rows, and perhaps its summary
-# beside them; the errata page and the list of disagreements have the words and the header that they
-# always have.
+TABLE_SUFFIXES = (".csv", ".md")
+
+REMOVED = "`mechkin tables` removes it"
+LEFT = "it does not look like one of mechkin's, which leaves it: move it, or remove it yourself"
+
+SHOWN_CELLS = 3
+SHOWN_LINES = 3
 
 
 def stale_files(fresh: Collection[str], committed: Mapping[str, bytes]) -> tuple[str, ...]:
@@ -46,11 +53,10 @@ def stale_files(fresh: Collection[str], committed: Mapping[str, bytes]) -> tuple
 
 
 def stale_in(folder: Path, fresh: Collection[str]) -> tuple[str, ...]:
-    """The same for the files that stand in a folder; links and what cannot be read are not
-    mechkin's."""
+    """The same for the files that stand in a folder, without links and unreadable files."""
     found = {}
     for path in folder.iterdir() if folder.is_dir() else ():
-        if path.name in fresh or path.suffix not in (".csv", ".md") or path.is_symlink():
+        if path.name in fresh or path.suffix not in TABLE_SUFFIXES or path.is_symlink():
             continue
         with suppress(OSError):
             found[path.name] = read_regular(path, MOST_TABLE_BYTES)
@@ -58,7 +64,6 @@ def stale_in(folder: Path, fresh: Collection[str]) -> tuple[str, ...]:
 
 
 def _is_page(name: str, content: bytes) -> bool:
-    """Whether it is the errata page, or the list of disagreements."""
     if name == NAME:
         return content.startswith(HEADER.encode())
     return name == PAGE and HEAD.encode() in content
@@ -80,12 +85,6 @@ def _is_pair(csv: bytes, markdown: bytes) -> bool:
     )
 
 
-REMOVED = "`mechkin tables` removes it"
-LEFT = "it does not look like one of mechkin's, which leaves it: move it, or remove it yourself"
-
-SHOWN_CELLS = 3
-SHOWN_LINES = 3
-
 Verdict = Literal["equal", "missing", "extra", "different"]
 
 
@@ -106,9 +105,8 @@ class FileComparison:
     """Outcome for one file.
 
     `missing`: not committed; `extra`: committed, but no table makes it, and the remark says what to
-    do. `cells` holds the first few
-    of `cell_count` differing cells, `remarks` what is no matter of cells. The largest changes are
-    over all numeric cells, None where no numeric cell differs.
+    do. `cells` holds the first few of `cell_count` differing cells, `remarks` what is no matter of
+    cells. The largest changes are over all numeric cells, None where no numeric cell differs.
     """
 
     name: str
@@ -118,10 +116,6 @@ class FileComparison:
     cell_count: int = 0
     largest_relative_change: float | None = None
     largest_scaled_change: float | None = None
-
-
-TABLES = (".csv", ".md")
-"""Endings of table files."""
 
 
 def compare_files(
@@ -150,7 +144,7 @@ def read_committed(folder: Path, also: Collection[str] = ()) -> dict[str, bytes]
         if not folder.is_dir():
             return {}
         paths = sorted(
-            path for path in folder.iterdir() if path.suffix in TABLES or path.name in also
+            path for path in folder.iterdir() if path.suffix in TABLE_SUFFIXES or path.name in also
         )
         return {path.name: _content(path) for path in paths if path.is_file()}
     except OSError as error:
@@ -287,8 +281,6 @@ def _spacing_remark(fresh: bytes, committed: bytes) -> str:
     return f"the cells agree; line {line} differs in spacing, quotes or line ending"
 
 
-# What a comparison of tables says to a person: lines of at most 80 columns.
-
 WIDTH = 80
 _LONGEST_CELL = 24
 _LONGEST_REMARK = 300
@@ -316,13 +308,13 @@ def _file_lines(comparison: FileComparison) -> list[str]:
     for cell in comparison.cells:
         lines += _wrapped(_cell_line(cell), "  ")
     rest = comparison.cell_count - len(comparison.cells)
-    return [*lines, f"  and {_counted(rest, 'more cell')}"] if rest else lines
+    return [*lines, f"  and {counted(rest, 'more cell')}"] if rest else lines
 
 
 def _headline(comparison: FileComparison) -> str:
     text = f"{comparison.name}: different"
     if comparison.cell_count:
-        text += f", {_counted(comparison.cell_count, 'cell')}"
+        text += f", {counted(comparison.cell_count, 'cell')}"
     if comparison.largest_relative_change is not None:
         text += f"; largest relative change {comparison.largest_relative_change:.2g}"
     if comparison.largest_scaled_change is not None:
@@ -338,7 +330,7 @@ def _cell_line(cell: CellChange) -> str:
 
 def _summary(comparisons: Sequence[FileComparison]) -> str:
     counts = Counter(comparison.verdict for comparison in comparisons)
-    text = f"{_counted(len(comparisons), 'table file')}: {counts['equal']} equal"
+    text = f"{counted(len(comparisons), 'table file')}: {counts['equal']} equal"
     for verdict in ("different", "missing", "extra"):
         if counts[verdict]:
             text += f", {counts[verdict]} {verdict}"
@@ -347,17 +339,13 @@ def _summary(comparisons: Sequence[FileComparison]) -> str:
     return f"{text}; where the change is meant, run `mechkin tables` and commit the files"
 
 
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
 def _shortened(text: str, longest: int) -> str:
     """The text on one line of printable characters, cut in its middle where it is too long."""
     text = "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))
     if len(text) <= longest:
         return text
-    kept = longest - 3
-    return f"{text[: kept - kept // 2]}...{text[len(text) - kept // 2 :]}"
+    tail = (longest - 3) // 2
+    return f"{text[: longest - 3 - tail]}...{text[len(text) - tail :]}"
 
 
 def _wrapped(text: str, indent: str) -> list[str]:

@@ -14,22 +14,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.tables.columns import TableColumn, Words, words_of
+from mechkin_cli.kernel import _kernel
+from mechkin_cli.tables.columns import Columns, FloatArray, TableColumn, Words, words_of
 from mechkin_cli.tables.decimals import number_column
 from mechkin_cli.tables.layout import csv_text
-from mechkin_cli.tables.table import Columns
 from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.tables.columns import FloatArray
-
-
-# Columns as the kernel's writers of text take them, and how many threads write.
-
-if TYPE_CHECKING:
     WordColumn = tuple[NDArray[np.int32], list[str]]
+
+COMMITTED_DIGITS = 12
+"""Significant digits of committed tables: above any rounding, below what a last bit can change."""
+
+SHORTEST = 0
 
 
 def word_column(words: Words, written: Callable[[str], str] = str) -> WordColumn:
@@ -48,16 +47,9 @@ def threads_for(columns: Columns | Iterable[TableColumn], threads: int = 0) -> i
 
 
 def _processors() -> int:
-    """Processors that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-COMMITTED_DIGITS = 12
-"""Significant digits of committed tables: above any rounding, below what a last bit can change."""
-
-SHORTEST = 0
 
 
 def csv_bytes(
@@ -65,9 +57,10 @@ def csv_bytes(
 ) -> bytes:
     """The whole file as UTF-8; `SHORTEST` or 1 to 15 significant digits; threads 0: as many as the
     table is worth; with `units` in the header, as `theta [deg]`."""
-    from mechkin_cli.kernel import _kernel
-
-    labels = [csv_text(_header(column, units)) for column in columns.columns]
+    labels = [
+        csv_text(f"{column.label} [{column.unit}]" if units and column.unit else column.label)
+        for column in columns.columns
+    ]
     cells = [
         word_column(column.values, csv_text)
         if isinstance(column.values, Words)
@@ -90,21 +83,7 @@ def _numbers(column: TableColumn, significant_digits: int) -> FloatArray | WordC
     cells = number_column(column.values)
     if column.unbounded is None:
         return cells
-    from mechkin_cli.kernel import _kernel
-
     one: bytes = _kernel.csv_text(
         [""], [cells], significant_digits=significant_digits, quoted_empty=False, threads=1
     )
     return word_column(words_of(column.texts(one.decode().split("\n")[1:-1])))
-
-
-def _header(column: TableColumn, units: bool) -> str:
-    return f"{column.label} [{column.unit}]" if units and column.unit else column.label
-
-
-# Numbers of a column as text with one number of decimals, for tables that people read.
-#
-# Declared decimals hold as they are. Undeclared ones give six significant digits to the column's
-# largest value, less the zeros that would end every number; a column whose largest value is below
-# 1e-6 or from 1e9 on is written with exponents. Every text is the exact binary value rounded once,
-# ties to even, so it is the same on every machine; zero has no sign.

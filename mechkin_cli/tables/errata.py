@@ -1,9 +1,9 @@
-"""The errata page of a mechanism: its tables against print, in Markdown.
+"""Tables against print, in Markdown: a mechanism's errata page, and a folder's overview page.
 
 First the numbers that the source does not give, and what speaks for them. Per table: how many
 printed cells agree, are one off in the last digit, differ; the columns that do not agree throughout
 with their largest difference; the worst cells; the reasons in words, as the mechanism file gives
-them.
+them. `disagreements.csv` lists every printed cell that does not agree.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError, whole
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.tables.columns import TableColumn, words_of
+from mechkin_cli.tables.columns import Columns, TableColumn, words_of
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.layout import (
     ROW_NUMBER,
     PrintedSource,
     TableLayout,
+    counted,
     link_target,
     markdown_line,
     markdown_text,
 )
 from mechkin_cli.tables.print import PrintedCell, TableAgreement, agreement, read_printed
-from mechkin_cli.tables.table import Columns
 
 PAGE = "errata.md"
 _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)
@@ -46,7 +46,7 @@ printed less computed; a *unit* is one unit of the last printed digit."""
 class PrintedTable:
     """A computed table, where its printed values stand, and how the two agree.
 
-    `link` is the way from the page to the printed values.
+    `link` is the path from the page to the printed values.
     """
 
     table: Columns
@@ -60,7 +60,9 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
     parts = [f"# {markdown_text(whole(name))}: printed and computed values"]
     if source:
         parts.append(f"Source: {markdown_text(source)}.")
-    parts += [HEAD, _overview(tables), *_data(tables)]
+    labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
+    overview = _markdown(labels, [_table_row(one.table.name, one.agreement) for one in tables])
+    parts += [HEAD, overview, *_data(tables)]
     for table in tables:
         parts += _table_parts(table)
     return "\n\n".join(parts) + "\n"
@@ -68,25 +70,14 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
 
 def counts(agreements: Iterable[TableAgreement]) -> str:
     """Agreement of some tables in a few words: `12 of 15 cells agree, 2 one off, 1 differs`."""
-    every = list(agreements)
-    cells = sum(len(one.cells) for one in every)
-    text = f"{sum(one.agreeing for one in every)} of {_counted(cells, 'cell')} agree"
-    one_off = sum(one.one_off for one in every)
-    differing = sum(one.differing for one in every)
-    text += f", {one_off} one off" if one_off else ""
-    return text + (
-        f", {differing} {'differs' if differing == 1 else 'differ'}" if differing else ""
-    )
-
-
-def _overview(tables: Sequence[PrintedTable]) -> str:
-    rows = [_table_row(one.table.name, one.agreement) for one in tables]
-    labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
-    return _markdown(labels, rows)
+    total = TableAgreement(tuple(cell for one in agreements for cell in one.cells))
+    text = f"{total.agreeing} of {counted(len(total.cells), 'cell')} agree"
+    text += f", {total.one_off} one off" if total.one_off else ""
+    differ = "differs" if total.differing == 1 else "differ"
+    return text + (f", {total.differing} {differ}" if total.differing else "")
 
 
 def _data(tables: Sequence[PrintedTable]) -> list[str]:
-    """The numbers that are not in the source's text, and what speaks for them."""
     remarks = [remark for one in tables for remark in one.published.remarks if remark.data]
     if not remarks:
         return []
@@ -106,7 +97,6 @@ def _table_row(name: str, agreement: TableAgreement) -> list[str]:
 
 
 def _table_parts(one: PrintedTable) -> list[str]:
-    """Heading, counts, columns, worst cells, reasons."""
     table, found = one.table, one.agreement
     parts = [f"## {table.name}: {markdown_text(table.title)}"]
     links = f"[computed]({table.name}.csv), [printed]({link_target(one.link)})"
@@ -122,9 +112,9 @@ def _table_parts(one: PrintedTable) -> list[str]:
 def _left_out(found: TableAgreement) -> str:
     texts = []
     if found.without_row:
-        texts.append(f"{_counted(found.without_row, 'printed row')} without a computed one.")
+        texts.append(f"{counted(found.without_row, 'printed row')} without a computed one.")
     if found.without_value:
-        texts.append(f"{_counted(found.without_value, 'printed cell')} with an empty computed one.")
+        texts.append(f"{counted(found.without_value, 'printed cell')} with an empty computed one.")
     if found.other_labels:
         others = ", ".join(map(markdown_text, found.other_labels))
         texts.append(f"Printed columns not computed here: {others}.")
@@ -161,7 +151,7 @@ def _worst_cells(one: PrintedTable) -> list[str]:
     ]
     parts = [_markdown([first, "column", "printed", "computed", "units"], rows)]
     rest = len(off) - len(shown)
-    more = f"and {_counted(rest, 'more cell')} that do not agree ([all](disagreements.csv))."
+    more = f"and {counted(rest, 'more cell')} that do not agree ([all](disagreements.csv))."
     return [*parts, more] if rest else parts
 
 
@@ -200,10 +190,6 @@ def _value(value: Decimal) -> str:
     return f"{value:.3g}" if value else "0"
 
 
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
 def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table padded to read as one in a terminal; the first column to the left."""
     cells = [labels, *rows]
@@ -215,8 +201,6 @@ def _markdown(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     ]
     return "\n".join(f"| {' | '.join(row)} |" for row in [lines[0], rule, *lines[1:]])
 
-
-# The overview page of a folder of mechanisms: one line per file, in Markdown.
 
 OVERVIEW_PAGE = "README.md"
 MARK = "<!-- written by `mechkin tables` -->"
@@ -240,16 +224,8 @@ class OverviewRow(NamedTuple):
 
 def overview_page(rows: Sequence[OverviewRow]) -> str:
     """The whole page, with a newline at its end."""
-    labels = (
-        "picture",
-        "mechanism",
-        "joints",
-        "mobility",
-        "modes",
-        "rows",
-        "against print",
-        "source",
-    )
+    labels = ["picture", "mechanism", "joints", "mobility", "modes", "rows"]
+    labels += ["against print", "source"]
     lines = [_line(labels), _line(["---"] * len(labels)), *(_line(_cells(row)) for row in rows)]
     return "\n".join([MARK, "", "# Mechanisms", "", _HEAD, "", *lines]) + "\n"
 
@@ -284,9 +260,6 @@ def _text(text: str) -> str:
     return markdown_text(whole(text))
 
 
-# The tables of a mechanism that name printed values, beside these values.
-
-
 def against_print(
     file: Path, layouts: Sequence[TableLayout], tables: Sequence[Columns]
 ) -> list[PrintedTable]:
@@ -310,12 +283,6 @@ def against_print(
     return found
 
 
-# Every printed cell that does not agree with the computed one, as a table and as plain data.
-#
-# The errata page shows the worst few of a table; here each can be found: the table, the computed
-# row counted from 1, what found the row in the print, the column, both numbers, and printed less
-# computed in units of the last printed digit.
-
 NAME = "disagreements.csv"
 """File beside the errata page; there is none where all cells agree."""
 
@@ -324,21 +291,27 @@ HEADER = "table,row,found by,at,column,printed,computed,units\n"
 
 
 def disagreements_csv(tables: Sequence[PrintedTable]) -> bytes:
-    """The file, as UTF-8; empty where all cells agree."""
-    found = [(one, cell) for one in tables for cell in one.agreement.off]
-    if not found:
-        return b""
-    columns = (
-        _words("table", [one.table.name for one, _ in found]),
-        _numbers("row", [cell.row for _, cell in found]),
-        _words("found by", [one.agreement.rows_by for one, _ in found]),
-        _numbers("at", [float(cell.key) for _, cell in found]),
-        _words("column", [cell.label for _, cell in found]),
-        _numbers("printed", [float(cell.printed) for _, cell in found]),
-        _numbers("computed", [float(cell.computed) for _, cell in found]),
-        _numbers("units", [float(cell.units) for _, cell in found]),
+    """The file, as UTF-8; empty where all cells agree.
+
+    Columns: the table, the computed row counted from 1, what found the row in the print, the
+    column, both numbers, and printed less computed in units of the last printed digit.
+    """
+    lines = [
+        (
+            *(table.table.name, cell.row, table.agreement.rows_by, float(cell.key), cell.label),
+            *map(float, (cell.printed, cell.computed, cell.units)),
+        )
+        for table in tables
+        for cell in table.agreement.off
+    ]
+    columns: list[TableColumn] = []
+    for label, values in zip(HEADER.strip().split(","), zip(*lines, strict=True), strict=False):
+        is_text = isinstance(values[0], str)
+        cells = words_of(values) if is_text else np.array(values, dtype=np.float64)
+        columns.append(TableColumn(label, "", cells))
+    return (
+        csv_bytes(Columns("disagreements", "", tuple(columns)), COMMITTED_DIGITS) if lines else b""
     )
-    return csv_bytes(Columns("disagreements", "", columns), COMMITTED_DIGITS)
 
 
 def against_print_record(tables: Sequence[PrintedTable]) -> list[dict[str, Any]]:
@@ -352,26 +325,17 @@ def against_print_record(tables: Sequence[PrintedTable]) -> list[dict[str, Any]]
             "agree": one.agreement.agreeing,
             "one_off": one.agreement.one_off,
             "differ": one.agreement.differing,
-            "disagreements": [_cell_record(cell) for cell in one.agreement.off],
+            "disagreements": [
+                {
+                    "row": cell.row,
+                    "at": str(cell.key),
+                    "column": cell.label,
+                    "printed": str(cell.printed),
+                    "computed": float(cell.computed),
+                    "units": float(cell.units),
+                }
+                for cell in one.agreement.off
+            ],
         }
         for one in tables
     ]
-
-
-def _cell_record(cell: PrintedCell) -> dict[str, Any]:
-    return {
-        "row": cell.row,
-        "at": str(cell.key),
-        "column": cell.label,
-        "printed": str(cell.printed),
-        "computed": float(cell.computed),
-        "units": float(cell.units),
-    }
-
-
-def _words(label: str, texts: Sequence[str]) -> TableColumn:
-    return TableColumn(label, "", words_of(texts))
-
-
-def _numbers(label: str, values: Sequence[float]) -> TableColumn:
-    return TableColumn(label, "", np.array(values, dtype=np.float64))

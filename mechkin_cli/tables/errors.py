@@ -1,6 +1,10 @@
 """The true errors of a run as tables: cell by cell (`errors.csv`), and the worst of each column.
 
-Both say, in the column `why`, what of a table was not repeated, or why a cell has no error.
+The error of a cell is |cell - true value|, in the file's units, where the true value is that of the
+same column in double-double numbers. Its relative error is that in parts of the largest number of
+its column, and its right digits are those of the relative error: 12 for 3e-13. A column that is
+zero but for rounding has errors and no digits. The column `why` says what of a table was not
+repeated, or why a cell has no error.
 """
 
 from __future__ import annotations
@@ -12,8 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.record import dataclass
-from mechkin_cli.tables.columns import TableColumn, Words, words_of
-from mechkin_cli.tables.table import Columns
+from mechkin_cli.tables.columns import Columns, FloatArray, TableColumn, Words, words_of
+from mechkin_cli.tables.layout import counted
 from mechkin_cli.tape import DoubleDoubles, difference
 from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
 from mechkin_cli.verdict import SWEEP
@@ -21,14 +25,6 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.tables.columns import FloatArray
-
-
-# The true errors of a table's cells: against the same columns in double-double numbers.
-#
-# The error of a cell is |cell - true value|, in the file's units; its relative error is that in
-# parts of the largest number of its column, and its right digits are those of the relative error:
-# 12 for 3e-13. A column that is zero but for rounding has errors and no digits.
 
 EMPTY = "empty"
 """Said of a cell without a number."""
@@ -36,7 +32,7 @@ EMPTY = "empty"
 LOST = "no value in double-double"
 """Said of a cell that the repetition has no number for."""
 
-NO_VALUE = "no value, or none that double-double tells"
+NO_VALUE = "no value, or none that double-double decides"
 """Said of a cell whose true value hangs on a rounding of zero: the text divides by zero."""
 
 AT_LEAST = "at least so many digits: the repetition itself is known to no more"
@@ -62,7 +58,7 @@ _POWERS = tuple(float(f"1e-{k}") for k in range(1, MOST_DIGITS + 1))
 
 @dataclass(frozen=True, eq=False)
 class ColumnErrors:
-    """Of one column of a table.
+    """The errors of one column of a table.
 
     Attributes:
         table: its name.
@@ -72,9 +68,9 @@ class ColumnErrors:
         error: (rows,) |cell - true value|, with what the true value may be off by where that
             counts; nan where a cell is empty or was not repeated.
         is_bound: (rows,) whether it counts: the error is at most so large.
-        lost_why: what is said of a cell that the repetition has no number for.
+        lost_why: why a cell has no true value.
         why: why the column was not repeated, or has no digits; "" of others.
-        there: (rows,) rows that stand at a dead centre; None: no row does.
+        dead_centres: (rows,) rows that stand at a dead centre; None: no row does.
     """
 
     table: str
@@ -85,7 +81,7 @@ class ColumnErrors:
     is_bound: NDArray[np.bool_]
     why: str = ""
     lost_why: str = LOST
-    there: NDArray[np.bool_] | None = None
+    dead_centres: NDArray[np.bool_] | None = None
 
     @cached_property
     def largest(self) -> float:
@@ -121,21 +117,21 @@ class ColumnErrors:
         """Cells with a number of which the repetition has none, but for those at a dead centre."""
         if self.why:
             return 0
-        lost = np.isfinite(self.values) & ~np.isfinite(self.error) & ~self.stands_there
+        lost = np.isfinite(self.values) & ~np.isfinite(self.error) & ~self.at_dead_centre
         return int(np.count_nonzero(lost))
 
     @cached_property
-    def stands_there(self) -> NDArray[np.bool_]:
+    def at_dead_centre(self) -> NDArray[np.bool_]:
         """Cells without a figure in rows at a dead centre (rows,)."""
-        if self.there is None:
+        if self.dead_centres is None:
             return np.zeros(self.error.shape, np.bool_)
-        return self.there & ~np.isfinite(self.error)
+        return self.dead_centres & ~np.isfinite(self.error)
 
 
 def not_repeated(
     table: str, label: str, unit: str, values: FloatArray | int, why: str
 ) -> ColumnErrors:
-    """Of a column whose cells are no numbers (`values`: how many), or that was not repeated."""
+    """Errors of a column whose cells are no numbers (`values`: how many), or was not repeated."""
     cells = np.full(values, np.nan) if isinstance(values, int) else values
     nothing = np.full(cells.shape, np.nan)
     return ColumnErrors(table, label, unit, cells, nothing, np.zeros(cells.shape, np.bool_), why)
@@ -150,8 +146,14 @@ def column_errors(
     doubt: FloatArray | float = 0.0,
     lost_why: str = LOST,
 ) -> ColumnErrors:
-    """Of a column with what its cells should be, and how far that may be off, (rows,) in its
-    unit."""
+    """Errors of a column.
+
+    Args:
+        values: (rows,) the cells.
+        true: (rows,) what they should be, in the same unit.
+        doubt: how far that may be off.
+        lost_why: why a cell has no true value.
+    """
     with np.errstate(invalid="ignore"):
         error = np.abs(difference(values, true))
     error = np.where(np.isfinite(values) & np.isfinite(error), error, np.nan)
@@ -174,15 +176,6 @@ def column_errors(
     )
 
 
-def counted_cells(number: int) -> str:
-    """How many cells.
-
-    >>> counted_cells(1), counted_cells(3)
-    ('1 cell', '3 cells')
-    """
-    return f"{number} cell" if number == 1 else f"{number} cells"
-
-
 def least_digits(columns: Sequence[ColumnErrors]) -> int | None:
     """Digits that every cell has; None where nothing was repeated."""
     known = [int(c.digits[c.digits >= 0].min()) for c in columns if (c.digits >= 0).any()]
@@ -202,7 +195,7 @@ def _name(run: str) -> str:
 def clashing(names: Iterable[str], runs: Iterable[str]) -> str | None:
     """The first of some tables whose files are those of the errors of a run; None where none is.
 
-    Files differ by more than capitals, for there are disks that do not tell these apart.
+    Names differ by more than capitals, which not every file system distinguishes.
     """
     own = {_name(run).casefold() for run in runs}
     return next((name for name in names if name.casefold() in own), None)
@@ -215,8 +208,9 @@ def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
     """
     parts = [_cells(column) for column in columns]
     counts = [len(rows) for rows, *_ in parts]
-    number = [np.concatenate([part[k] for part in parts] or [np.empty(0)]) for k in range(5)]
-    row, value, error, relative, digits = number
+    row, value, error, relative, digits = (
+        np.concatenate([part[k] for part in parts] or [np.empty(0)]) for k in range(5)
+    )
     return Columns(
         _name(run),
         "True errors of the cells",
@@ -236,21 +230,22 @@ def cells_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
 def worst_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
     """Columns table, column, unit, largest, error, relative, digits, row, why: a line for each
     column, with its worst cell."""
-    at = [c.worst for c in columns]
-    pairs = list(zip(columns, at, strict=True))
-    worst = [c.error[k] if k >= 0 else np.nan for c, k in pairs]
-    relative = [c.relative[k] if k >= 0 else np.nan for c, k in pairs]
-    digits = [float(c.digits[k]) if k >= 0 else np.nan for c, k in pairs]
+    none = (np.nan,) * 4
+    worst = [
+        (c.error[k], c.relative[k], float(c.digits[k]), k + 1.0) if (k := c.worst) >= 0 else none
+        for c in columns
+    ]
+    error, relative, digits, row = np.array(worst or np.empty((0, 4))).T
     return Columns(
         _name(run),
         "True errors, worst of each column",
         (
             *_names(columns, [1] * len(columns)),
             TableColumn("largest", "", np.array([c.largest or np.nan for c in columns])),
-            TableColumn("error", "", np.array(worst)),
-            TableColumn("relative", "", np.array(relative)),
-            TableColumn("digits", "", _or_nan(np.array(digits)), 0),
-            TableColumn("row", "", np.array([k + 1.0 if k >= 0 else np.nan for k in at]), 0),
+            TableColumn("error", "", error),
+            TableColumn("relative", "", relative),
+            TableColumn("digits", "", _or_nan(digits), 0),
+            TableColumn("row", "", row, 0),
             TableColumn("why", "", words_of([_why(c) for c in columns])),
         ),
         of_rows=False,
@@ -260,14 +255,13 @@ def worst_table(columns: Sequence[ColumnErrors], run: str = SWEEP) -> Columns:
 def _why(column: ColumnErrors) -> str:
     if column.why:
         return column.why
-    there = int(np.count_nonzero(column.stands_there))
+    there = int(np.count_nonzero(column.at_dead_centre))
     said = [(column.lost, column.lost_why), (there, AT_DEAD_CENTRE)]
-    without = [f"{counted_cells(cells)} without: {why}" for cells, why in said if cells]
+    without = [counted(cells, "cell") + f" without: {why}" for cells, why in said if cells]
     return "; ".join(without) or (AT_LEAST if column.is_bound.any() else "")
 
 
 def _names(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> tuple[TableColumn, ...]:
-    """The columns table, column and unit."""
     codes = np.repeat(np.arange(len(columns), dtype=np.int32), counts)
 
     def words(texts: Sequence[str]) -> Words:
@@ -291,7 +285,6 @@ def _cells(column: ColumnErrors) -> tuple[FloatArray, ...]:
 
 
 def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
-    """What is said of each line."""
     lost, whys = [c.lost_why for c in columns], [c.why for c in columns]
     words = tuple(dict.fromkeys(("", EMPTY, AT_LEAST, AT_DEAD_CENTRE, *lost, *whys)))
     known = [np.zeros(0, dtype=np.int32)]
@@ -303,7 +296,7 @@ def _whys(columns: Sequence[ColumnErrors], counts: Sequence[int]) -> Words:
             gone = words.index(column.lost_why)
             measured = np.where(np.isfinite(column.error), measured, gone)
             codes = np.where(np.isfinite(column.values), measured, 1)
-            codes = np.where(column.stands_there, 3, codes)
+            codes = np.where(column.at_dead_centre, 3, codes)
         known.append(codes.astype(np.int32))
     return Words(np.concatenate(known), words)
 

@@ -13,19 +13,18 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import SURROGATES, Diagnostic, escape
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import dataclass
-from mechkin_cli.tables.columns import FloatArray, TableSource, Words
+from mechkin_cli.tables.columns import Columns, FloatArray, TableSource, Words
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.decimals import number_column
-from mechkin_cli.tables.errors import least_digits
+from mechkin_cli.tables.errors import ColumnErrors, least_digits
 from mechkin_cli.tables.markdown import rows_table
-from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.errors import ColumnErrors
-    from mechkin_cli.tables.results import Results
     from mechkin_cli.tables.summary import Extreme, Summary
+    from mechkin_cli.tables.writers import Results
 
 
 Plain = dict[str, object]
@@ -43,8 +42,6 @@ class JsonCells:
 
     def json_bytes(self) -> bytes:
         """The list as JSON."""
-        from mechkin_cli.kernel import _kernel
-
         text: bytes = _kernel.json_list(
             word_column(self.values, _one_line_json)
             if isinstance(self.values, Words)
@@ -66,7 +63,11 @@ def analysis_record(
     """One run as plain data and `Cells`; values are in file units, each column names its own;
     `errors` of all columns, where they were asked for."""
     measured = {} if errors is None else {"errors": _errors_record(errors)}
-    proven = _proof_record(source) if run == SWEEP and source.is_certified else {}
+    proven: Plain = {}
+    if run == SWEEP and source.is_certified:
+        is_one_branch, tubes = source.proven_way
+        centres = [dict(centre) for centre in source.proven_dead_centres]
+        proven["proof"] = {"one_branch": is_one_branch, "tubes": tubes, "dead_centres": centres}
     return {
         "name": name,
         "row_count": source.rows,
@@ -76,12 +77,6 @@ def analysis_record(
         **measured,
         "diagnostics": [diagnostic.record() for diagnostic in diagnostics],
     }
-
-
-def _proof_record(source: TableSource) -> Plain:
-    is_one_branch, tubes = source.proven_way
-    dead_centres = [dict(found) for found in source.proven_dead_centres]
-    return {"proof": {"one_branch": is_one_branch, "tubes": tubes, "dead_centres": dead_centres}}
 
 
 def runs_record(runs: Sequence[Results]) -> Plain:
@@ -160,7 +155,6 @@ def _summary_record(summary: Summary) -> Plain:
 
 
 def _number(found: float | Extreme) -> object:
-    """A number, or an extreme with its place; null for nan."""
     if isinstance(found, tuple):
         return {"value": _number(found.value), "at": _number(found.place)}
     return found if isfinite(found) else None

@@ -2,7 +2,7 @@
 
 It needs `\\usepackage{booktabs}`, and where a table is longer than a page `longtable`. Every number
 of a column has as many decimals, so that columns aligned at the right have their points in line;
-undeclared decimals are chosen as `mechkin_cli.tables.decimal_text` says. A cell that is empty is a
+undeclared decimals are chosen as in `tables/decimals.py`. A cell that is empty is a
 dash.
 """
 
@@ -12,14 +12,13 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
+from mechkin_cli import tables
 from mechkin_cli.diagnostics import legible
-from mechkin_cli.tables.columns import INFINITE, TableColumn, Words
+from mechkin_cli.tables.columns import INFINITE, Columns, TableColumn, TableSource, Words
 from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.markdown import footnotes
-from mechkin_cli.tables.table import Columns
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.columns import TableSource
     from mechkin_cli.tables.summary import Summary
 
 
@@ -89,54 +88,37 @@ def latex_number(text: str) -> str:
 
 def latex_bytes(columns: Columns, source: TableSource) -> bytes:
     """The whole file as UTF-8, with a newline at its end."""
-    caption = latex_text(columns.title or columns.name)
-    label = f"tab:{columns.name}"
+    caption = (
+        rf"\caption{{{latex_text(columns.title or columns.name)}}}\label{{tab:{columns.name}}}"
+    )
     heads = [_head(column.label, column.unit) for column in columns.columns]
     rows = list(zip(*map(_cells, columns.columns), strict=True))
     aligned = "".join("l" if isinstance(c.values, Words) else "r" for c in columns.columns)
     notes = footnotes(columns, source)
     below = [] if columns.summary is None else _below(columns.summary)
     if columns.summary is not None:
-        from mechkin_cli.tables.summary import written_notes
-
-        notes = [*written_notes(columns.summary), *notes]
-    is_long = len(rows) > PAGE_ROWS
-    body = _long if is_long else _short
-    lines = [
-        r"% \usepackage{booktabs,longtable}" if is_long else r"% \usepackage{booktabs}",
-        *body(aligned, heads, rows, caption, label),
-        *below,
-        *_notes(notes),
-    ]
-    if not is_long:
+        notes = [*tables.written_notes(columns.summary), *notes]
+    if len(rows) > PAGE_ROWS:
+        lines = [r"% \usepackage{booktabs,longtable}", *_longtable(aligned, heads, rows, caption)]
+    else:
+        lines = [r"% \usepackage{booktabs}", r"\begin{table}", r"\centering", caption]
+        lines += _tabular(aligned, heads, rows)
+    lines += [*below, *_notes(notes)]
+    if len(rows) <= PAGE_ROWS:
         lines.append(r"\end{table}")
     return ("\n".join(lines) + "\n").encode()
 
 
-def _short(
-    aligned: str, heads: Sequence[str], rows: Iterable[Sequence[str]], caption: str, label: str
+def _longtable(
+    aligned: str, heads: Sequence[str], rows: Iterable[Sequence[str]], caption: str
 ) -> list[str]:
-    return [
-        r"\begin{table}",
-        r"\centering",
-        rf"\caption{{{caption}}}\label{{{label}}}",
-        *_tabular(aligned, heads, rows),
-    ]
-
-
-def _long(
-    aligned: str, heads: Sequence[str], rows: Iterable[Sequence[str]], caption: str, label: str
-) -> list[str]:
+    head = [r"\toprule", _row(heads), r"\midrule"]
     return [
         rf"\begin{{longtable}}{{{aligned}}}",
-        rf"\caption{{{caption}}}\label{{{label}}}\\",
-        r"\toprule",
-        _row(heads),
-        r"\midrule",
+        rf"{caption}\\",
+        *head,
         r"\endfirsthead",
-        r"\toprule",
-        _row(heads),
-        r"\midrule",
+        *head,
         r"\endhead",
         r"\bottomrule",
         r"\endfoot",
@@ -158,7 +140,6 @@ def _tabular(aligned: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) 
 
 
 def _below(summary: Summary) -> list[str]:
-    """The rows below a table as a table of their own."""
     columns = [list(map(latex_text, summary.lines))]
     columns += [list(map(latex_number, summary.texts(each))) for each in summary.columns]
     heads = ["", *(_head(each.label, each.unit) for each in summary.columns)]

@@ -1,4 +1,9 @@
-"""Table layouts: which columns a table has, under which labels, with how many decimals."""
+"""Table layouts: which columns a table has, under which labels, with how many decimals.
+
+At the end, texts of a file as they stand in tables. A spreadsheet computes a cell of a CSV file
+that begins with =, +, - or @; it takes one that begins with an apostrophe for text. In Markdown
+what would be markup is escaped. Numbers never come here.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Protocol, TypeVar
 from urllib.parse import quote
 
+from mechkin_cli import expressions
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.verdict import SWEEP
 
@@ -108,17 +114,17 @@ class CoefficientsLayout(NamedTuple):
         return self.name, f"{self.name}_unknowns"
 
 
-class _NamedLayout(Protocol):
+class _Named(Protocol):
     @property
     def name(self) -> str: ...
 
 
-OneNamed = TypeVar("OneNamed", bound=_NamedLayout)
+Layout = TypeVar("Layout", bound=_Named)
 
 
-def chosen(every: tuple[OneNamed, ...], names: Collection[str] | None) -> tuple[OneNamed, ...]:
+def chosen(layouts: tuple[Layout, ...], names: Collection[str] | None) -> tuple[Layout, ...]:
     """Those named; None for all."""
-    return every if names is None else tuple(one for one in every if one.name in names)
+    return layouts if names is None else tuple(one for one in layouts if one.name in names)
 
 
 def default_table(
@@ -127,17 +133,23 @@ def default_table(
     """The table of a run that has none, called after it: all coordinates, their rates, the efforts;
     of a response what ended it, too.
 
-    `coordinates` are the dotted names in joint order, `efforts` those of them whose efforts are
-    told; `timed` puts the time of the rows first. Each column is labelled with the name of its
-    quantity.
+    `coordinates` are the dotted names in joint order, `efforts` those of them with an effort;
+    `timed` puts the time of the rows first. Each column is labelled with the name of its quantity.
     """
-    from mechkin_cli.expressions import parse
-
     rates = [f"{name}_dot" for name in coordinates]
     names = [*(["time"] if timed else []), *coordinates, *rates, *effort_names(efforts)]
     names += [ROW_EVENT] if run != SWEEP else []
-    columns = tuple(ColumnLayout(name, parse(name)) for name in names)
+    columns = tuple(ColumnLayout(name, expressions.parse(name)) for name in names)
     return TableLayout(run, "Coordinates, rates and efforts", columns, run=run)
+
+
+def counted(count: int, noun: str) -> str:
+    """A count with its noun.
+
+    >>> counted(1, "cell"), counted(3, "cell")
+    ('1 cell', '3 cells')
+    """
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def effort_names(inputs: Collection[str]) -> list[str]:
@@ -148,13 +160,6 @@ def effort_names(inputs: Collection[str]) -> list[str]:
         for name, joint in zip(inputs, joints, strict=True)
     ]
 
-
-# Texts of a file as they stand in tables: words, whatever a spreadsheet or a page would make of
-# them.
-#
-# A spreadsheet computes a cell of a CSV file that begins with =, +, - or @; it takes one that
-# begins with an apostrophe for text. In Markdown what would be markup is escaped. Numbers never
-# come here.
 
 _FORMULA = re.compile(r"(^|[;\t\r\n])(?=[\s'\"]*[=+\-@＝＋－＠])|^(?=[\t\r\n])")
 _MARKUP = re.compile(r"[\\|`*\[\]~]|(?<![^\W_])_|_(?![^\W_])")

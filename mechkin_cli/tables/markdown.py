@@ -1,7 +1,8 @@
 """Markdown of a table: title, labels with units, declared decimals, its summary, footnotes.
 
-Cells are padded so that the text reads as a table in a terminal as well. Undeclared decimals are
-chosen as `mechkin_cli.tables.decimal_text` says.
+Cells are padded so that the text reads as a table in a terminal as well. Footnotes say which rows
+are not ok or lack a cell, and why. At the end the table `rows`: per row its inputs, assembly mode,
+verdict and measured errors.
 """
 
 from __future__ import annotations
@@ -12,30 +13,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli import tables
+from mechkin_cli.kernel import _kernel
 from mechkin_cli.tables.columns import (
+    Columns,
     RunParameter,
     TableColumn,
     TableSource,
     Words,
-    event_words,
-    proof_words,
+    row_words,
     run_parameter,
-    status_words,
     words_of,
 )
 from mechkin_cli.tables.csv import threads_for, word_column
-from mechkin_cli.tables.decimals import column_texts, decimal_column
-from mechkin_cli.tables.layout import markdown_text
-from mechkin_cli.tables.table import Columns
+from mechkin_cli.tables.decimals import DecimalColumn, column_texts, decimal_column
+from mechkin_cli.tables.layout import ROW_EVENT, ROW_PROOF, markdown_text
 from mechkin_cli.verdict import SWEEP, Status, has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.csv import WordColumn
-    from mechkin_cli.tables.decimals import DecimalColumn
     from mechkin_cli.tables.summary import Summary
 
-
-# Footnotes of a table: which rows are not ok or lack a cell, and why.
 
 LISTED_RANGES = 6
 
@@ -84,38 +82,36 @@ def _range_text(first: int, last: int, swept: RunParameter | None) -> str:
     rows = str(first) if first == last else f"{first}-{last}"
     if swept is None:
         return rows
-    name, values, unit = swept
-    start, end = float(values[first - 1]), float(values[last - 1])
-    place = f"{name} {start:.12g}" if first == last else f"{name} {start:.12g} to {end:.12g}"
-    return f"{rows} ({f'{place} {unit}'.rstrip()})"
+    ends = " to ".join(f"{swept.values[row - 1]:.12g}" for row in dict.fromkeys((first, last)))
+    return f"{rows} ({f'{swept.name} {ends} {swept.unit}'.rstrip()})"
 
 
 def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> bytes:
     """The whole file as UTF-8, with a newline at its end and no trailing spaces; threads 0: as many
     as the table is worth."""
-    from mechkin_cli.kernel import _kernel
-
-    headers = [_padded_header(column) for column in columns.columns]
-    cells = [
-        word_column(column.values, markdown_text)
-        if isinstance(column.values, Words)
-        else _numbers(column)
-        for column in columns.columns
-    ]
+    headers = [_header(column) for column in columns.columns]
+    cells: list[DecimalColumn | WordColumn] = []
+    for number, column in enumerate(columns.columns):
+        if isinstance(column.values, Words):
+            cells.append(word_column(column.values, markdown_text))
+        elif column.unbounded is None:
+            cells.append(decimal_column(column.values, column.decimals))
+        else:  # the kernel takes texts, and sets them to the left
+            texts = column.texts(column_texts(column.values, column.decimals))
+            width = max(map(len, (headers[number], *texts)))
+            headers[number] = headers[number].rjust(width)
+            cells.append(word_column(words_of([text.rjust(width) for text in texts])))
     title = f"# {markdown_text(columns.title or columns.name)}\n\n"
-    table: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
+    text: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
     if any(column.unbounded is not None for column in columns.columns):
-        table = _to_the_right(table, columns)
+        text = _to_the_right(text, columns)
     below = "" if columns.summary is None else _below(columns.summary)
     notes = "".join(f"- {note}\n" for note in footnotes(columns, source, markdown_text))
     notes = below + (f"\n{notes}" if notes else "")
-    return b"".join((title.encode(), table, notes.encode()))
+    return b"".join((title.encode(), text, notes.encode()))
 
 
 def _below(summary: Summary) -> str:
-    """The rows below a table as a table of their own, and what is said of them."""
-    from mechkin_cli.tables.summary import written_notes
-
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
         header = _header(TableColumn(each.label, each.unit, np.empty(0)))
@@ -127,31 +123,8 @@ def _below(summary: Summary) -> str:
         for row in zip(*columns, strict=True)
     )
     rule = [f":{'-' * (widths[0] - 1)}", *(f"{'-' * (width - 1)}:" for width in widths[1:])]
-    said = "".join(f"- {note}\n" for note in written_notes(summary, markdown_text))
+    said = "".join(f"- {note}\n" for note in tables.written_notes(summary, markdown_text))
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
-
-
-def _numbers(column: TableColumn) -> DecimalColumn | WordColumn:
-    """The cells as the kernel takes them: as texts where one is infinite."""
-    assert not isinstance(column.values, Words)
-    if column.unbounded is None:
-        return decimal_column(column.values, column.decimals)
-    texts = _texts(column)
-    width = max(len(_header(column)), *map(len, texts))
-    return word_column(words_of([text.rjust(width) for text in texts]))
-
-
-def _padded_header(column: TableColumn) -> str:
-    """The header, of cells that the kernel takes as texts as wide as they are."""
-    header = _header(column)
-    if column.unbounded is None:
-        return header
-    return header.rjust(max(map(len, _texts(column))))
-
-
-def _texts(column: TableColumn) -> list[str]:
-    assert not isinstance(column.values, Words)
-    return column.texts(column_texts(column.values, column.decimals))
 
 
 def _to_the_right(table: bytes, columns: Columns) -> bytes:
@@ -169,15 +142,10 @@ def _header(column: TableColumn) -> str:
     return f"{label} [{column.unit}]" if column.unit else label
 
 
-# The table `rows`: per row its inputs, assembly mode, verdict and measured errors.
-#
-# That of a response is called `NAME.rows`; it has what happened at its rows and the error of their
-# energy, too.
-
-
 def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
     """Columns row, the inputs, mode, status, residual, condition, power_error; of a sweep whose
-    proofs were asked for additionally proof, of a response event and energy_error.
+    proofs were asked for additionally proof. That of a response is called `NAME.rows` and has event
+    and energy_error.
 
     Rows count from 1; inputs are in file units, errors and condition without dimension.
     """
@@ -189,16 +157,16 @@ def rows_table(source: TableSource, run: str = SWEEP) -> Columns:
         TableColumn("row", "", np.arange(1, source.rows + 1, dtype=np.float64), 0),
         *inputs,
         TableColumn("mode", "", Words(np.zeros(source.rows, dtype=np.int32), (source.mode,))),
-        TableColumn("status", "", status_words(source)),
+        TableColumn("status", "", row_words("row.status", source)),
         TableColumn("residual", "", source.residual),
         TableColumn("condition", "", source.condition),
         TableColumn("power_error", "", source.power_error),
     ]
     if run == SWEEP:
         if source.is_certified:
-            columns.insert(-3, TableColumn("proof", "", proof_words(source)))
+            columns.insert(-3, TableColumn("proof", "", row_words(ROW_PROOF, source)))
         return Columns("rows", "Rows and their verdicts", tuple(columns))
-    columns.insert(-3, TableColumn("event", "", event_words(source)))
+    columns.insert(-3, TableColumn("event", "", row_words(ROW_EVENT, source)))
     error = np.asarray(source.quantity("row.energy_error").value, dtype=np.float64)
     columns.append(TableColumn("energy_error", "", error))
     return Columns(f"{run}.rows", f"Rows of {run} and their verdicts", tuple(columns))

@@ -5,6 +5,12 @@ computed number lies within that half unit, both ends included: the printed numb
 computed one, rounded; at a tie both neighbours are. Beyond that and up to one and a half units it
 is one off in the last digit. Computed numbers are taken with the twelve digits of committed
 tables, which the last bits of a double do not reach, so that a tie is a tie.
+
+In reading order: table files as text (cells stay the text of the file, so that a comparison sees
+what a reader sees), printed values, the comparison. Printed values are a CSV file with the digits
+as the source prints them: labels of the table first, of which the first finds rows again; a cell's
+text carries its precision (`1.30` is printed to 0.01), an empty one is a value that the source does
+not have or that cannot be read.
 """
 
 from __future__ import annotations
@@ -12,6 +18,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Context, Decimal
 from itertools import groupby
@@ -20,15 +27,9 @@ from pathlib import Path
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
 from mechkin_cli.reading import read_regular
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.tables.columns import TableColumn, Words
+from mechkin_cli.tables.columns import Columns, TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS
 from mechkin_cli.tables.layout import ROW_NUMBER
-from mechkin_cli.tables.table import Columns
-
-# Reading table files back as text: labels, cells and the lines around them.
-#
-# Cells stay the text that stands in the file; nothing is converted, so that a comparison sees what
-# a reader sees.
 
 _UNESCAPED_BAR = re.compile(r"(?<!\\)\|")
 
@@ -72,10 +73,14 @@ def _read_csv(text: str) -> TableText:
 
 def _read_markdown(text: str) -> TableText:
     lines = text.splitlines()
-    table = [_markdown_cells(line) for line in lines if _is_of_table(line)]
-    others = _filled(line for line in lines if not _is_of_table(line))
-    if not table or _has_several_tables(lines):
+    if [is_table for is_table, _ in groupby(lines, _is_of_table)].count(True) != 1:
         return TableText(lines=_filled(lines))
+    table = [
+        tuple(cell.strip() for cell in _UNESCAPED_BAR.split(line.strip())[1:-1])
+        for line in lines
+        if _is_of_table(line)
+    ]
+    others = _filled(line for line in lines if not _is_of_table(line))
     return TableText(table[0], tuple(table[2:]), others)
 
 
@@ -83,23 +88,9 @@ def _is_of_table(line: str) -> bool:
     return line.lstrip().startswith("|")
 
 
-def _has_several_tables(lines: Iterable[str]) -> bool:
-    return sum(is_table for is_table, _ in groupby(lines, _is_of_table)) > 1
-
-
-def _markdown_cells(line: str) -> tuple[str, ...]:
-    return tuple(cell.strip() for cell in _UNESCAPED_BAR.split(line.strip())[1:-1])
-
-
 def _filled(lines: Iterable[str]) -> tuple[str, ...]:
     return tuple(line.rstrip() for line in lines if line.strip())
 
-
-# Printed values of a table: a CSV file with the digits as the source prints them.
-#
-# The first line holds labels of the table, the first of them that of the column by which rows are
-# found again. A cell's text carries its precision: `1.30` is printed to 0.01. Empty cells are
-# values that the source does not have, or that cannot be read.
 
 MOST_BYTES = 1 << 20
 """Size of a file of printed values; the longest printed tables have some ten kilobytes."""
@@ -111,11 +102,8 @@ _NUMBER = re.compile(
 Cell = Decimal | None
 
 
-class PrintedValues(NamedTuple):
-    """Labels and rows of numbers, as printed; None where the print has no value."""
-
-    labels: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
+PrintedValues = tuple[tuple[str, ...], tuple[tuple[Cell, ...], ...]]
+"""Labels and rows of numbers, as printed; None where the print has no value."""
 
 
 def read_printed(path: Path) -> PrintedValues:
@@ -142,7 +130,7 @@ def read_printed(path: Path) -> PrintedValues:
     if not any(labels) or len(set(labels)) < len(labels):
         raise _invalid(path, 1, 1, "the first line must hold labels, each one once", "add them")
     filled = [(line, row) for line, row in enumerate(rows, start=2) if any(map(str.strip, row))]
-    return PrintedValues(labels, tuple(_numbers(path, line, labels, row) for line, row in filled))
+    return labels, tuple(_numbers(path, line, labels, row) for line, row in filled)
 
 
 def _numbers(
@@ -261,8 +249,8 @@ def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None
         ValueError: the table or the print has no column of numbers with that label.
     """
     columns = {c.label: c for c in table.columns if not isinstance(c.values, Words)}
-    key = printed.labels[0] if rows_by is None else rows_by
-    labels = [label for label in printed.labels if label != key]
+    key = printed[0][0] if rows_by is None else rows_by
+    labels = [label for label in printed[0] if label != key]
     computed = {label: _decimals(columns[label]) for label in labels if label in columns}
     cells, without_row, without_value = [], 0, 0
     for found, row, texts in _paired(table, columns, printed, key):
@@ -283,21 +271,38 @@ def _paired(
     table: Columns, columns: Mapping[str, TableColumn], printed: PrintedValues, key: str
 ) -> Iterator[tuple[Cell, int | None, Mapping[str, Cell]]]:
     """Of each printed row what finds it, the computed row, and its cells by label."""
-    rows = [dict(zip(printed.labels, row, strict=True)) for row in printed.rows]
+    rows = [dict(zip(printed[0], row, strict=True)) for row in printed[1]]
     if key == ROW_NUMBER:
         count = table.columns[0].rows
         for number, row in enumerate(rows):
             yield Decimal(number + 1), number if number < count else None, row
         return
-    for labels, who in ((columns, f"table {table.name}"), (printed.labels, "the print")):
+    for labels, who in ((columns, f"table {table.name}"), (printed[0], "the print")):
         if key not in labels:
             raise ValueError(
                 f"the column {key!r} finds the rows, and {who} has no "
                 f"such column of numbers; its labels are {', '.join(labels)}"
             )
-    places = _PrintedRows(_decimals(columns[key]))
+    values = _decimals(columns[key])
+    by_exponent: dict[int, dict[Decimal, list[int]]] = {}  # rows by their rounded value
     for row in rows:
-        yield row[key], places.take(row[key]), row
+        value = row[key]
+        if value is None:
+            yield None, None, row
+            continue
+        exponent = int(value.as_tuple().exponent)
+        if exponent not in by_exponent:
+            by_exponent[exponent] = _rows_by_rounded(values, exponent)
+        places = by_exponent[exponent].get(value)
+        yield value, places.pop(0) if places else None, row
+
+
+def _rows_by_rounded(values: list[Decimal | None], exponent: int) -> dict[Decimal, list[int]]:
+    unit, rows = Decimal(1).scaleb(exponent), defaultdict(list)
+    for row, value in enumerate(values):
+        if value is not None:
+            rows[_WIDE.quantize(value, unit)].append(row)
+    return rows
 
 
 def _decimals(column: TableColumn) -> list[Decimal | None]:
@@ -305,28 +310,3 @@ def _decimals(column: TableColumn) -> list[Decimal | None]:
     assert not isinstance(column.values, Words)
     found = (Decimal(value) for value in column.values.tolist())
     return [_TWELVE.plus(value) if value.is_finite() else None for value in found]
-
-
-class _PrintedRows:
-    """Row numbers by a printed value of one column; each row is found once."""
-
-    def __init__(self, values: list[Decimal | None]) -> None:
-        self._values = values
-        self._by_exponent: dict[int, Mapping[Decimal, list[int]]] = {}
-
-    def take(self, key: Decimal | None) -> int | None:
-        if key is None:
-            return None
-        exponent = int(key.as_tuple().exponent)
-        if exponent not in self._by_exponent:
-            self._by_exponent[exponent] = self._rounded(Decimal(1).scaleb(exponent))
-        rows = self._by_exponent[exponent].get(key)
-        return rows.pop(0) if rows else None
-
-    def _rounded(self, unit: Decimal) -> Mapping[Decimal, list[int]]:
-        found: dict[Decimal, list[int]] = {}
-        for row, value in enumerate(self._values):
-            if value is not None:
-                rounded = _WIDE.quantize(value, unit)
-                found.setdefault(rounded, []).append(row)
-        return found

@@ -1,10 +1,17 @@
 """What stands below a table: extremes with their places, means and ranges of its columns.
 
 Rows without a cell do not count, and `rows` says how many do. Mean and RMS are integrals over the
-way of the run's parameter by the trapezoidal rule (`reductions.mean`), so that they do not depend
-on where rows are dense; the way to a row without a cell, or with an infinite one, is none of it.
+run's parameter by the trapezoidal rule (`mean`), so that they do not depend on where rows are
+dense; the stretch to a row without a cell, or with an infinite one, is left out.
 Places are values of that parameter, of the first row that has the extreme; where nothing moves,
 numbers of rows.
+
+A value may be infinite: what grows without bound towards a row at a dead centre. Extremes count
+it, and are infinite at its place. Means do not: whether the integral up to there is finite (a
+rate, which goes as one over the root of what is left of the way) or not (its square), one row
+cannot decide, so the integral ends at the last row beside it, as it does where there is no value.
+
+Sums are added row by row, in order: their bits do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -17,11 +24,13 @@ import numpy as np
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import (
     AT,
+    Columns,
     FloatArray,
     TableColumn,
     TableSource,
     column_of_numbers,
     run_parameter,
+    words_of,
 )
 from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
@@ -31,29 +40,18 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# One number for many rows; rows without a value do not count.
-#
-# A value may be infinite: what grows without bound towards a row at a dead centre. Extremes count
-# it, and are infinite at its place. Means do not: whether the integral up to there is finite (a
-# rate, which goes as one over the root of what is left of the way) or not (its square), one row
-# cannot tell, so the way ends at the last row beside it, as it does where there is no value.
-#
-# Sums are added row by row, in order: their bits do not depend on the machine.
-
 Reduction = Callable[["Floats"], "Floats"]
 """From values (variants, rows), nan where there is none, to (variants,)."""
 
 
 def largest(values: Floats) -> Floats:
     """The largest value."""
-    found: Floats = np.fmax.reduce(values, axis=1) + 0.0
-    return found
+    return np.asarray(np.fmax.reduce(values, axis=1) + 0.0)
 
 
 def smallest(values: Floats) -> Floats:
     """The smallest value."""
-    found: Floats = np.fmin.reduce(values, axis=1) + 0.0
-    return found
+    return np.asarray(np.fmin.reduce(values, axis=1) + 0.0)
 
 
 def peak(values: Floats) -> Floats:
@@ -114,7 +112,6 @@ def _ways(values: Floats, at: Floats) -> Floats:
 
 
 def _halves(stretches: Floats) -> Floats:
-    """The sum of the two stretches that meet in each row."""
     weights = np.zeros((*stretches.shape[:-1], stretches.shape[-1] + 1))
     weights[..., :-1] += stretches
     weights[..., 1:] += stretches
@@ -134,7 +131,6 @@ def _sum(values: Floats, weights: Floats | None) -> tuple[Floats, Floats]:
 
 
 def _in_order(values: Floats) -> Floats:
-    """Sums over the rows, one after the other."""
     found: Floats = np.cumsum(values, axis=1)[:, -1]
     return found
 
@@ -210,7 +206,7 @@ def summary_of(
 ) -> Summary:
     """The rows below a table; time, inputs and words are left out."""
     along = run_parameter(source)
-    found = tuple(
+    summed = tuple(
         SummaryColumn(
             number, column.label, column.unit, column.decimals, statistics(column.numbers, source)
         )
@@ -219,7 +215,7 @@ def summary_of(
         and layout.expression.text.strip() not in source.inputs
     )
     name, unit = (ROW_NUMBER, "") if along is None else (along.name, along.unit)
-    return Summary(words, name, unit, found, tuple(_notes(words, found, source)))
+    return Summary(words, name, unit, summed, tuple(_notes(words, summed, source)))
 
 
 def written_notes(summary: Summary, written: Callable[[str], str] = str) -> list[str]:
@@ -242,33 +238,44 @@ def _notes(
     if len(missing) == len(columns) and len(set(missing.values())) == 1:
         missing = {"any column": max(missing.values())}
     for label, count in missing.items():
-        do = _verb(count, "does", "do")
-        rows = f"{count} of {source.rows} rows {_verb(count, 'has', 'have')}"
-        found.append(f"{rows} no cell of {label} and {do} not count")
+        have, do = ("has", "does") if count == 1 else ("have", "do")
+        found.append(f"{count} of {source.rows} rows {have} no cell of {label} and {do} not count")
     found += _infinite(words, columns, source)
     for status in Status:
         count = int(np.count_nonzero(source.status == status))
         if status is not Status.ok and status.has_solution and count:
-            found.append(f"{count} of the rows {_verb(count, 'is', 'are')} {status.label}")
+            found.append(f"{count} of the rows {'is' if count == 1 else 'are'} {status.label}")
     return found
 
 
 def _infinite(
     words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
 ) -> list[str]:
-    """Which rows the means below leave out because they are infinite there."""
     means = " and ".join(word for word in ("mean", "rms") if word in words)
     counts = {c.label: c.statistics.infinite for c in columns if means}
     found = []
     for count in sorted({*counts.values()} - {0}):
         labels = ", ".join(label for label, each in counts.items() if each == count)
-        rows = f"{count} of {source.rows} rows {_verb(count, 'is', 'are')} infinite in {labels}"
-        found.append(f"{rows} and {_verb(count, 'does', 'do')} not count for {means}")
+        are, do = ("is", "does") if count == 1 else ("are", "do")
+        rows = f"{count} of {source.rows} rows {are} infinite in {labels}"
+        found.append(f"{rows} and {do} not count for {means}")
     return found
 
 
-def _verb(count: int, one: str, many: str) -> str:
-    return one if count == 1 else many
+ROWS = "rows"
+"""In front of the numbers of rows with a cell."""
+
+_WITH_PLACE = ("max", "min", "peak")
+
+
+class SummaryColumn(NamedTuple):
+    """A column that is summed up; `number` is its place among the table's columns."""
+
+    number: int
+    label: str
+    unit: str
+    decimals: int | None
+    statistics: Statistics
 
 
 class Summary(NamedTuple):
@@ -312,18 +319,13 @@ class Summary(NamedTuple):
         return [next(values) if mine else next(others) for mine in is_value]
 
 
-ROWS = "rows"
-"""Words of the rows below a table that no reduction has."""
-
-
-class SummaryColumn(NamedTuple):
-    """A column that is summed up: its place among the table's columns."""
-
-    number: int
-    label: str
-    unit: str
-    decimals: int | None
-    statistics: Statistics
-
-
-_WITH_PLACE = ("max", "min", "peak")
+def summary_table(name: str, title: str, summary: Summary) -> Columns:
+    """The rows below a table as a table of its own, `NAME.summary`."""
+    words: list[str] = []
+    for line in summary.lines:
+        words.append(f"{words[-1]} {AT}" if line == AT else line)
+    columns = [TableColumn("summary", "", words_of(words))]
+    for each in summary.columns:
+        numbers = np.array(summary.numbers(each))
+        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
+    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)

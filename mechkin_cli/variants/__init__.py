@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         Variants as Variants,
         expressions_of as expressions_of,
         sample_of as sample_of,
-        way_of as way_of,
+        swept_parameter as swept_parameter,
     )
     from mechkin_cli.variants.samples import (
         Draws as Draws,
@@ -41,7 +41,7 @@ __getattr__, __dir__ = lazy_names(
             "with_parameters",
         ],
         "many": ["vary"],
-        "result": ["Reduce", "Variants", "expressions_of", "sample_of", "way_of"],
+        "result": ["Reduce", "Variants", "expressions_of", "sample_of", "swept_parameter"],
         "samples": ["Draws", "draws", "has_scipy", "needs_scipy", "normal", "uniform"],
     },
 )

@@ -2,7 +2,7 @@
 
 The file's own design records once, for each set of parameters, how its plan depends on them;
 variants are replays of that. Where a recording does not hold, the variant is built again: the same
-answers and the same errors, only slower.
+answers and the same errors, only slower. First, values of parameters as a caller gives them, to SI.
 """
 
 from __future__ import annotations
@@ -34,9 +34,6 @@ if TYPE_CHECKING:
     from mechkin_cli.building import Built, ViewSettings
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension, UnitSystem
-
-
-# Values of parameters as a caller gives them, to SI: one of each, or arrays.
 
 
 def parameter_values(problem: Problem, given: Mapping[str, Any]) -> dict[str, float]:
@@ -127,18 +124,16 @@ def _column(name: str, value: Any, dimension: Dimension, units: UnitSystem) -> F
         )
     if array.dtype.kind not in "fiu":
         items = [a_setting(f"{name}[{k}]", item) for k, item in enumerate(value)]
-        return np.array(
-            [one_value(name, item, dimension, units) for item in items], dtype=np.float64
-        )
-    found = units.to_si(array.astype(np.float64), dimension)
-    sizes = np.abs(found)
+        return np.array([one_value(name, item, dimension, units) for item in items], np.float64)
+    in_si = units.to_si(array.astype(np.float64), dimension)
+    sizes = np.abs(in_si)
     least = SMALLEST_SIZE if dimension == LENGTH else 0.0
-    kept = (sizes >= least) & (sizes > 0.0) | (array == 0)
-    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & kept))
+    large = (sizes >= least) & (sizes > 0.0) | (array == 0)
+    wrong = np.flatnonzero(~((sizes <= LARGEST_NUMBER) & large))
     if wrong.size:
         one_value(f"{name}[{wrong[0]}]", array[wrong[0]].item(), dimension, units)
-        _bounded(f"{name}[{wrong[0]}]", float(found[wrong[0]]), array[wrong[0]], dimension)
-    return found
+        _bounded(f"{name}[{wrong[0]}]", float(in_si[wrong[0]]), array[wrong[0]], dimension)
+    return in_si
 
 
 def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> float:
@@ -180,7 +175,7 @@ class Base:
         return self._assembled[1]
 
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
-        """How the design depends on some parameters; None where every variant is built anew."""
+        """How the design depends on some parameters; None where each variant is built by itself."""
         key = tuple(names)
         if key not in self._variations:
             self._variations[key] = self._recorded(key)
@@ -283,7 +278,7 @@ class VariedDesign(Design):
         return varied.reading(lambda: self.precise)
 
     def _between(self, place: float) -> Session:
-        """The session between the file's own parameters (0) and these (1), built anew."""
+        """The session between the file's own parameters (0) and these (1), built from the file."""
         own = self.base.design.problem.parameters
         values = {}
         for name, value in self._values.items():
@@ -301,7 +296,7 @@ class VariedDesign(Design):
 
     @cached_property
     def at_responses(self) -> Design:
-        """The same design built anew: no recording holds responses."""
+        """The same design built from the file: no recording holds responses."""
         built = self.built if self._variation is None else self.base.built(self._values)
         return Design(built, self.stem, self.given)
 

@@ -18,15 +18,16 @@ from mechkin_cli.mechanism import (
     BEARING_KINDS,
     DERIVED_KINDS,
     bearing_load,
+    find_legs,
     friction_states,
     read_for,
 )
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.session import Packing, input_rest
-from mechkin_cli.show import Floats
+from mechkin_cli.show import Bools, Floats
 from mechkin_cli.sweep import has_turns
 from mechkin_cli.tolerances import MOST_KEPT
-from mechkin_cli.variants.design import VariedDesign, base_of, file_values, parameter_arrays
+from mechkin_cli.variants.design import VariedDesign, base_of
 from mechkin_cli.variants.responses import vary_response
 from mechkin_cli.variants.result import (
     Reduce,
@@ -37,8 +38,8 @@ from mechkin_cli.variants.result import (
     reduced,
     reductions_of,
     sample_of,
-    way_of,
-    with_held,
+    swept_parameter,
+    varied_parameters,
 )
 from mechkin_cli.variants.variation import Runs, SessionVariation, VariantReadout, run_variants
 from mechkin_cli.verdict import SWEEP, Status, by_condition, rates_are_clear
@@ -48,7 +49,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.session import Session
-    from mechkin_cli.show import Bools
 
 
 CHUNK_NUMBERS = 2_000_000
@@ -56,7 +56,7 @@ CHUNK_NUMBERS = 2_000_000
 
 
 REST = " within a turn"
-"""What the names of angles without whole turns end in."""
+"""Suffix of the names of angles without whole turns."""
 
 PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
 """Functions to which whole turns of an angle do not matter."""
@@ -75,10 +75,10 @@ class VariantRun:
     ) -> None:
         self.model, self.base, self.packing = model, base_of(model.design), packing
         self.names, self.asked, self.reductions = names, asked, reductions
-        self.kept = tuple(asked)
+        self.texts = tuple(asked)
         self.problem = self.base.design.problem
-        way = way_of(self.problem) if need_places(reductions) else None
-        self.along = None if way is None else way[0]
+        swept = swept_parameter(self.problem) if need_places(reductions) else None
+        self.along = None if swept is None else swept[0]
         if self.along is not None and self.along not in asked:
             parse = self.problem.definitions.parse
             self.asked = {**asked, self.along: parse(self.along)}
@@ -101,45 +101,42 @@ class VariantRun:
         """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
         count = values.shape[1]
         codes = np.empty((count, self.rows), dtype=np.int8)
-        parts: dict[str, list[Floats]] = {text: [] for text in self.kept}
+        parts: dict[str, list[Floats]] = {text: [] for text in self.texts}
         variation = self.base.variation(self.names)
         native = self._native(variation) if variation is not None else None
         chunk = self._chunk()
         for begin in range(0, max(count, 1), chunk):
             part = values[:, begin : begin + chunk]
-            found = self._chunk_values(variation, native, part, begin, codes)
-            for text, array in found.items():
+            for text, array in self._chunk_values(variation, native, part, begin, codes).items():
                 parts[text].append(array)
         return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
 
-    def numbers_kept(self) -> int:
+    def numbers_returned(self) -> int:
         """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
-        kept = len(self.names) + -(-self.rows // 8)
-        for text in self.kept:
+        count = len(self.names) + -(-self.rows // 8)
+        for text in self.texts:
             value = self.asked[text].evaluate(sample_of(self.problem), self.problem.units).value
             width = len(value.components) if isinstance(value, Vector) else 1
             reduction = self.reductions[text]
             each = len(reduction) if isinstance(reduction, tuple) else 1
-            kept += width * (self.rows if reduction is None else each)
-        return kept
+            count += width * (self.rows if reduction is None else each)
+        return count
 
     def _chunk(self) -> int:
         width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
         return max(1, CHUNK_NUMBERS // (self.rows * width))
 
-    # --- by the kernel --------------------------------------------------------------------
-
     def _native(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
         """The kernel's variants of what is read; None where the rows take more than its run."""
         problem = self.problem
-        given = {driven.name for driven in problem.motion.inputs}
-        given |= {name for driven in problem.motion.inputs for name in driven.orders}
+        inputs = {driven.name for driven in problem.motion.inputs}
+        inputs |= {name for driven in problem.motion.inputs for name in driven.orders}
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
             or self._friction_takes_more(session)
-            or (variation.moving_inputs and given & {q.name for q in self.wanted})
+            or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
         ):
             return None
         reading = variation.reading(self._computed())
@@ -153,30 +150,26 @@ class VariantRun:
         mechanism = self.problem.mechanism
         if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
             return False
-        return session.is_redundant or self.problem.has_idle
-
-    def _states(self, reading: VariantReadout) -> list[Wanted]:
-        """What tells the rows without an answer of friction."""
-        return [q for q in friction_states(self.problem.mechanism) if q.name in reading.slots]
+        return bool(session.is_redundant or find_legs(mechanism) or self.problem.held)
 
     def _computed(self) -> list[Wanted]:
-        """What the kernel computes: no verdicts but on friction, and nothing that is given."""
-        given = self._given()
-        found = [q for q in self.wanted if q.owner != "row" and q.name not in given]
-        if demand_of(self.problem.mechanism, found) & Demand.FORCES:
-            found += friction_states(self.problem.mechanism)
+        """What the kernel computes: no verdicts but on friction, and no inputs."""
+        inputs = self.prescribed()
+        computed = [q for q in self.wanted if q.owner != "row" and q.name not in inputs]
+        if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
+            computed += friction_states(self.problem.mechanism)
         if any(map(PERIODIC.search, self.asked)):
             # angles within a turn, which the kernel gives before it adds whole turns
-            found += [q._replace(name=q.name + REST) for q in found if has_turns(q)]
-        return found
+            computed += [q._replace(name=q.name + REST) for q in computed if has_turns(q)]
+        return computed
 
-    def _given(self) -> dict[str, Floats]:
+    def prescribed(self) -> dict[str, Floats]:
         """Time, inputs and their rates over the rows, in SI."""
         motion = self.problem.motion
-        found = {} if motion.time is None else {"time": motion.time.values}
+        values = {} if motion.time is None else {"time": motion.time.values}
         for driven in motion.inputs:
-            found |= {name: in_si for name, (in_si, _) in driven.orders.items()}
-        return found
+            values |= {name: in_si for name, (in_si, _) in driven.orders.items()}
+        return values
 
     def _chunk_values(
         self,
@@ -194,7 +187,8 @@ class VariantRun:
             reading, kernel = native
             threads = threads_for(count * self.rows, self.packing.threads)
             runs = run_variants(kernel, values, self.packing.lanes, threads)
-            states = [reading.slots[q.name].first for q in self._states(reading)]
+            frictions = friction_states(self.problem.mechanism)
+            states = [reading.slots[q.name].first for q in frictions if q.name in reading.slots]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
             # what may stand at a dead centre is judged as in a run of its own
@@ -202,7 +196,7 @@ class VariantRun:
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
         places = None if self.along is None else found[self.along]
-        return {t: reduced(t, found[t], self.reductions[t], places) for t in self.kept}
+        return {t: reduced(t, found[t], self.reductions[t], places) for t in self.texts}
 
     def _evaluated(
         self,
@@ -214,7 +208,7 @@ class VariantRun:
     ) -> dict[str, Floats]:
         """The expressions in the file's units, (variants, rows) or (variants, rows, 3)."""
         units, count = self.problem.units, values.shape[1]
-        resolve = _Resolve(self, variation, reading, runs, values, codes)
+        resolve = _Resolver(self, variation, reading, runs, values, codes)
         found = {}
         for text, expression in self.asked.items():
             written = self._written(text)
@@ -223,15 +217,11 @@ class VariantRun:
                 continue
             result = expression.evaluate(resolve, units)
             value = result.value
-            parts = value.components if isinstance(value, Vector) else (value,)
-            columns = [
-                np.asarray(
-                    units.from_si(
-                        np.array(np.broadcast_to(part, (count * self.rows,))), result.dimension
-                    )
-                ).reshape(count, self.rows)
-                for part in parts
-            ]
+            columns = []
+            for part in value.components if isinstance(value, Vector) else (value,):
+                in_si = np.array(np.broadcast_to(part, (count * self.rows,)))
+                in_units = np.asarray(units.from_si(in_si, result.dimension))
+                columns.append(in_units.reshape(count, self.rows))
             found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
         return found
 
@@ -245,8 +235,6 @@ class VariantRun:
                 return driven.written
         return None
 
-    # --- one at a time --------------------------------------------------------------------
-
     def _alone(
         self,
         values: Floats,
@@ -257,6 +245,9 @@ class VariantRun:
     ) -> None:
         """One variant as `with_parameters(...).analyze()` gives it."""
         named = dict(zip(self.names, values.tolist(), strict=True))
+        for text in self.asked:
+            if not found[text].flags.writeable:
+                found[text] = found[text].copy()
         try:
             model = self.model.of(VariedDesign(self.base, named))
             analysis = model.analyze(self.read, tables=[], lanes=self.packing.lanes)
@@ -267,13 +258,11 @@ class VariantRun:
                 )
             codes[number] = analysis.result.status
             for text in self.asked:
-                found[text] = _writable(found[text])
                 found[text][place] = analysis[text]
         except MechkinError as error:
             self.errors[number] = error
             codes[number] = int(Status.not_assembled)
             for text in self.asked:
-                found[text] = _writable(found[text])
                 found[text][place] = np.nan
 
     def _empty(self, expression: Expression, count: int) -> Floats:
@@ -282,30 +271,30 @@ class VariantRun:
         return np.full((count, self.rows, *width), np.nan)
 
 
-class _Resolve:
+class _Resolver:
     """Names of expressions over a chunk: (variants * rows,) in SI."""
 
     def __init__(
         self,
-        study: VariantRun,
+        run: VariantRun,
         variation: SessionVariation,
         reading: VariantReadout,
         runs: Runs,
         values: Floats,
         codes: NDArray[np.int8],
     ) -> None:
-        self.study, self.reading, self.runs = study, reading, runs
-        self.count, self.rows = values.shape[1], study.rows
-        self.known = study.problem.quantities()
-        self.given = study._given()
+        self.run, self.reading, self.runs = run, reading, runs
+        self.count, self.rows = values.shape[1], run.rows
+        self.known = run.problem.quantities()
+        self.prescribed = run.prescribed()
         self.unclear = codes == int(Status.rank_unclear)
         self.solved = runs.end == int(VariantEnd.COMPLETE)
         parameters = variation.parameters(values)
-        self.parameters = dict(zip(study.problem.parameters, parameters, strict=True))
+        self.parameters = dict(zip(run.problem.parameters, parameters, strict=True))
 
     def __call__(self, name: str) -> Quantity:
         if name in self.parameters:
-            dimension = self.study.problem.parameters[name].dimension
+            dimension = self.run.problem.parameters[name].dimension
             return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
         if name not in self.known:
             raise UnknownName(name, list(self.known))
@@ -315,7 +304,7 @@ class _Resolve:
         if wanted.owner == "row" and name != "time":
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)
-        if name in self.given:
+        if name in self.prescribed:
             rest = input_rest(self.reading.variation.base, name)
             if rest is not None:
                 rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
@@ -329,15 +318,15 @@ class _Resolve:
         return Quantity(columns[0], wanted.dimension, within)
 
     def _over_rows(self, name: str) -> Floats:
-        rows = np.broadcast_to(self.given[name], (self.count, self.rows))
-        values = {driven.name for driven in self.study.problem.motion.inputs} | {"time"}
+        rows = np.broadcast_to(self.prescribed[name], (self.count, self.rows))
+        values = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
         if name not in values:
             rows = np.where(self.solved[:, None], rows, np.nan)
         return rows.reshape(-1)
 
     def _column(self, wanted: Wanted, slot: int) -> Floats:
         column = self.runs.outputs[:, slot, :]
-        if self.unclear.any() and demand_of(self.study.problem.mechanism, [wanted]):
+        if self.unclear.any() and demand_of(self.run.problem.mechanism, [wanted]):
             column = np.where(self.unclear, np.nan, column)
         return column.reshape(-1)
 
@@ -345,7 +334,7 @@ class _Resolve:
 def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
     """Codes of `Status` (variants, rows) of those that are complete; others are not read.
 
-    `states` are the slots that tell the rows without an answer of friction.
+    `states` are the slots of friction's states, zero where there is an answer.
     """
     # without loops there is no condition
     loops = not np.isnan(runs.condition).all()
@@ -360,22 +349,7 @@ def _doubtful(runs: Runs) -> Bools:
     """Variants (variants,) with a row whose rates may be rounding."""
     if np.isnan(runs.condition).all():
         return np.zeros(len(runs.condition), dtype=bool)
-    doubtful: Bools = np.any(~rates_are_clear(runs.condition), axis=1)
-    return doubtful
-
-
-def _writable(array: Floats) -> Floats:
-    return array if array.flags.writeable else array.copy()
-
-
-def _check_memory(variants: int, study: VariantRun) -> None:
-    """Whether all that comes back fits into memory."""
-    kept = variants * study.numbers_kept()
-    if kept > MOST_KEPT:
-        raise UsageError(
-            f"the results of {variants} variants are {kept} numbers (limit {MOST_KEPT}); ask for "
-            "less, reduce over the rows, or take fewer variants at a time"
-        )
+    return np.asarray((~rates_are_clear(runs.condition)).any(axis=1))
 
 
 def vary(
@@ -388,25 +362,24 @@ def vary(
     threads: int = 0,
 ) -> Variants:
     """`Model.vary`, whose arguments these are; values that were set before stay unless they are
-    given again."""
+    set again."""
+    packing = a_packing(lanes, threads)
     if a_text("run", run, f'"{SWEEP}"') != SWEEP:
         name = response_name(model.problem, run)
-        packing = a_packing(lanes, threads)
         return vary_response(model, parameters, quantities, reduce, name, packing)
-    packing = a_packing(lanes, threads)
     if SWEEP not in model.runs:
         raise UsageError(
             f"{model.name} has no sweep to vary; vary a response one by one: "
             f'with_parameters({{...}}).respond("{model.runs[0]}")'
         )
-    base = base_of(model.design)
-    problem = base.design.problem
-    names, values = parameter_arrays(problem, parameters)
-    given = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, model.design.values)
-    asked = expressions_of(
-        problem.mechanism.coordinates if quantities is None else quantities, problem
-    )
-    study = VariantRun(model, names, asked, reductions_of(asked, reduce), packing)
-    _check_memory(values.shape[1], study)
-    return Variants(given, *study.run(values))
+    problem = base_of(model.design).design.problem
+    varied, names, values = varied_parameters(problem, parameters, model.design.values)
+    asked = expressions_of(quantities, problem)
+    call = VariantRun(model, names, asked, reductions_of(asked, reduce), packing)
+    numbers = values.shape[1] * call.numbers_returned()
+    if numbers > MOST_KEPT:
+        raise UsageError(
+            f"the results of {values.shape[1]} variants are {numbers} numbers (limit {MOST_KEPT}); "
+            "ask for less, reduce over the rows, or take fewer variants at a time"
+        )
+    return Variants(varied, *call.run(values))

@@ -13,7 +13,7 @@ from mechkin_cli.analysis import Analysis, Design, Solvable
 from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.response import integrated, prepare, read
-from mechkin_cli.variants.design import base_of, file_values, parameter_arrays
+from mechkin_cli.variants.design import base_of
 from mechkin_cli.variants.result import (
     Reduce,
     Variants,
@@ -21,7 +21,7 @@ from mechkin_cli.variants.result import (
     need_places,
     reduced,
     reductions_of,
-    with_held,
+    varied_parameters,
 )
 from mechkin_cli.verdict import Status
 
@@ -50,25 +50,22 @@ def vary_response(
     """`Model.vary` of a response, whose arguments these are.
 
     Rows are the moments asked for; where a stop ends a variant its row takes the place of the next
-    moment (`time` tells), and those behind it hold nan.
+    moment (see `time`), and those behind it hold nan.
     """
     problem = base_of(model.design).design.problem
-    names, values = parameter_arrays(problem, parameters)
-    given = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, model.design.values)
-    known = response_problem(problem, problem.responses[run])
-    asked = expressions_of(
-        problem.mechanism.coordinates if quantities is None else quantities, known
-    )
+    varied, names, values = varied_parameters(problem, parameters, model.design.values)
+    if quantities is None:
+        quantities = problem.mechanism.coordinates
+    asked = expressions_of(quantities, response_problem(problem, problem.responses[run]))
     reductions = reductions_of(asked, reduce)
     read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
-    study = _Study(model, names, list(read), run, packing)
-    found = study.run(values)
-    kept = {text: reduced(text, found[text], reductions[text], found.get(TIME)) for text in asked}
-    return Variants(given, kept, study.codes, study.errors)
+    call = _ResponseRun(model, names, list(read), run, packing)
+    rows = call.run(values)
+    results = {text: reduced(text, rows[text], reductions[text], rows.get(TIME)) for text in asked}
+    return Variants(varied, results, call.codes, call.errors)
 
 
-class _Study:
+class _ResponseRun:
     """One call: arrays (variants, rows) or (variants, rows, 3) by the texts asked for."""
 
     def __init__(

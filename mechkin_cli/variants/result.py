@@ -20,6 +20,7 @@ from mechkin_cli.tables import (
     mean,
     root_mean_square,
 )
+from mechkin_cli.variants.design import file_values, parameter_arrays
 from mechkin_cli.verdict import has_solution, labels
 
 if TYPE_CHECKING:
@@ -38,8 +39,8 @@ class Variants(Listed):
     """Results of `Model.vary`: `r["O4.theta"]` is an array over the variants, in the file's units.
 
     Attributes:
-        parameters: (variants,) of every parameter given, in the file's units.
-        errors: what was said of variants that cannot be built, by their number.
+        parameters: (variants,) of every parameter that varies, in the file's units.
+        errors: of variants that cannot be built, by their number.
     """
 
     def __init__(
@@ -94,7 +95,7 @@ class Variants(Listed):
     def complete(self) -> NDArray[np.bool_]:
         """Which variants have a position in every row (variants,), as `Analysis.complete`.
 
-        A row at a dead centre has one: `status` tells it, and what has no bound there is infinite.
+        A row at a dead centre has one: see `status`; what has no bound there is infinite.
         """
         complete: NDArray[np.bool_] = np.logical_and.reduce(has_solution(self._codes), axis=1)
         return complete
@@ -105,26 +106,27 @@ def _extremes(values: Floats) -> tuple[str, str]:
     return (f"{known.min():.6g}", f"{known.max():.6g}") if known.size else ("", "")
 
 
-# What is asked for.
+def varied_parameters(
+    problem: Problem, parameters: Mapping[str, Any], held: Mapping[str, float]
+) -> tuple[dict[str, Floats], tuple[str, ...], Floats]:
+    """Values (variants,) of what varies by name, in the file's units; and all that is set, `held`
+    values (SI) included: names in the file's order and values (parameters, variants) in SI."""
+    names, values = parameter_arrays(problem, parameters)
+    varied = file_values(values, problem, names)
+    rows = {name: np.full(values.shape[1], value) for name, value in held.items()}
+    rows |= dict(zip(names, values, strict=True))
+    names = tuple(name for name in problem.parameters if name in rows)
+    return varied, names, np.stack([rows[name] for name in names])
 
 
-def with_held(
-    order: Sequence[str], names: tuple[str, ...], values: Floats, held: Mapping[str, float]
-) -> tuple[tuple[str, ...], Floats]:
-    """Names and values of all parameters that are set, in the file's order."""
-    rows = dict(zip(names, values, strict=True))
-    count = values.shape[1]
-    rows = {name: np.full(count, value) for name, value in held.items()} | rows
-    names = tuple(name for name in order if name in rows)
-    return names, np.stack([rows[name] for name in names])
-
-
-def expressions_of(quantities: Iterable[str], problem: Problem) -> dict[str, Expression]:
-    """What is asked for, by its text.
+def expressions_of(quantities: Iterable[str] | None, problem: Problem) -> dict[str, Expression]:
+    """Quantities and expressions by their text; None: all coordinates.
 
     Raises:
         UsageError: no such quantity, or a text.
     """
+    if quantities is None:
+        quantities = problem.mechanism.coordinates
     found = {}
     for text in texts("quantities", quantities, '["O4.theta"]'):
         if text.strip() in ROW_TEXTS:
@@ -191,14 +193,12 @@ def sample_of(problem: Problem) -> Any:
     return resolve
 
 
-# What is kept of the values of variants: all rows, or what reductions make of them.
-
 Reductions = tuple[Reduction, ...] | Reduction | None
 """Several, one, or none: all rows."""
 
 
 def need_places(reductions: Mapping[str, Reductions]) -> bool:
-    """Whether one of them is taken over the way."""
+    """Whether one of them is taken over what the run goes along."""
     own = (each if isinstance(each, tuple) else (each,) for each in reductions.values())
     return any(one in OVER_THE_WAY for several in own for one in several)
 
@@ -206,8 +206,12 @@ def need_places(reductions: Mapping[str, Reductions]) -> bool:
 def reduced(
     text: str, values: Floats, reduction: Reductions, places: Floats | None = None
 ) -> Floats:
-    """What is kept of (variants, rows) or (variants, rows, components), the reductions last where
-    there are several; `places` of the rows (variants, rows), None where nothing moves.
+    """Reduces (variants, rows) or (variants, rows, components), the reductions last where there are
+    several.
+
+    Args:
+        text: names the values in messages.
+        places: of the rows (variants, rows); None where nothing moves.
 
     Raises:
         UsageError: a function of the caller fails, or gives something else.
@@ -225,27 +229,24 @@ def _by(reduction: Reduction, text: str, values: Floats, places: Floats | None) 
         return np.stack(parts, axis=1)
     if reduction is mean or reduction is root_mean_square:
         return reduction(values, places)
-    given = values.view()
-    given.flags.writeable = False  # the next reduction reads the same
+    view = values.view()
+    view.flags.writeable = False  # the next reduction reads the same
     try:
-        found = np.asarray(reduction(given), dtype=np.float64)
+        result = np.asarray(reduction(view), dtype=np.float64)
     except Exception as error:
         raise UsageError(
             f"the reduction of {text} failed with {type(error).__name__}: "
             f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
         ) from error
-    if found.shape[:1] != values.shape[:1]:
+    if result.shape[:1] != values.shape[:1]:
         raise UsageError(
-            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
+            f"the reduction of {text} gives an array of shape {result.shape}; it takes "
             f"(variants, rows) = {values.shape} and gives one value a variant"
         )
-    return found
+    return result
 
 
-# What a sweep goes along: the way over which means are taken and that places are values of.
-
-
-def way_of(problem: Problem) -> tuple[str, Floats] | None:
+def swept_parameter(problem: Problem) -> tuple[str, Floats] | None:
     """The name of time where the sweep has one, else of its first input that moves, and its values
     over the rows (rows,) in the file's units as written; None where nothing moves."""
     motion = problem.motion

@@ -7,9 +7,9 @@ bytes of a study do not depend on the pieces in which it is computed.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -26,12 +26,8 @@ _INSIDE = (2.0**-54, 1.0 - 2.0**-53)
 """Between these, so that a normal distribution gives a finite value."""
 
 
-class Draws(Protocol):
-    """Samples by number."""
-
-    def stretch(self, begin: int, end: int) -> Floats:
-        """Samples `begin` to `end` (without it), (samples, dimensions), between 0 and 1."""
-        ...
+Draws = Callable[[int, int], "Floats"]
+"""Samples `begin` to `end` (without it), (samples, dimensions), between 0 and 1."""
 
 
 def needs_scipy(method: Method, distributions: Iterable[object]) -> bool:
@@ -41,7 +37,7 @@ def needs_scipy(method: Method, distributions: Iterable[object]) -> bool:
 
 
 def has_scipy() -> bool:
-    """Whether scipy is there, without which the package does elsewhere."""
+    """Whether scipy is installed, which is optional."""
     try:
         import scipy.special  # noqa: F401
     except ImportError:
@@ -50,62 +46,40 @@ def has_scipy() -> bool:
 
 
 def draws(method: Method, count: int, dimensions: int, seed: int) -> Draws:
-    """The samples of a method; `random` ones do not depend on how many there are."""
+    """The samples of a method; `random` ones do not depend on how many there are.
+
+    `latin`: a Latin hypercube (McKay, Beckman, Conover 1979), one sample in each of `count` slices
+    of every dimension, drawn whole. `sobol`: a scrambled Sobol sequence (Owen 1998).
+    """
     if method == "random":
-        return _Random(dimensions, seed)
-    if method == "latin":
-        return _Latin(count, dimensions, seed)
-    return _Sobol(dimensions, seed)
+        return partial(_random, dimensions, seed)
+    if method == "sobol":
+        return partial(_sobol, dimensions, seed)
+    from scipy.stats import qmc
+
+    points = _inside(_seeded(qmc.LatinHypercube, dimensions, seed).random(count))
+    return lambda begin, end: points[begin:end]
 
 
-class _Random:
-    """Independent samples, a generator for each block of them."""
-
-    def __init__(self, dimensions: int, seed: int) -> None:
-        self._dimensions, self._seed = dimensions, seed
-
-    def stretch(self, begin: int, end: int) -> Floats:
-        first, last = begin // BLOCK, -(-end // BLOCK)
-        blocks = [self._block(number) for number in range(first, last)]
-        whole = np.concatenate(blocks) if blocks else np.empty((0, self._dimensions))
-        return _inside(whole[begin - first * BLOCK : end - first * BLOCK])
-
-    def _block(self, number: int) -> Floats:
-        generator = np.random.Generator(
-            np.random.Philox(np.random.SeedSequence([self._seed, number]))
-        )
-        return generator.random((BLOCK, self._dimensions))
+def _random(dimensions: int, seed: int, begin: int, end: int) -> Floats:
+    first, last = begin // BLOCK, -(-end // BLOCK)
+    blocks = [np.empty((0, dimensions))]
+    for number in range(first, last):  # a generator for each block
+        sequence = np.random.SeedSequence([seed, number])
+        blocks.append(np.random.Generator(np.random.Philox(sequence)).random((BLOCK, dimensions)))
+    return _inside(np.concatenate(blocks)[begin - first * BLOCK : end - first * BLOCK])
 
 
-class _Latin:
-    """A Latin hypercube (McKay, Beckman, Conover 1979): one sample in each of `count` slices of
-    every dimension. It is drawn whole."""
+def _sobol(dimensions: int, seed: int, begin: int, end: int) -> Floats:
+    from scipy.stats import qmc
 
-    def __init__(self, count: int, dimensions: int, seed: int) -> None:
-        from scipy.stats import qmc
-
-        self._points = _inside(_seeded(qmc.LatinHypercube, dimensions, seed).random(count))
-
-    def stretch(self, begin: int, end: int) -> Floats:
-        return self._points[begin:end]
-
-
-class _Sobol:
-    """A Sobol sequence, scrambled (Owen 1998)."""
-
-    def __init__(self, dimensions: int, seed: int) -> None:
-        self._dimensions, self._seed = dimensions, seed
-
-    def stretch(self, begin: int, end: int) -> Floats:
-        from scipy.stats import qmc
-
-        engine = _seeded(qmc.Sobol, self._dimensions, self._seed)
-        if begin:
-            engine.fast_forward(begin)
-        with warnings.catch_warnings():
-            # of a stretch, which need not be balanced
-            warnings.simplefilter("ignore", UserWarning)
-            return _inside(engine.random(end - begin))
+    engine = _seeded(qmc.Sobol, dimensions, seed)
+    if begin:
+        engine.fast_forward(begin)
+    with warnings.catch_warnings():
+        # of a stretch, which need not be balanced
+        warnings.simplefilter("ignore", UserWarning)
+        return _inside(engine.random(end - begin))
 
 
 def _seeded(engine: Any, dimensions: int, seed: int) -> Any:
@@ -117,8 +91,7 @@ def _seeded(engine: Any, dimensions: int, seed: int) -> Any:
 
 
 def _inside(values: Floats) -> Floats:
-    clipped: Floats = np.clip(values, *_INSIDE)
-    return clipped
+    return np.clip(values, *_INSIDE)
 
 
 def uniform(samples: Floats, least: float, most: float) -> Floats:
@@ -130,5 +103,4 @@ def normal(samples: Floats, mean: float, deviation: float) -> Floats:
     """Samples (n,) to values of a normal distribution."""
     from scipy.special import ndtri
 
-    found: Floats = mean + deviation * ndtri(samples)
-    return found
+    return np.asarray(mean + deviation * ndtri(samples))

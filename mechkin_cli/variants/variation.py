@@ -7,7 +7,7 @@ the straight line in the parameters (kernel/core/stepping/variants.hpp).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,7 @@ from mechkin_cli.session import (
 from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import (
     Filling,
+    Recorder,
     TraceLost,
     compiled,
     is_traced,
@@ -46,11 +47,10 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.tape import Recorder
 
 
 class FirstAssembly(NamedTuple):
-    """Where the base stands: states at a row, and the mechanism's size there in m."""
+    """The base's first assembly: states at a row, and the mechanism's size there in m."""
 
     state: Floats
     row: int
@@ -124,7 +124,7 @@ class VariantReadout:
 
 
 def _ways(base: Session, row: int) -> list[tuple[int, list[int], Floats, _kernel.Course | None]]:
-    """The ways along the inputs' course on and back from a row, where they have one."""
+    """The course of the inputs on and back from a row, where they have one."""
     if base.route is None:
         return []
     ways = [(step, base.route.way(row, step)) for step in (1, -1)]
@@ -154,25 +154,22 @@ class SessionVariation:
             base.layout.length,
             problem.laws,
         )
-        self._refuse_other_scale(problem)
-        self.constants = flatten(plan_records(self.layout))
-        inputs = kernel_inputs(problem, self.layout).orders
-        self.moving_inputs = _flat(inputs) if any(map(is_traced, inputs)) else []
-        self._readings: dict[tuple[str, ...], VariantReadout] = {}
-
-    def _refuse_other_scale(self, problem: Problem) -> None:
-        """The length unit stays the base's as long as it is not far from the variant's own."""
-        unit = self.base.layout.length
+        unit = base.layout.length  # of the base as long as it is not far from the variant's own
         own = next_power_of_two(problem.mechanism.box_diagonal())
         if not (0.5 * unit <= own and own <= 2.0 * unit):
             raise TraceLost("the length unit is another")
+        self.constants = flatten(plan_records(self.layout))
+        inputs = kernel_inputs(problem, self.layout).orders
+        moving = any(map(is_traced, inputs))
+        self.moving_inputs = [x for table in inputs for x in table.flat] if moving else []
+        self._readings: dict[tuple[str, ...], VariantReadout] = {}
 
     def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
         """The tape from the parameters to some numbers of the recording."""
         return compiled(self.recorder.tape(register(self.recorder, n) for n in numbers))
 
     def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
-        """The reading of some quantities; kept."""
+        """The reading of some quantities."""
         wanted = tuple(wanted)
         key = tuple(quantity.name for quantity in wanted)
         if key not in self._readings:
@@ -180,7 +177,7 @@ class SessionVariation:
         return self._readings[key]
 
     def verdicts(self, values: Floats) -> NDArray[np.uint8]:
-        """What the guards say of parameters (parameters, variants), in SI."""
+        """The guards' verdicts on parameters (parameters, variants), in SI."""
         return replay(self._plan_tape, values)[1]
 
     @cached_property
@@ -201,8 +198,7 @@ class SessionVariation:
 
     def parameters(self, values: Floats) -> Floats:
         """All parameters of the file (parameters, variants) in SI, in the file's order."""
-        found: Floats = replay(self._parameter_tape, values)[0].T
-        return found
+        return np.asarray(replay(self._parameter_tape, values)[0].T)
 
     def problem(self, values: Floats) -> Problem:
         """The problem of one variant, as building it would give it."""
@@ -246,13 +242,6 @@ def run_variants(
     """Runs parameters (parameters, variants) in SI."""
     values = np.ascontiguousarray(values, dtype=np.float64)
     return Runs(*variants.run(values, width(lanes), threads))
-
-
-def _flat(tables: Sequence[Any]) -> list[Any]:
-    return [number for table in tables for number in table.flat]
-
-
-# The session of one variant: the base's structure with other constants.
 
 
 def varied_session(

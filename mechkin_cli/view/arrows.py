@@ -104,17 +104,16 @@ def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
 
 def _drawable(values: Floats) -> Floats:
     """Values with nan for what grows without bound towards its row, which has no arrow."""
-    found: Floats = np.where(np.isinf(values), np.nan, values)
-    return found
+    return np.where(np.isinf(values), np.nan, values)
 
 
 def _in_space(analysis: Readable, name: str) -> Floats:
     """A vector over the rows (rows, 3); what a plane leaves out of it is zero."""
-    told = _drawable(analysis[name])
-    found = np.zeros((len(told), 3))
+    components = _drawable(analysis[name])
+    vector = np.zeros((len(components), 3))
     places = analysis.result.problem.quantities()[name].places
-    found[:, list(places)] = told.reshape(len(told), len(places))
-    return found
+    vector[:, list(places)] = components.reshape(len(components), len(places))
+    return vector
 
 
 def _known(arrow: Arrow) -> Iterator[Arrow]:
@@ -126,6 +125,6 @@ def _known(arrow: Arrow) -> Iterator[Arrow]:
         return
     name = arrow.name
     if not known.all():
-        told = ", ".join(axis for axis, is_known in zip(AXES, known, strict=True) if is_known)
-        name = f"{name} ({told})"
+        axes = ", ".join(axis for axis, is_known in zip(AXES, known, strict=True) if is_known)
+        name = f"{name} ({axes})"
     yield arrow._replace(name=name, values=values)

@@ -1,4 +1,7 @@
-"""One branch of a run for the page: its axis, poses, verdicts, marks, curves and arrows."""
+"""One branch of a run for the page: marks, axis, poses, verdicts, curves, arrows and tables.
+
+Marked on the axis of a run are dead centres, branch points, and what ended or stopped a response.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
-from mechkin_cli.record import dataclass, replace
+from mechkin_cli.record import replace
 from mechkin_cli.session import input_text
-from mechkin_cli.tables import Columns, Words, csv_bytes, read_table_text, rows_table
+from mechkin_cli.tables import Columns, RunParameter, Words, csv_bytes, read_table_text, rows_table
 from mechkin_cli.units import ANGLE
 from mechkin_cli.verdict import Status
 from mechkin_cli.view.arrows import arrow_records
@@ -28,20 +31,17 @@ if TYPE_CHECKING:
     from mechkin_cli.view.shown import ShownBranch
 
 
-# Places that are marked on the axis of a run: dead centres, branch points, and what ended or
-# stopped a response.
-
 KINDS = {
     "dead-centre": "dead-centre",
     "branch-point": "branch-point",
     "branch-point-passed": "branch-point",
 }
-"""Kind of mark by the code of the message that tells of the place."""
+"""Kind of mark by the code of the message with the place."""
 
 
 def run_marks(analysis: Readable, label: str, x: Floats) -> list[Plain]:
-    """The marks of a branch, in the order of its messages; `label` and `x` (rows,) are those of its
-    axis."""
+    """The marks of a branch, in the order of its messages, over its axis `label` with values `x`
+    (rows,)."""
     found: list[Plain] = []
     for diagnostic in analysis.diagnostics:
         kind = KINDS.get(diagnostic.code)
@@ -106,26 +106,6 @@ VERDICTS = ("residual", "condition", "power_error")
 """Columns of the rows' own table that are shown as curves."""
 
 
-@dataclass(frozen=True)
-class CurveAxis:
-    """What the rows of a run are plotted over: a quantity's name, its unit and values (rows,)."""
-
-    label: str
-    unit: str
-    values: Floats
-
-
-def axis_of(analysis: Readable) -> CurveAxis:
-    """Time where the rows have it, else the first input that moves, else the number of the row."""
-    result = analysis.result
-    leading = result.problem.motion.leading
-    name = "time" if "time" in result.inputs else leading.name if leading else ""
-    if name not in result.inputs:
-        return CurveAxis("row", "", np.arange(1.0, analysis.rows + 1.0))
-    unit = result.units.label(result.quantity(name).dimension)
-    return CurveAxis(name, unit, np.asarray(result.inputs[name], dtype=np.float64))
-
-
 class BranchScene:
     """A branch of a run, and what the page has of it.
 
@@ -146,9 +126,15 @@ class BranchScene:
         return self.shown.analysis
 
     @cached_property
-    def axis(self) -> CurveAxis:
-        """What its rows are plotted over."""
-        return axis_of(self.analysis)
+    def axis(self) -> RunParameter:
+        """Time where the rows have it, else the first input that moves, else the row's number."""
+        result = self.analysis.result
+        leading = result.problem.motion.leading
+        name = "time" if "time" in result.inputs else leading.name if leading else ""
+        if name not in result.inputs:
+            return RunParameter("row", np.arange(1.0, self.analysis.rows + 1.0), "")
+        unit = result.units.label(result.quantity(name).dimension)
+        return RunParameter(name, np.asarray(result.inputs[name], dtype=np.float64), unit)
 
     @cached_property
     def _notable(self) -> NDArray[np.intp]:
@@ -160,14 +146,14 @@ class BranchScene:
     @cached_property
     def rows(self) -> NDArray[np.intp]:
         """The rows that curves and tables show, counted from 0."""
-        return thinned(np.arange(self.analysis.rows), self.share.rows, self._notable)
+        return thinned(np.arange(self.analysis.rows), self.share[0], self._notable)
 
     @cached_property
     def posed(self) -> NDArray[np.intp]:
         """Which of the shown rows have a pose, by their place among these."""
         solved = np.flatnonzero(self.analysis.result.solved[self.rows])
         notable = np.flatnonzero(np.isin(self.rows, self._notable))
-        return thinned(solved, self.share.poses, notable)
+        return thinned(solved, self.share[1], notable)
 
     @cached_property
     def poses(self) -> Floats:
@@ -189,7 +175,7 @@ class BranchScene:
             "x": packed("f64", self.axis.values[self.rows]),
             "poses": {"rows": packed("i32", self.posed), "values": packed("f32", poses)},
             "status": {"words": [one.label for one in Status], "codes": packed("u8", codes)},
-            "marks": run_marks(self.analysis, self.axis.label, self.axis.values),
+            "marks": run_marks(self.analysis, self.axis.name, self.axis.values),
             "columns": list(self._columns()),
             "arrows": arrow_records(self.analysis, posed, self.links, lengths) if forces else [],
         }
@@ -200,32 +186,24 @@ class BranchScene:
         return rows_table(self.analysis.result, self.analysis.run)
 
     def _columns(self) -> Iterator[Plain]:
-        for table in self.analysis.tables:
-            yield from self._curves(table, None)
-        yield from self._curves(self.verdicts, VERDICTS)
-
-    def _curves(self, table: Columns, labels: Sequence[str] | None) -> Iterator[Plain]:
-        for column in table.columns:
-            wanted = labels is None or column.label in labels
-            if not wanted or isinstance(column.values, Words) or np.isnan(column.values).all():
-                continue
-            values = packed("f64", column.values[self.rows])
-            yield {
-                "label": column.label,
-                "unit": column.unit,
-                "table": table.name,
-                "values": values,
-            }
-
-
-# Tables as the texts of their cells, the same as in CSV.
+        columns = [(table.name, c) for table in self.analysis.tables for c in table.columns]
+        columns += [(self.verdicts.name, c) for c in self.verdicts.columns if c.label in VERDICTS]
+        for table, column in columns:
+            if not (isinstance(column.values, Words) or np.isnan(column.values).all()):
+                yield {
+                    "label": column.label,
+                    "unit": column.unit,
+                    "table": table,
+                    "values": packed("f64", column.values[self.rows]),
+                }
 
 
 def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[int]) -> Plain:
     """A table for the page: of one that has the rows of its run some `rows` with the `codes` of
     their verdicts, of others all."""
-    shown = _part(table, rows) if table.of_rows else table
-    cells = read_table_text("cells.csv", csv_bytes(shown)).rows
+    if table.of_rows:
+        table = replace(table, columns=tuple(column.part(rows) for column in table.columns))
+    cells = read_table_text("cells.csv", csv_bytes(table)).rows
     return {
         "name": table.name,
         "title": table.title,
@@ -234,7 +212,3 @@ def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[i
         "rows": [list(row) for row in cells],
         "status": codes if table.of_rows else [],
     }
-
-
-def _part(table: Columns, rows: NDArray[np.intp]) -> Columns:
-    return replace(table, columns=tuple(column.part(rows) for column in table.columns))

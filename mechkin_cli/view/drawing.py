@@ -1,22 +1,42 @@
-"""The small picture of a mechanism: its first position with a solution, and the ways of its points.
+"""The small picture of a mechanism: its first position with a solution, and its points' paths.
 
 Links are lines, areas or stars in their colours, as `view.shapes` has them; joints are symbols; a
-joint on ground stands on a hatched foot. Feet and ways are drawn first, then links, then joints,
+joint on ground stands on a hatched foot. Feet and paths are drawn first, then links, then joints,
 each from far to near, what is as near in the order of the file. Numbers have one decimal.
+
+In reading order: the projection, elements of SVG, symbols of joints, the picture. The projection is
+isometric: all three axes are shortened alike, seen from the corner (1, 1, 1). With x', y', z' the
+axes turned so that z' points up, a point stands at (y' - x')/sqrt(2) to the right and
+(2z' - x' - y')/sqrt(6) upwards, and is (x' + y' + z')/sqrt(3) near. A joint's symbol follows from
+its entry in the joint table: a turn about an axis is a pin along it; a slide a block on a rail,
+with a turn a sleeve, on a thread a nut with its grooves; a ball stands in a ring, on a plate, or
+between the walls of a groove; two turns are a cross of their axes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import sqrt
-from typing import TYPE_CHECKING, Any
+from operator import itemgetter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, Joint, diagonal, is_written
+from mechkin_cli.mechanism import (
+    FIRST,
+    GROUND_NAME,
+    SECOND,
+    Attached,
+    Joint,
+    JointType,
+    Mechanism,
+    diagonal,
+    is_written,
+)
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.joints import (
     HOME,
+    Shape,
     carried,
     drawn_joints,
     half_axis,
@@ -27,15 +47,8 @@ from mechkin_cli.view.joints import (
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import JointType, Mechanism
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
-
-
-# Isometric projection: all three axes are shortened alike, seen from the corner (1, 1, 1).
-#
-# With x', y', z' the axes turned so that z' points up, a point stands at (y' - x')/sqrt(2) to the
-# right and (2z' - x' - y')/sqrt(6) upwards, and is (x' + y' + z')/sqrt(3) near.
 
 
 class Isometric(NamedTuple):
@@ -70,8 +83,6 @@ def isometric(mechanism: Mechanism) -> Isometric:
     return Isometric(1) if flat and all(flat) else Isometric(2)
 
 
-# What drawings are made of: lines, areas and discs, in points of the picture, as SVG.
-
 Place = tuple[float, float]
 """To the right and downwards, in points."""
 
@@ -94,10 +105,12 @@ class Stroke(NamedTuple):
     def svg(self) -> str:
         """The element."""
         first, *rest = self.places
-        way = f"M{_place(first)}" + "".join(f"L{_place(place)}" for place in rest)
+        path = f"M{_place(first)}" + "".join(f"L{_place(place)}" for place in rest)
         ends = ' stroke-linecap="round"' if self.round_ends else ""
         inside = f' class="{self.ink} a"' if self.filled else f' class="{self.ink}"'
-        return f'<path{inside} stroke-width="{self.width:.1f}"{ends} d="{way}{"Z" * self.closed}"/>'
+        return (
+            f'<path{inside} stroke-width="{self.width:.1f}"{ends} d="{path}{"Z" * self.closed}"/>'
+        )
 
 
 class Disc(NamedTuple):
@@ -152,16 +165,10 @@ def _shortened(a: Place, b: Place, by: float) -> tuple[Place, Place]:
     return moved(a, along, share), moved(b, along, -share)
 
 
-# Symbols of joints in a drawing, by what their entries in the joint table say.
-#
-# A turn about an axis is a pin along it; a slide a block on a rail, with a turn a sleeve, on a
-# thread a nut with its grooves; a ball stands in a ring, on a plate, or between the walls of a
-# groove; two turns are a cross of their axes.
-
 PIN, BLOCK, PLATE, GROOVE, CROSS, RAIL = 5.0, 7.0, 11.0, 12.0, 8.0, 9.0
 """Half lengths in points."""
 
-THICK, BALL = 8.0, 5.0
+THICK, BALL, ROD = 8.0, 5.0, 3.2
 SHORT = 0.25
 """A pin that is seen more nearly end on than this is a disc."""
 
@@ -285,6 +292,8 @@ PICTURE_NAME = "picture.svg"
 
 WIDTH, HEIGHT, MARGIN = 200.0, 150.0, 24.0
 MOST_PATH_POINTS = 120
+NEAR_DECIMALS = 6
+"""Of how near a thing is, in parts of the mechanism's size: the rest is rounding."""
 
 COLOURS = (
     ("#0969da", "#58a6ff"),
@@ -312,17 +321,13 @@ STYLE = "".join(
 )
 
 
-class _Item(NamedTuple):
-    """What is drawn at once, and how near it is."""
-
-    near: float
-    marks: list[Mark]
+Item = tuple[float, list[Mark]]
+"""How near it is, and what is drawn."""
 
 
 def mechanism_picture(result: Result) -> str:
     """The picture of a run as one SVG file with a newline at its end."""
-    scene = _Scene(result)
-    marks = [mark for item in scene.items() for mark in item.marks]
+    marks = _Scene(result).marks()
     size = f'width="{WIDTH:.0f}" height="{HEIGHT:.0f}" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'
     return "\n".join([head, f"<style>{STYLE}</style>", *(m.svg for m in marks), "</svg>", ""])
@@ -334,7 +339,8 @@ class _Scene:
     def __init__(self, result: Result) -> None:
         self.result = result
         self.mechanism = result.problem.mechanism
-        self.links = [GROUND_NAME, *filter(is_written, self._moving())]
+        moving = (name for name in self.mechanism.links if name != GROUND_NAME)
+        self.links = [GROUND_NAME, *filter(is_written, moving)]
         poses = link_poses(result, self.links)
         solved = np.flatnonzero(result.solved)
         home = np.tile(np.array(HOME), (1, len(self.links), 1))
@@ -344,22 +350,22 @@ class _Scene:
         self.size = diagonal([at.vector for _, at in self.mechanism.joint_points()]) or 1.0
         self._fit()
 
-    def items(self) -> list[_Item]:
+    def marks(self) -> list[Mark]:
         """Everything from back to front."""
-        links, joints = (
-            sorted(found, key=lambda item: item.near) for found in (self._shapes(), self._symbols())
-        )
-        return [*self._feet(), *self._paths(), *links, *joints]
-
-    def _moving(self) -> list[str]:
-        return [name for name in self.mechanism.links if name != GROUND_NAME]
+        links = sorted(self._shapes(), key=itemgetter(0))
+        joints = sorted(self._symbols(), key=itemgetter(0))
+        return [
+            *self._feet(),
+            *self._paths(),
+            *(m for _, marks in [*links, *joints] for m in marks),
+        ]
 
     def _placed(self, link: str, points: Floats, row: int = 0) -> Floats:
         """Points as drawn on a link (points, 3) as they are seen: right, up, near."""
         pose = self.poses[row, self.links.index(link)]
         return np.array([self.view.seen(carried(pose, tuple(point))) for point in points])
 
-    def _way(self, link: str, point: Sequence[float]) -> Floats:
+    def _path(self, link: str, point: Sequence[float]) -> Floats:
         """A point of a link over the rows, as it is seen."""
         rows = thinned(range(len(self.poses)), MOST_PATH_POINTS)
         x, y, z = point
@@ -371,7 +377,7 @@ class _Scene:
         for joint in self.joints:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
                 parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
-        parts += [self._way(at.link, at.vector) for _, at in self._named()]
+        parts += [self._path(at.link, at.vector) for at in self._moving_points()]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
         every = np.concatenate(parts)[:, :2]
         low, high = every.min(axis=0), every.max(axis=0)
@@ -384,40 +390,39 @@ class _Scene:
         # the feet below the joints need some room, too
         return WIDTH / 2.0 + float(x), HEIGHT / 2.0 - 4.0 - float(y)
 
-    def _link_shapes(self) -> Iterator[tuple[str, Any]]:
-        for link in self.links[1:]:
-            yield link, link_shape(self.mechanism, link, self.size)
+    def _link_shapes(self) -> Iterator[tuple[str, Shape]]:
+        return ((link, link_shape(self.mechanism, link, self.size)) for link in self.links[1:])
 
-    def _named(self) -> Iterator[tuple[str, Any]]:
-        for name, at in self.mechanism.points.items():
-            if at.link in self.links[1:]:
-                yield name, at
+    def _moving_points(self) -> Iterator[Attached]:
+        return (at for at in self.mechanism.points.values() if at.link in self.links[1:])
 
     def _ink(self, link: str) -> str:
         return f"l{(self.links.index(link) - 1) % len(COLOURS)}"
 
-    def _shapes(self) -> Iterator[_Item]:
+    def _shapes(self) -> Iterator[Item]:
         for link, shape in self._link_shapes():
             if shape.kind == "none":
                 continue
             seen, ink = self._placed(link, shape.points), self._ink(link)
             places = sorted(self._on_picture(one) for one in seen)
-            near = _rounded(float(seen[:, 2].sum()) / len(seen) / self.size)
-            if shape.kind == "star":
+            near = round(float(seen[:, 2].sum()) / len(seen) / self.size, NEAR_DECIMALS)
+            if shape.centre is not None:
                 centre = self._on_picture(self._placed(link, shape.centre[None])[0])
-                marks: list[Mark] = [_rod((centre, place), ink) for place in places]
+                marks: list[Mark] = [
+                    Stroke((centre, place), ink, ROD, round_ends=True) for place in places
+                ]
             elif shape.kind == "plate":
                 marks = [Stroke(_hull(places), ink, 2.4, closed=True, filled=True)]
             else:
-                marks = [_rod(tuple(places), ink)]
-            yield _Item(near, marks)
+                marks = [Stroke(tuple(places), ink, ROD, round_ends=True)]
+            yield near, marks
 
-    def _symbols(self) -> Iterator[_Item]:
+    def _symbols(self) -> Iterator[Item]:
         for joint in self.joints:
             first, second = self._half(joint, FIRST), self._half(joint, SECOND)
             place = self._placed(joint.second, np.array([half_frame(joint, SECOND).o]))[0]
-            near = _rounded(float(place[2]) / self.size)
-            yield _Item(near, symbol(joint.type, first, second))
+            near = round(float(place[2]) / self.size, NEAR_DECIMALS)
+            yield near, symbol(joint.type, first, second)
 
     def _half(self, joint: Joint, side: int) -> Half:
         link = joint.first if side == FIRST else joint.second
@@ -428,35 +433,26 @@ class _Scene:
         along = [(float(a[0] - seen[0, 0]), float(seen[0, 1] - a[1])) for a in seen[1:]]
         return Half(self._on_picture(seen[0]), *along)
 
-    def _feet(self) -> Iterator[_Item]:
+    def _feet(self) -> Iterator[Mark]:
         for joint in self.joints:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
                 if link == GROUND_NAME:
-                    yield _Item(0.0, ground_mark(self._half(joint, side).place))
+                    yield from ground_mark(self._half(joint, side).place)
 
-    def _paths(self) -> Iterator[_Item]:
-        for _, at in self._named():
-            way = tuple(self._on_picture(one) for one in self._way(at.link, at.vector))
-            ink = self._ink(at.link)
-            marks: list[Mark] = [Stroke(way, f"{ink} t", 1.0)] if len(way) > 1 else []
-            yield _Item(0.0, [*marks, Disc(way[0], 1.8, is_ink=True)])
-
-
-def _rod(places: tuple[Place, ...], ink: str) -> Stroke:
-    return Stroke(places, ink, 3.2, round_ends=True)
-
-
-def _rounded(near: float) -> float:
-    """What is as near but for rounding is as near."""
-    return round(near, 6)
+    def _paths(self) -> Iterator[Mark]:
+        for at in self._moving_points():
+            path = tuple(self._on_picture(one) for one in self._path(at.link, at.vector))
+            if len(path) > 1:
+                yield Stroke(path, f"{self._ink(at.link)} t", 1.0)
+            yield Disc(path[0], 1.8, is_ink=True)
 
 
 def _hull(places: list[Place]) -> tuple[Place, ...]:
     """The convex hull of sorted places (Andrew's monotone chain), counted from the leftmost."""
     chains: list[list[Place]] = []
-    for way in (places, places[::-1]):
+    for ordered in (places, places[::-1]):
         chain: list[Place] = []
-        for place in way:
+        for place in ordered:
             while len(chain) > 1 and _turns_right(chain[-2], chain[-1], place):
                 chain.pop()
             chain.append(place)

@@ -1,4 +1,11 @@
-"""Both halves of every joint, as drawn on its two links."""
+"""Joints, links and poses for the page: halves of joints, shapes of links, poses, the plane.
+
+A link goes through its joints and its named points. Two of them, or more in a line, make a rod;
+three or more in a plane a plate; others rods to their centroid (a star). Ground is shown by its
+joints. The columns of a link's rotation are the ground axes as drawn on it, its shift is that of
+one of its joint points: x = R x0 + t with t = p - R p0. Where a mechanism moves in a plane square
+to a ground axis, and is drawn in it, the page looks along that axis first.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +19,10 @@ from mechkin_cli.mechanism import (
     FIRST,
     GROUND_NAME,
     SECOND,
+    Frame,
     Joint,
     Mechanism,
+    Vector,
     is_written,
     reference_point,
     scale,
@@ -23,7 +32,6 @@ from mechkin_cli.view.page import FLATNESS, POINTS_APART
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Kind, ShapeSetting
-    from mechkin_cli.mechanism import Frame, Vector
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
     from mechkin_cli.view.page import Lengths, Plain
@@ -99,12 +107,6 @@ def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
     }
 
 
-# Shapes of links: a rod, a thin plate, rods from a middle (a star), or nothing.
-#
-# A link goes through its joints and its named points. Two of them, or more in a line, make a rod;
-# three or more in a plane a plate; others rods to their centroid. Ground is told by its joints.
-
-
 class Shape(NamedTuple):
     """A link as it is drawn (m, in the drawing): the `points` it goes through (n, 3), of a plate
     the `normal`, of a star the `centre`."""
@@ -119,12 +121,11 @@ def link_shape(
     mechanism: Mechanism, link: str, size: float, setting: ShapeSetting | None = None
 ) -> Shape:
     """The shape of a link of a mechanism of some `size` (m); what `setting` says goes first."""
-    given = None if setting is None else setting.points
-    points = distinct(drawn_points(mechanism, link) if given is None else given, size)
-    kind = None if setting is None else setting.kind
-    if kind is None and link == GROUND_NAME and given is None:
+    kind, chosen = (None, None) if setting is None else (setting.kind, setting.points)
+    if kind is None and link == GROUND_NAME and chosen is None:
         kind = "none"
-    return shape_through(points, kind)
+    points = drawn_points(mechanism, link) if chosen is None else chosen
+    return shape_through(distinct(points, size), kind)
 
 
 def drawn_points(mechanism: Mechanism, link: str) -> list[Vector]:
@@ -169,11 +170,6 @@ def shape_through(points: Floats, kind: Kind | None = None) -> Shape:
         return Shape("plate", points, normal=axes[2])
     return Shape(kind, points, centre=centre if kind == "star" else None)
 
-
-# Poses of links in the rows of a run, read off its states.
-#
-# The columns of a link's rotation are the ground axes as drawn on it, its shift is that of one of
-# its joint points: x = R x0 + t with t = p - R p0.
 
 HOME = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 """The pose of what is where it was drawn."""
@@ -224,10 +220,6 @@ def carried(poses: Floats, point: Vector) -> Floats:
     across = np.cross(v, start)
     moved: Floats = poses[..., :3] + start + 2.0 * (poses[..., 3:4] * across + np.cross(v, across))
     return moved
-
-
-# Whether a mechanism moves in a plane square to a ground axis, and is drawn in it: then the page
-# looks along that axis first.
 
 
 def plane_of_motion(poses: Sequence[Floats], low: Floats, high: Floats) -> int | None:

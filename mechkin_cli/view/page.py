@@ -1,4 +1,10 @@
-"""The page: the template that is built from `page/`, with the data of a scene in it."""
+"""The page: the template built from `page/`, the data in it, and how much of a run it holds.
+
+Data are JSON that stands in an HTML file: arrays in base64, row-major and little-endian, by their
+type (`{"f32": ...}`, f64, i32, u8), and nothing that is markup. Where a run has more rows than a
+page holds, it shows rows in even steps and those that must not be missed. At the end, what a file
+leaves out and mechkin assumes, in sentences for the reader of the page.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +19,6 @@ import numpy as np
 
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.mechanism import GROUND_NAME, is_written
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import SWEEP
 
@@ -25,13 +30,8 @@ if TYPE_CHECKING:
     from mechkin_cli.units import UnitSystem
     from mechkin_cli.view.shown import ShownRun
 
-
-# Data of a page as JSON that stands in an HTML file: arrays in base64, nothing that is markup.
-#
-# Arrays are row-major and little-endian: {"f32": ...}, {"f64": ...}, {"i32": ...}, {"u8": ...}.
-
-if TYPE_CHECKING:
     Plain = dict[str, object]
+    Numbers = NDArray[np.intp]
 
 _TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
 _MARKUP = {ord("<"): "\\u003c", ord(">"): "\\u003e", ord("&"): "\\u0026"}
@@ -101,11 +101,8 @@ def filled(page: str, data: Plain) -> bytes:
     return (before + script_json(data) + after).encode("utf-8")
 
 
-# Lengths (m) in the file's unit, for data of a page.
-
-
 class Lengths:
-    """Converts lengths of one file."""
+    """Lengths (m) in the unit of one file."""
 
     def __init__(self, units: UnitSystem) -> None:
         self._units = units
@@ -119,12 +116,9 @@ class Lengths:
         return [self.one(value) for value in point]
 
     def array(self, values: Floats) -> Floats:
-        """An array, not the one that was given."""
-        found: Floats = np.array(self._units.from_si(np.array(values), LENGTH), dtype=np.float64)
-        return found
+        """A copy of an array."""
+        return np.asarray(self._units.from_si(np.array(values), LENGTH), dtype=np.float64)
 
-
-# How much one page holds; where a run has more, a note says what was left out.
 
 MOST_POSES = 2000
 """Poses of a branch: at 60 pictures a second half a minute of motion without a pose shown twice,
@@ -141,7 +135,7 @@ LEAST_ROWS = 200
 """Rows of a branch that are shown however many columns and modes there are."""
 
 MOST_MODES = 16
-"""Assembly modes that are shown beside the file's own: more can hardly be told apart by eye."""
+"""Assembly modes that are shown beside the file's own: more can hardly be distinguished by eye."""
 
 MOST_MODE_ROWS = 100_000
 """Rows of all other assembly modes together: half a second of work for most mechanisms."""
@@ -157,37 +151,20 @@ FLATNESS = 0.01
 extent: less than the thickness of what is drawn."""
 
 
-# How many rows and poses of a branch a page shows: the own branch most, other modes a part.
-
-
-class Share(NamedTuple):
-    """The most rows, and the most poses."""
-
-    rows: int
-    poses: int
+Share = tuple[int, int]
+"""The most rows, and the most poses, that a page shows of a branch."""
 
 
 def shares(run: ShownRun) -> list[Share]:
-    """What each branch of a run is given, in their order."""
+    """The share of each branch of a run, in their order: the own branch has most."""
     own, *others = run.branches
     columns = sum(len(table.columns) for table in own.analysis.tables)
-    found = [Share(_rows(columns), MOST_POSES)]
-    if others:
-        poses = min(MOST_POSES, MOST_MODE_POSES // len(others))
-        found += [Share(_rows(columns * len(others)), poses)] * len(others)
-    return found
 
+    def rows(branches: int) -> int:
+        return max(LEAST_ROWS, min(MOST_ROWS, MOST_CELLS // max(branches * columns, 1)))
 
-def _rows(columns: int) -> int:
-    """The rows that so many columns share, of one branch or several."""
-    return max(LEAST_ROWS, min(MOST_ROWS, MOST_CELLS // max(columns, 1)))
-
-
-# Which rows are shown where there are more than a page holds: even steps, and what must not be
-# missed.
-
-if TYPE_CHECKING:
-    Numbers = NDArray[np.intp]
+    poses = min(MOST_POSES, MOST_MODE_POSES // max(len(others), 1))
+    return [(rows(1), MOST_POSES), *[(rows(len(others)), poses)] * len(others)]
 
 
 def thinned(rows: ArrayLike, most: int, keep: ArrayLike = ()) -> Numbers:
@@ -201,10 +178,10 @@ def thinned(rows: ArrayLike, most: int, keep: ArrayLike = ()) -> Numbers:
     numbers = np.asarray(rows, dtype=np.intp)
     if numbers.size <= most:
         return numbers
-    kept = np.intersect1d(np.asarray(keep, dtype=np.intp), numbers)[: (most - 2) // 2]
-    steps = np.linspace(0, numbers.size - 1, most - kept.size)
+    special = np.intersect1d(np.asarray(keep, dtype=np.intp), numbers)[: (most - 2) // 2]
+    steps = np.linspace(0, numbers.size - 1, most - special.size)
     even = numbers[steps.round().astype(np.intp)]
-    return np.union1d(even, kept)
+    return np.union1d(even, special)
 
 
 def turning_points(codes: ArrayLike) -> Numbers:
@@ -216,9 +193,6 @@ def turning_points(codes: ArrayLike) -> Numbers:
     """
     changed = np.flatnonzero(np.diff(np.asarray(codes)))
     return np.union1d(changed, changed + 1).astype(np.intp)
-
-
-# What a file leaves out and mechkin assumes, in sentences for the reader of a page.
 
 
 def assumed(problem: Problem, runs: Sequence[ShownRun]) -> list[str]:
@@ -278,6 +252,6 @@ def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
 
 def _idle(problem: Problem) -> Iterator[str]:
     for spin in problem.mechanism.spins:
-        yield f"{spin.words}: where it stands about that line is told by convention."
+        yield f"{spin.words}: where it stands about that line is set by convention."
     for held in problem.held:
         yield f"{held.words}: {held.convention}."

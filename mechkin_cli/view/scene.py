@@ -47,7 +47,7 @@ class Scene:
         file: name of the mechanism file.
         problem: the mechanism; poses are those of the runs.
         runs: in the order of the file.
-        notes: everything that was said of the file and its runs.
+        notes: all messages on the file and its runs.
         settings: the `view:` section.
     """
 
@@ -81,7 +81,6 @@ class Scene:
 
     @cached_property
     def _left_out(self) -> frozenset[str]:
-        """Links that no run has followed."""
         followed = {
             name
             for run in self.runs
@@ -175,10 +174,8 @@ class Scene:
     def _link(self, name: str, size: float) -> Plain:
         settings, lengths = self.settings, self._lengths
         shape = link_shape(self.problem.mechanism, name, size, settings.shapes.get(name))
-        drawn: Plain = {
-            "kind": shape.kind,
-            "points": [lengths.vector(point) for point in shape.points],
-        }
+        points = [lengths.vector(point) for point in shape.points]
+        drawn: Plain = {"kind": shape.kind, "points": points}
         if shape.normal is not None:
             drawn["normal"] = [float(x) for x in shape.normal]
         if shape.centre is not None:
@@ -224,7 +221,7 @@ class Scene:
             "name": run.name,
             "kind": "sweep" if run.name == "sweep" else "response",
             "title": run.title,
-            "x": {"label": axis.label, "unit": axis.unit},
+            "x": {"label": axis.name, "unit": axis.unit},
             "branches": [
                 branch.record(number == 0, self._lengths) for number, branch in enumerate(branches)
             ],
@@ -241,14 +238,9 @@ class Scene:
 
 
 def _note(diagnostic: Diagnostic) -> Plain:
-    """A message without its place and severity, and these."""
-    place = diagnostic.place
-    bare = str(diagnostic._replace(place=None)).removeprefix(f"{diagnostic.severity}: ")
+    severity, place = diagnostic.severity, diagnostic.place
     return {
-        "severity": diagnostic.severity,
-        "text": bare,
+        "severity": severity,
+        "text": str(diagnostic._replace(place=None)).removeprefix(f"{severity}: "),
         "place": None if place is None else str(place),
     }
-
-
-# What a page reads of the analysis of a run; `interface.Analysis` is one.

@@ -1,4 +1,4 @@
-"""What a page shows: runs, their branches, and what is read of an analysis."""
+"""What a page shows: runs, their branches, and what it reads of `model.Analysis`."""
 
 from __future__ import annotations
 

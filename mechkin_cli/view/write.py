@@ -129,7 +129,6 @@ def _other_modes(
 
 
 def _other_tables(analysis: ShownAnalysis, notes: list[Diagnostic]) -> tuple[Columns, ...]:
-    """The tables of dense systems and of balances."""
     try:
         return (*analysis.coefficients, *analysis.balance_tables)
     except UsageError as error:
@@ -147,6 +146,6 @@ def _left_out(runs: Sequence[ShownRun]) -> Iterator[Diagnostic]:
                 "note",
                 f"{run.name}: the page shows some of the rows, in even steps",
                 measured=f"{rows} rows",
-                limit=f"{own.rows} in curves and tables, {own.poses} poses, fewer of other modes",
+                limit=f"{own[0]} in curves and tables, {own[1]} poses, fewer of other modes",
                 hint="the files that mechkin analyze writes have all rows",
             )

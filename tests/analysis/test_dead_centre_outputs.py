@@ -84,7 +84,7 @@ def test_pictures_and_pages_mark_the_row(file: Path) -> None:
     (mark,) = [mark for mark in run_marks(r, "D.theta", x) if mark["kind"] == "dead-centre"]
     assert mark["x"] == -30.0
     drawn = table_picture(r, r.layouts[0], r.tables[0])
-    assert [m.place for m in drawn.marks] == [-30.0]
+    assert [place for place, _ in drawn.marks] == [-30.0]
     # no entry for a sign that stands nowhere
     assert not drawn.doubtful
 

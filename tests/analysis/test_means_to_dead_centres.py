@@ -16,8 +16,7 @@ import pytest
 from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
-from mechkin_cli.tables.results import Results
-from mechkin_cli.tables.writers import written_files
+from mechkin_cli.tables.writers import Results, written_files
 
 CRANK, ROD, RATE = 30.0, 50.0, 100.0
 OMEGA = "A.theta_dot"

@@ -27,7 +27,7 @@ from benchmark.specimens import rcsr_specimen, sevenr_specimen
 from benchmark.yardstick_kernel import Yardstick, load
 
 from benchmarks.peers import FAMILIES
-from benchmarks.scenes import subjects
+from benchmarks.scenes import known_scenes
 from benchmarks.suite import whole_tables
 from mechkin_cli.bench.outputs import figure, page
 from mechkin_cli.bench.report import ReportTable, csv_text, machine
@@ -64,11 +64,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="the folder")
     options = parser.parse_args()
     rounds = QUICK if options.quick else FULL
-    known = subjects()
+    known = known_scenes()
     benches = []
-    for subject in known:
-        print(subject.name, file=sys.stderr, flush=True)
-        benches.append(bench(subject.scene, rounds, FAMILIES))
+    for scene in known:
+        print(scene.name, file=sys.stderr, flush=True)
+        benches.append(bench(scene, rounds, FAMILIES))
     print("settings, variants, responses, yardstick, processes", file=sys.stderr, flush=True)
     found = [
         *whole_tables(known, rounds),

@@ -13,6 +13,7 @@ from references import FILE_OF, RCSR, exact
 
 import mechkin_cli as mk
 from benchmarks import scenes
+from benchmarks.closure import true_values
 from benchmarks.peers import FAMILIES
 from benchmarks.responses.pendulum import exact_motion
 from mechkin_cli.bench import runs
@@ -22,7 +23,6 @@ from mechkin_cli.bench.methods import ANALYZED
 from mechkin_cli.bench.outputs import (
     CURVES,
     NAMES,
-    FigurePanel,
     best_table,
     record,
     summary,
@@ -30,9 +30,8 @@ from mechkin_cli.bench.outputs import (
     write,
 )
 from mechkin_cli.bench.report import ReportTable, bench_table, csv_text, markdown
-from mechkin_cli.bench.runs import Rounds, bench, methods_of
+from mechkin_cli.bench.runs import TEXT, Rounds, bench, exact_values, methods_of
 from mechkin_cli.bench.scene import BenchScene
-from mechkin_cli.bench.truth import TEXT, exact_values, true_values
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import widths
 
@@ -274,7 +273,7 @@ def measurement(curve: str, us: float, error: float | None) -> Measurement:
 def test_the_figure_shows_every_curve_and_its_points() -> None:
     given = [measurement(CURVES[0].name, 1.0, 1e-15), measurement(CURVES[0].name, 0.1, 1e-3)]
     given += [measurement(CURVES[5].name, 100.0, 1e-8), measurement("not in the figure", 1.0, 1e-4)]
-    text = svg([FigurePanel("A & B", given)])
+    text = svg([("A & B", given)])
     root = ET.fromstring(text)
     space = "{http://www.w3.org/2000/svg}"
     said = [e.text for e in root.iter(f"{space}text")]
@@ -286,7 +285,7 @@ def test_the_figure_shows_every_curve_and_its_points() -> None:
     # two points and one, and a mark of each in the legend
     assert dots.count("p0") == 3
     assert dots.count("p5") == 2
-    assert text == svg([FigurePanel("A & B", given)])
+    assert text == svg([("A & B", given)])
 
 
 def test_the_figure_of_nothing_is_a_figure() -> None:
@@ -296,7 +295,7 @@ def test_the_figure_of_nothing_is_a_figure() -> None:
 def test_points_lie_as_their_numbers_do() -> None:
     text = svg(
         [
-            FigurePanel(
+            (
                 "A",
                 [measurement(CURVES[0].name, 10.0, 1e-12), measurement(CURVES[0].name, 1.0, 1e-4)],
             )

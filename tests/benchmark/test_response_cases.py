@@ -12,10 +12,8 @@ import pytest
 from benchmarks.responses import pendulum
 from benchmarks.responses.cases import RUN, Case, cases
 from benchmarks.responses.extrapolation import extrapolated
-from benchmarks.responses.table import OWN, response_table
+from benchmarks.responses.table import OWN, response_table, summary
 from benchmarks.responses.tree import Tree
-from mechkin_cli.bench.outputs import responses_summary
-from mechkin_cli.bench.report import ReportTable
 
 NAMES = ("double pendulum", "three hinges in space", "RCSR", "stiff spring and damper")
 
@@ -99,7 +97,7 @@ def test_libraries_that_are_missing_are_named(monkeypatch: pytest.MonkeyPatch) -
     assert [row["method"] for row in table.rows] == [OWN]
     for name in ("scipy", "pinocchio", "mujoco"):
         assert f"{name} is left out: it is not installed." in table.notes
-    assert responses_summary([table]) == []
+    assert summary(table.rows) == []
 
 
 def test_the_page_tells_the_fastest_other() -> None:
@@ -109,7 +107,7 @@ def test_the_page_tells_the_fastest_other() -> None:
         {"case": "A", "method": "MuJoCo", "ratio": 0.5},
         {"case": "B", "method": "scipy", "ratio": 20.0},
     ]
-    (_, said) = responses_summary([ReportTable("responses", "", (), rows)])
+    (said,) = summary(rows)
     assert "A 0.500, B 20.0 times as fast" in said
 
 

@@ -12,6 +12,7 @@ from cli.test_bench import MECHANISM
 
 from benchmarks import ROOT, suite
 from benchmarks.peers import FAMILIES
+from benchmarks.scenes import texts
 from mechkin_cli.bench import runs
 
 
@@ -48,5 +49,5 @@ def test_what_is_wrong_is_told_in_words(words: list[str], code: int, said: str) 
 
 
 def test_the_whole_suite_has_all_that_was_measured() -> None:
-    assert [subject.name for subject in suite.subjects()][:3] == ["RCSR", "RSSR", "7R"]
-    assert set(suite.DEMAND_SCENES) <= {subject.name for subject in suite.subjects()}
+    assert list(texts())[:3] == ["RCSR", "RSSR", "7R"]
+    assert {*suite.DEMAND_SCENES, *suite.PROCESS_SCENES} <= texts().keys()

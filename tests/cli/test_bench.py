@@ -118,7 +118,7 @@ def test_without_a_file_templates_are_measured() -> None:
 def test_no_other_command_loads_its_room() -> None:
     code = (
         "import sys, mechkin_cli.cli.app, mechkin_cli.model.model; "
-        "print([m for m in sys.modules if m.startswith('mechkin_cli.bench')])"
+        "print([m for m in sys.modules if m.startswith('mechkin_cli.bench.')])"
     )
     done = run([sys.executable, "-P", "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"

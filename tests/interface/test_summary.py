@@ -12,8 +12,7 @@ import pytest
 from means import mean_over_the_way, rms_over_the_way
 
 import mechkin_cli as mk
-from mechkin_cli.tables.results import Results
-from mechkin_cli.tables.writers import written_files
+from mechkin_cli.tables.writers import Results, written_files
 
 WORDS = ("max", "min", "peak", "mean", "rms", "range")
 COUNT = 12 * int(os.environ.get("MECHKIN_RANDOM", "1"))

@@ -175,7 +175,7 @@ def test_damaged_results_are_told(model: mk.Model, tmp_path: Path, file_format: 
     path = tmp_path / f"variants.{file_format}"
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) // 2])
-    with pytest.raises(UsageError, match=r"is not as it was written: .*; begin anew with --again"):
+    with pytest.raises(UsageError, match=r"is not as it was written: .*; start over with --again"):
         model.study(RCSR, tmp_path, format=file_format)
     model.study(RCSR, tmp_path, format=file_format, again=True)
     assert path.read_bytes() == whole

@@ -123,7 +123,7 @@ def test_what_is_no_address_is_told_at_once(address: str) -> None:
 
     begin = time.perf_counter()
     with pytest.raises(UsageError, match=r"expected an address such as tcp://host:8786"):
-        cluster(address).__enter__()
+        cluster(address, str).__enter__()
     assert time.perf_counter() - begin < 1.0
 
 

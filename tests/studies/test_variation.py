@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from mechkin_cli.studies.plan import Samples, StudyVariation
+from mechkin_cli.studies.plan import StudyVariation
 from mechkin_cli.variants.samples import draws
 
 
@@ -22,9 +22,9 @@ def test_lists_tables_and_samples_are_crossed(seed: int) -> None:
     table = {f"t{k}": generator.random(length) for k in range(seed % 3)}
     drawn = {f"d{k}": (lambda u: u) for k in range((seed + 1) % 3)}
     count = int(generator.integers(1, 7))
-    samples = Samples(count, draws("random", count, len(drawn), seed), drawn) if drawn else None
+    samples = (count, draws("random", count, len(drawn), seed), drawn) if drawn else None
     variation = StudyVariation(lists, False, table, samples)
-    points = draws("random", count, len(drawn), seed).stretch(0, count) if drawn else [()]
+    points = draws("random", count, len(drawn), seed)(0, count) if drawn else [()]
     expected = [
         (*listed, *row, *point)
         for listed in itertools.product(*(values.tolist() for values in lists.values()))

@@ -13,7 +13,7 @@ from studies.studies import RCSR
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.studies import study as running
-from mechkin_cli.studies.workers import Executors, Task, TaskCall, executed, processes
+from mechkin_cli.studies.workers import Executors, Task, executed, processes
 
 
 @pytest.fixture(scope="module")
@@ -38,9 +38,7 @@ def test_the_variants_that_kill_a_process_are_found_and_the_rest_goes_on() -> No
         lost.append(task.begin)
         return []
 
-    found = [
-        each for _, part in executed(tasks, TaskCall(submit, died), executors, 2) for each in part
-    ]
+    found = [each for _, part in executed(tasks, submit, died, executors, 2) for each in part]
     executors.current.shutdown(wait=False, cancel_futures=True)
     assert sorted(lost) == list(victims)
     assert sorted(found) == [number for number in range(32) if number not in victims]
@@ -55,7 +53,7 @@ def test_an_error_of_a_task_ends_the_study() -> None:
 
     with ThreadPoolExecutor(1) as pool:
         tasks = [Task(number, number, number + 1) for number in range(4)]
-        found = executed(tasks, TaskCall(submit, lambda task: 0), Executors(pool, None), 1)
+        found = executed(tasks, submit, lambda task: 0, Executors(pool), 1)
         assert next(found) == (tasks[0], 1)
         with pytest.raises(ArithmeticError, match="task 2"):
             list(found)

@@ -5,9 +5,9 @@ from decimal import Decimal
 import numpy as np
 import pytest
 
+from mechkin_cli.tables import Columns
 from mechkin_cli.tables.columns import TableColumn
 from mechkin_cli.tables.print import PrintedValues, TableAgreement, agreement
-from mechkin_cli.tables.table import Columns
 
 
 def table(**columns: list[float]) -> Columns:
@@ -18,7 +18,7 @@ def table(**columns: list[float]) -> Columns:
 def printed(text: str) -> PrintedValues:
     labels, *rows = (line.split(",") for line in text.split())
     cells = (tuple(Decimal(cell) if cell else None for cell in row) for row in rows)
-    return PrintedValues(tuple(labels), tuple(cells))
+    return tuple(labels), tuple(cells)
 
 
 def one_cell(computed: float, text: str) -> TableAgreement:

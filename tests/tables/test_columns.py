@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mechkin_cli.expressions.quantity import ExpressionError
-from mechkin_cli.tables.table import evaluate
+from mechkin_cli.tables import evaluate
 from mechkin_cli.verdict import Status
 
 NAN = float("nan")

@@ -6,10 +6,10 @@ import io
 import numpy as np
 import pytest
 
+from mechkin_cli.tables import Columns, evaluate
 from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.markdown import rows_table
-from mechkin_cli.tables.table import Columns, evaluate
 
 NAN = float("nan")
 

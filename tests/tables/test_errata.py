@@ -4,6 +4,7 @@ from decimal import Decimal
 
 import numpy as np
 
+from mechkin_cli.tables import Columns
 from mechkin_cli.tables.columns import TableColumn
 from mechkin_cli.tables.errata import (
     PrintedTable,
@@ -13,15 +14,14 @@ from mechkin_cli.tables.errata import (
     errata_page,
 )
 from mechkin_cli.tables.layout import PrintedSource, Remark
-from mechkin_cli.tables.print import PrintedValues, agreement
-from mechkin_cli.tables.table import Columns
+from mechkin_cli.tables.print import agreement
 
 
 def printed_table(name: str, values: list[float], texts: list[str], *remarks: Remark):
     x = TableColumn("x", "deg", np.arange(float(len(values))))
     table = Columns(name, f"Table {name}", (x, TableColumn("y", "in", np.array(values))))
     rows = tuple((Decimal(k), Decimal(text)) for k, text in enumerate(texts))
-    found = agreement(table, PrintedValues(("x", "y"), rows))
+    found = agreement(table, (("x", "y"), rows))
     path = f"m/published/{name}.csv"
     return PrintedTable(table, PrintedSource(path, remarks), found, f"published/{name}.csv")
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mechkin_cli.diagnostics import Diagnostic, Place
+from mechkin_cli.tables import evaluate
 from mechkin_cli.tables.json import analysis_record, json_text
-from mechkin_cli.tables.table import evaluate
 
 EXPECTED = {
     "name": "RCSR",

@@ -15,14 +15,14 @@ def read(tmp_path, content: str | bytes):
 
 
 def test_digits_are_kept(tmp_path):
-    found = read(tmp_path, "theta,s\n150,1.30\n\n152,\n154,-.5\n")
-    assert found.labels == ("theta", "s")
-    assert found.rows == (
+    labels, rows = read(tmp_path, "theta,s\n150,1.30\n\n152,\n154,-.5\n")
+    assert labels == ("theta", "s")
+    assert rows == (
         (Decimal(150), Decimal("1.30")),
         (Decimal(152), None),
         (Decimal(154), Decimal("-0.5")),
     )
-    assert [row[1] and row[1].as_tuple().exponent for row in found.rows] == [-2, None, -1]
+    assert [row[1] and row[1].as_tuple().exponent for row in rows] == [-2, None, -1]
 
 
 @pytest.mark.parametrize(

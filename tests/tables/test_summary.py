@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from mechkin_cli.expressions.quantity import Quantity
+from mechkin_cli.tables import evaluate, summary_table
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.json import table_record
 from mechkin_cli.tables.layout import ROW_NUMBER
 from mechkin_cli.tables.markdown import markdown_bytes
 from mechkin_cli.tables.summary import statistics, written_notes
-from mechkin_cli.tables.table import evaluate, summary_table
 from mechkin_cli.units.dimension import LENGTH
 
 WORDS = ("max", "min", "peak", "mean", "rms", "range")

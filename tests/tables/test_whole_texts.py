@@ -8,11 +8,11 @@ from decimal import ROUND_HALF_EVEN, Context, Decimal
 import numpy as np
 import pytest
 
+from mechkin_cli.tables import Columns
 from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.json import JsonCells, json_bytes, json_text, table_record
 from mechkin_cli.tables.markdown import markdown_bytes
-from mechkin_cli.tables.table import Columns
 
 CONTEXT = Context(prec=1500)
 WORDS = (

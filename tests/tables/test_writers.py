@@ -4,10 +4,9 @@ import pytest
 
 from mechkin_cli.cli import analyze
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import writers
+from mechkin_cli.tables import evaluate, writers
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markdown import rows_table
-from mechkin_cli.tables.table import evaluate
 
 
 @pytest.fixture

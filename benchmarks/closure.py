@@ -1,11 +1,9 @@
-"""What is right: the rows of a scene repeated in double-double from the text of its file.
+"""Positions, velocities and accelerations from the closing equations alone, without the kernel.
 
-About 32 digits, of which as many are kept as numpy's widest numbers have (`exact_values`). Beside
-it stands a closure of another formula, without the kernel (`true_values`); the tests hold one
-against the other, and it takes the place of the first where a text cannot be followed. Its rows are
-closed anew in 64 bits of mantissa: Newton's method from the rows' own states, whose matrix, the
-velocities and the drift of the accelerations come from jets of the closing equations. The mechanism
-is that of the doubles that the kernel was given.
+The tests hold the true values of `mechkin bench` against them. Rows are closed again in 64 bits of
+mantissa: Newton's method from the rows' own states, whose matrix, the velocities and the drift of
+the accelerations come from jets of the closing equations. A `Jet` is a number with two derivatives
+by one parameter, f + f' t + f'' t^2/2, truncated.
 """
 
 from __future__ import annotations
@@ -15,20 +13,61 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.bench.chain import EQUATIONS, BodyTree, CommonFrame
-from mechkin_cli.bench.closure import Entries, Jet, Placing, Turned, jet
+from mechkin_cli.bench.closure import Entries, Placing, Turned
+from mechkin_cli.bench.row_by_row import RowByRow, coordinates_of
 from mechkin_cli.bench.scene import BenchScene, Values
-from mechkin_cli.errors import NotRepeated, wide_run
-from mechkin_cli.plan import demand_of
 from mechkin_cli.tape import eliminate
 
 STEPS = 4
 """Newton's method starts from doubles: two steps pass 64 bits."""
 
-BALL = range(3)
-"""The turns of a ball."""
-
 Exact = Any
 """An array of numpy's widest floating-point numbers."""
+
+
+class Jet:
+    """A value with its first and second derivative."""
+
+    __array_ufunc__ = None
+    """Arrays leave their operators to the jet."""
+
+    def __init__(self, value: Any, first: Any = 0.0, second: Any = 0.0) -> None:
+        self.value, self.first, self.second = value, first, second
+
+    def __add__(self, other: Any) -> Jet:
+        o = jet(other)
+        return Jet(self.value + o.value, self.first + o.first, self.second + o.second)
+
+    def __neg__(self) -> Jet:
+        return Jet(-self.value, -self.first, -self.second)
+
+    def __sub__(self, other: Any) -> Jet:
+        return self + -jet(other)
+
+    def __rsub__(self, other: Any) -> Jet:
+        return jet(other) - self
+
+    def __mul__(self, other: Any) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(self.value * other, self.first * other, self.second * other)
+        crossed = self.first * other.first
+        return Jet(
+            self.value * other.value,
+            self.first * other.value + self.value * other.first,
+            self.second * other.value + crossed + crossed + self.value * other.second,
+        )
+
+    __radd__ = __add__
+    __rmul__ = __mul__
+
+    def outer(self, value: Any, slope: Any, bend: Any) -> Jet:
+        """f(self), with f, f' and f'' at its value."""
+        return Jet(value, slope * self.first, slope * self.second + bend * self.first * self.first)
+
+
+def jet(value: Any) -> Jet:
+    """A number as a jet, a constant if it is none."""
+    return value if isinstance(value, Jet) else Jet(value)
 
 
 class State(NamedTuple):
@@ -39,11 +78,6 @@ class State(NamedTuple):
     rates: Exact
     accelerations: Exact
     turned: Turned
-
-
-def width() -> str:
-    """The numbers that are used, in words."""
-    return f"numpy longdouble, rounding {float(np.finfo(np.longdouble).eps):.0e}"
 
 
 def true_values(scene: BenchScene) -> Values:
@@ -71,36 +105,6 @@ def true_states(scene: BenchScene) -> State:
     rates = rates + solve(-closure.along(q, rates)[0])
     accelerations = accelerations + solve(-closure.along(q, rates, accelerations)[1])
     return State(q, rates, accelerations, turned)
-
-
-def coordinates_of(scene: BenchScene, rows: Any) -> tuple[Any, Turned]:
-    """Closed coordinates (coordinates, rows) of a scene in SI as the kernel has them, and what
-    balls count from; a ball that closes a loop has none."""
-    chain, states = scene.chain, scene.states[:, rows]
-    values = np.zeros((len(chain.coordinates), states.shape[1]))
-    turned = {}
-    for k, (coordinate, place) in enumerate(zip(chain.coordinates, chain.states, strict=True)):
-        if place is None:
-            if coordinate.name in scene.closing_values:
-                values[k] = scene.closing_values[coordinate.name][0, rows]
-        elif not any(0 <= k - ball < len(BALL) for ball in chain.balls):
-            values[k] = states[place] * (chain.length if coordinate.is_length else 1.0)
-    for ball in chain.balls:
-        place = chain.states[ball]
-        if place is not None:
-            turned[ball] = rotation(_wide(states[place : place + 4]))
-    return values, turned
-
-
-def rotation(quaternion: Any) -> list[list[Any]]:
-    """The matrix of a quaternion (4, ...), scalar first, of any length."""
-    a, x, y, z = quaternion
-    n = a * a + x * x + y * y + z * z
-    return [
-        [(a * a + x * x - y * y - z * z) / n, 2 * (x * y - a * z) / n, 2 * (x * z + a * y) / n],
-        [2 * (x * y + a * z) / n, (a * a - x * x + y * y - z * z) / n, 2 * (y * z - a * x) / n],
-        [2 * (x * z - a * y) / n, 2 * (y * z + a * x) / n, (a * a - x * x - y * y + z * z) / n],
-    ]
 
 
 class Closure:
@@ -216,26 +220,14 @@ def _sin(angle: Any) -> Jet:
 JETS = Entries(_cos, _sin, np.longdouble)
 
 
-TEXT = "double-double, from the numbers of the file's text"
-
-
-def exact_values(scene: BenchScene) -> tuple[Values, str]:
-    """Everything that is asked of a scene, at its places (width, places), and what it is by.
-
-    Where the text cannot be followed in double-double, positions and motion are those of the
-    closure.
-    """
-    wanted = scene.wanted(scene.asked.level("everything"))
-    try:
-        wide = wide_run(scene.result)
-    except NotRepeated as reason:
-        said = f"the closure of another formula, {width()}, as the text is not followed ({reason})"
-        return true_values(scene), said
-    demand = demand_of(scene.problem.mechanism, wanted)
-    found = wide.run(wanted, scene.session, wide.inputs, demand)
-    values: dict[str, Any] = {
-        name: np.asarray(parts.high, np.longdouble)[:, scene.places]
-        + np.asarray(parts.low, np.longdouble)[:, scene.places]
-        for name, parts in found.items()
-    }
-    return values, TEXT
+def named_motion(
+    rows: RowByRow,
+    q: Any,
+    orientations: list[dict[int, Any]],
+    rates: Any,
+    accelerations: Any,
+) -> Values:
+    """Positions, velocities and accelerations by name; arrays (coordinates, rows)."""
+    state = State(q, rates, accelerations, rows.orientations(orientations))
+    found = named_values(rows.chain, state)
+    return {name: found[name] for name in rows.scene.asked.level("motion")}
