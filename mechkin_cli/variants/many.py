@@ -18,7 +18,6 @@ from mechkin_cli.mechanism import (
     BEARING_KINDS,
     DERIVED_KINDS,
     bearing_load,
-    find_legs,
     friction_states,
     read_for,
 )
@@ -150,7 +149,7 @@ class VariantRun:
         mechanism = self.problem.mechanism
         if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
             return False
-        return bool(session.is_redundant or find_legs(mechanism) or self.problem.held)
+        return bool(session.is_redundant or self.problem.has_idle)
 
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts but on friction, and no inputs."""
