@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from mechkin_cli import reading, schema as schemas, tables, templates
-from mechkin_cli.cli.messages import ExitCode, put, say
+from mechkin_cli import schema as schemas, tables, templates
+from mechkin_cli.cli.messages import ExitCode, content_of, put, say
 from mechkin_cli.diagnostics import UsageError
 
 
@@ -118,17 +118,9 @@ def schema(
 
 def _is_up_to_date(name: str, path: Path) -> bool:
     """Whether the file has the schema; says so, or what to do."""
-    if _content(path) == schemas.json_schema_text(name).encode():
+    if content_of(path) == schemas.json_schema_text(name).encode():
         say(f"{path} is up to date")
         return True
     option = "" if name == MECHANISM else f"--{name} "
     say(f"{path} is not up to date; run: mechkin schema {option}--out {path}")
     return False
-
-
-def _content(path: Path) -> bytes:
-    try:
-        return reading.read_regular(path, reading.MOST_TABLE_BYTES)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(f"cannot read {path}: {reason}") from None

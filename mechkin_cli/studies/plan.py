@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from math import log2, prod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -324,16 +324,10 @@ class _VariationReader:
             raise BadTable(line, 1, *split(error)) from None
 
 
-class StudyPlan(NamedTuple):
-    """A study that can be carried out: its variants, what is asked of each, and notes."""
-
-    variation: StudyVariation
-    question: StudyQuestion
-    notes: tuple[Diagnostic, ...]
-
-
-def study_plan(file: written.StudyFile, document: Document, model: Model) -> StudyPlan:
-    """The plan of a study of a model.
+def study_plan(
+    file: written.StudyFile, document: Document, model: Model
+) -> tuple[StudyVariation, StudyQuestion, tuple[Diagnostic, ...]]:
+    """The variants of a study of a model, what is asked of each, and notes.
 
     Raises:
         InvalidFile: with every independent error and its place.
@@ -341,7 +335,7 @@ def study_plan(file: written.StudyFile, document: Document, model: Model) -> Stu
     faults = Faults(document)
     variation = _VariationReader(file, model, faults).variation()
     question = _QuestionReader(file, model, faults).question(variation)
-    return StudyPlan(variation, question, faults.notes())
+    return variation, question, faults.notes()
 
 
 class _QuestionReader:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -49,32 +49,27 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.rows import SweepRows
 
 
-@dataclass(frozen=True)
-class SweepQuantities:
+@remembered
+def question(
+    session: Session, asked: tuple[Wanted, ...], *, verdicts: bool
+) -> tuple[tuple[Wanted, ...], Ask, bool]:
     """The quantities of a sweep.
 
-    Attributes:
-        asked: those asked for, and those by which the rows are judged beside them.
-        ask: what the run that closes the rows computes: no derived quantities.
-        rests_on_reactions: whether some are not unique where reactions are not.
+    Args:
+        verdicts: each row's condition, and its power error where forces are computed.
+
+    Returns:
+        Those asked for, and those by which the rows are judged beside them; what the run that
+        closes the rows computes, no derived quantities; whether some are not unique where reactions
+        are not.
     """
-
-    asked: tuple[Wanted, ...]
-    ask: Ask
-    rests_on_reactions: bool
-
-
-@remembered
-def question(session: Session, asked: tuple[Wanted, ...], *, verdicts: bool) -> SweepQuantities:
-    """What a session is asked; `verdicts`: each row's condition, and its power error where forces
-    are computed."""
     problem, everything = session.problem, list(asked)
     everything += held_moments(problem, everything)
     everything += watched(problem, everything)
     wanted, demand = at_once(session, everything, verdicts)
     wanted += judged_by(problem, wanted, demand)
     ask = Ask(demand, session.readout(wanted) if wanted else None)
-    return SweepQuantities(tuple(everything), ask, rest_on_reactions(problem, everything))
+    return tuple(everything), ask, rest_on_reactions(problem, everything)
 
 
 def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -130,11 +125,11 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     session, start = first_assembly(session)
     if start.stuck:
         start = replace(start, diagnostics=sweep.input_faults(session) or start.diagnostics)
-    wanted = question(session, tuple(asked), verdicts=verdicts)
-    result = _closed(session, start, wanted)
-    result.read(wanted.asked)
+    wanted, ask, rests_on_reactions = question(session, tuple(asked), verdicts=verdicts)
+    result = _closed(session, start, ask)
+    result.read(wanted)
     result.row_states.diagnostics += row_notes(
-        result, wanted.asked, rests_on_reactions=wanted.rests_on_reactions
+        result, wanted, rests_on_reactions=rests_on_reactions
     )
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     return result
@@ -145,9 +140,9 @@ def closed_rows(
 ) -> Result:
     """The rows of a session on the branch through the start, with what is asked for and their
     conditions where `verdicts` are, too."""
-    wanted = question(session, tuple(asked), verdicts=verdicts)
-    result = _closed(session, start, wanted)
-    result.read(wanted.asked)
+    wanted, ask, _ = question(session, tuple(asked), verdicts=verdicts)
+    result = _closed(session, start, ask)
+    result.read(wanted)
     return result
 
 
@@ -168,28 +163,26 @@ def _in_parts_of_its_size(session: Session) -> Session:
     return session.sized(assembly_size(session.plan, inputs, start.state))
 
 
-def _closed(session: Session, start: AssemblyStart, asked: SweepQuantities) -> Result:
+def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
     """Follows and closes all rows and reads what can be read at once."""
-    result = _closed_once(session, start, asked, every_row=False)
+    result = _closed_once(session, start, ask, every_row=False)
     if result.row_states.has_failed:
         # a filled-in row ended away from its guess: take every row as a careful step
-        result = _closed_once(session, start, asked, every_row=True)
+        result = _closed_once(session, start, ask, every_row=True)
     return result
 
 
-def _closed_once(
-    session: Session, start: AssemblyStart, asked: SweepQuantities, *, every_row: bool
-) -> Result:
+def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
     rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows, Between.of)
     if not rows.reached.any():
         return result
-    batch = result.run(asked.ask)
+    batch = result.run(ask)
     slow = rows.reached & ~batch.good
     if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
-        batch = _closed_on_fold(result, asked)
+        batch = _closed_on_fold(result, ask)
         # what takes more steps and is no fold had a wrong guess
         slow &= ~_is_near_singular(batch)
     failed = slow | _failed(batch, rows)
@@ -204,10 +197,10 @@ def _closed_once(
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         judge_condition(session, rows, batch)
         _judge_inputs(session, rows)
-        if rows.dead_centres and asked.ask.readout is not None:
-            on_states = asked.ask._replace(iterations=0)
+        if rows.dead_centres and ask.readout is not None:
+            on_states = ask._replace(iterations=0)
             batch = batch._replace(outputs=result.run(on_states).outputs)
-    result.keep(batch, asked.ask)
+    result.keep(batch, ask)
     return result
 
 
@@ -218,11 +211,11 @@ def _is_near_singular(batch: Batch) -> Bools:
     return np.asarray(batch.condition > tolerances.CONDITION_NEAR_SINGULAR)
 
 
-def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
+def _closed_on_fold(result: Result, ask: Ask) -> Batch:
     """The run with so many steps that rows on a fold close, too, where each only halves what is
     left; and with conditions, which show that they do."""
-    demand = asked.ask.demand | Demand.CONDITION
-    return result.run(asked.ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
+    demand = ask.demand | Demand.CONDITION
+    return result.run(ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
 
 
 def _failed(batch: Batch, rows: SweepRows) -> Bools:

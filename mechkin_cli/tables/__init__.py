@@ -79,7 +79,6 @@ if TYPE_CHECKING:
         ROW_TEXTS as ROW_TEXTS,
         CoefficientsLayout as CoefficientsLayout,
         ColumnLayout as ColumnLayout,
-        PlotLayout as PlotLayout,
         PrintedSource as PrintedSource,
         Remark as Remark,
         TableLayout as TableLayout,
@@ -172,7 +171,6 @@ __getattr__, __dir__ = lazy_names(
         "layout": [
             "CoefficientsLayout",
             "ColumnLayout",
-            "PlotLayout",
             "PrintedSource",
             "ROW_NUMBERS",
             "ROW_PROOF",
