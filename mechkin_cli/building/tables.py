@@ -15,7 +15,6 @@ from mechkin_cli.schema import MechanismFile, tables as written
 from mechkin_cli.tables import (
     CoefficientsLayout,
     ColumnLayout,
-    PlotLayout,
     PrintedSource,
     Remark,
     TableLayout,
@@ -104,8 +103,8 @@ def _table(
             columns.append(layout)
     title = section.title or section.name
     published = _published(section.published)
-    plot = None if section.plot is None else PlotLayout(section.plot.x, section.plot.y)
-    return TableLayout(section.name, title, tuple(columns), published, run, section.summary, plot)
+    x, y = (None, ()) if section.plot is None else (section.plot.x, section.plot.y)
+    return TableLayout(section.name, title, tuple(columns), published, run, section.summary, x, y)
 
 
 def _default(problem: Problem, run: str) -> TableLayout:

@@ -100,6 +100,19 @@ def _piped() -> bytes:
     return b"".join(pieces)
 
 
+def content_of(path: Path) -> bytes:
+    """The bytes of a committed file.
+
+    Raises:
+        UsageError: it cannot be read.
+    """
+    try:
+        return reading.read_regular(path, reading.MOST_TABLE_BYTES)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise UsageError(f"cannot read {path}: {reason}; make it readable") from None
+
+
 Record = dict[str, object]
 """Plain data for `--json`."""
 

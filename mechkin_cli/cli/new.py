@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
-from mechkin_cli import reading, schema as schemas, tables, templates
-from mechkin_cli.cli.messages import ExitCode, put, say
+from mechkin_cli import schema as schemas, tables, templates
+from mechkin_cli.cli.messages import ExitCode, content_of, put, say
 from mechkin_cli.diagnostics import UsageError
 
 
@@ -88,17 +88,9 @@ def schema(out: Path | None = None, check: bool = False, study: bool = False) ->
 
 def _is_up_to_date(name: str, path: Path) -> bool:
     """Whether the file has the schema; says so, or what to do."""
-    if _content(path) == schemas.json_schema_text(name).encode():
+    if content_of(path) == schemas.json_schema_text(name).encode():
         say(f"{path} is up to date")
         return True
     option = "" if name == MECHANISM else f"--{name} "
     say(f"{path} is not up to date; run: mechkin schema {option}--out {path}")
     return False
-
-
-def _content(path: Path) -> bytes:
-    try:
-        return reading.read_regular(path, reading.MOST_TABLE_BYTES)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(f"cannot read {path}: {reason}") from None

@@ -56,7 +56,7 @@ def study(
     try:
         source = studies.open_study(file)
         planned = studies.Study(source.load_model(parameters(set_), load), source)
-        say_diagnostics(planned.plan.notes, str(file))
+        say_diagnostics(planned.notes, str(file))
         workers = studies.Workers(threads, processes, None, scheduler)
         if dry_run:
             record = _shown_variants(planned, json)
@@ -83,7 +83,7 @@ def study(
 
 def _shown_variants(planned: Study, json: bool) -> Record:
     """Counts and the values of some variants."""
-    variation = planned.plan.variation
+    variation = planned.variation
     lists, lines, samples = variation.counts
     half = SHOWN_VARIANTS // 2
     last = max(planned.variants - half, half)
@@ -110,7 +110,7 @@ def _shown_variants(planned: Study, json: bool) -> Record:
 
 def _counts(planned: Study) -> str:
     """How many variants there are, and of what."""
-    lists, lines, samples = planned.plan.variation.counts
+    lists, lines, samples = planned.variation.counts
     parts = [(lists, "of lists"), (lines, "lines of the table"), (samples, "samples")]
     words = " x ".join(f"{count} {what}" for count, what in parts if count > 1)
     of_what = f" ({words})" if words.count("x") else ""
@@ -121,7 +121,7 @@ def _values_table(planned: Study, shown: dict[int, dict[str, float]]) -> str:
     from mechkin_cli.cli.show import shown_table
 
     columns = [tables.column_of_numbers("variant", "", list(shown), 0)]
-    for heading in planned.plan.question.parameters:
+    for heading in planned.question.parameters:
         values = [values[heading.label] for values in shown.values()]
         columns.append(tables.column_of_numbers(heading.label, heading.unit, values, 6))
     table = tables.Columns("variants", "some of the variants", tuple(columns))
@@ -139,8 +139,8 @@ def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Rec
             f"{_time(trial.whole_seconds)} and {_size(trial.whole_bytes)}, in pieces of "
             f"{planned.piece}"
         )
-        run = planned.plan.question.run
-        count = len(planned.plan.question.tables["variants"])
+        run = planned.question.run
+        count = len(planned.question.tables["variants"])
         say(f"  each variant has {count} columns, of the run {run}")
     return {
         "variants": planned.variants,

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mechkin_cli import model as models, reading, tables as room, view
+from mechkin_cli import model as models, tables as room, view
 from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
+    content_of,
     put,
     put_json,
     refusal,
@@ -256,7 +257,7 @@ def keep_overview(
     `left`.
     """
     page, fresh = folder / OVERVIEW_PAGE, overview_page(rows).encode()
-    old = _content(page) if page.is_file() else None
+    old = content_of(page) if page.is_file() else None
     if old is not None and not old.startswith(MARK.encode()):
         if not quiet:
             say(f"{page}: left alone, it does not begin with {MARK}")
@@ -272,11 +273,3 @@ def keep_overview(
     if not json:
         put(room.report([comparison]))
     return ExitCode.DIFFERENCES, comparison.verdict
-
-
-def _content(page: Path) -> bytes:
-
-    try:
-        return reading.read_regular(page, reading.MOST_TABLE_BYTES)
-    except OSError as error:
-        raise UsageError(f"cannot read {page}: {error.strerror}; make it readable") from None

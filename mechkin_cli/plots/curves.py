@@ -223,12 +223,12 @@ def table_picture(
         UsageError: it has no numbers, or names a column of words.
         ExpressionError: `x` is an unknown name.
     """
-    plot, inputs = layout.plot, analysis.result.inputs
-    x = (plot.x if plot else None) if x is None else x
-    if plot is not None and plot.y:
+    x = layout.plot_x if x is None else x
+    if layout.plot_y:
         by_label = {column.label: column for column in table.columns}
-        drawn = [_column_curve(by_label[label]) for label in plot.y]
+        drawn = [_column_curve(by_label[label]) for label in layout.plot_y]
     else:
+        inputs = analysis.result.inputs
         left_out = {c.label for c in layout.columns if c.expression.text.strip() in inputs}
         left_out.add(parameter_curve(analysis).label if x is None else x)
         drawn = [

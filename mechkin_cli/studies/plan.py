@@ -19,7 +19,7 @@ from mechkin_cli.building import BadTable, by_count, by_step, table_path, table_
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.mechanism import response_problem
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.schema import study as written
 from mechkin_cli.studies.chunk import (
     DEAD_CENTRE,
@@ -325,16 +325,10 @@ class _VariationReader:
             raise BadTable(line, 1, *split(error)) from None
 
 
-class StudyPlan(NamedTuple):
-    """A study that can be carried out: its variants, what is asked of each, and notes."""
-
-    variation: StudyVariation
-    question: StudyQuestion
-    notes: tuple[Diagnostic, ...]
-
-
-def study_plan(file: written.StudyFile, document: Document, model: Solvable) -> StudyPlan:
-    """The plan of a study of a model.
+def study_plan(
+    file: written.StudyFile, document: Document, model: Solvable
+) -> tuple[StudyVariation, StudyQuestion, tuple[Diagnostic, ...]]:
+    """The variants of a study of a model, what is asked of each, and notes.
 
     Raises:
         InvalidFile: with every independent error and its place.
@@ -342,7 +336,7 @@ def study_plan(file: written.StudyFile, document: Document, model: Solvable) -> 
     faults = Faults(document)
     variation = _VariationReader(file, model, faults).variation()
     question = _QuestionReader(file, model, faults).question(variation)
-    return StudyPlan(variation, question, faults.notes())
+    return variation, question, faults.notes()
 
 
 class _QuestionReader:

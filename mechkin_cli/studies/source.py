@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from mechkin_cli import model, reading
+from mechkin_cli import reading
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import Document, KeyPath, in_order, read_document
 from mechkin_cli.record import NamedTuple
@@ -121,7 +121,7 @@ class StudySource(NamedTuple):
             self._refuse("missing-key", (), "the study names no mechanism", "add mechanism: FILE")
         folder = self.document.folder or Path()
         try:
-            return model.load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
+            return load(folder / str(self.file.mechanism), {**self.file.set, **parameters})
         except UsageError as error:
             text, _, hint = str(error).partition("; ")
             named, _, own = text.removeprefix(_OUTSIDE).partition(": ")

@@ -27,7 +27,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
 from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
 from mechkin_cli.studies.formats import Records, format_of, joined
-from mechkin_cli.studies.plan import StudyPlan, study_plan
+from mechkin_cli.studies.plan import study_plan
 from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
 from mechkin_cli.studies.source import StudySource, open_study
 from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
@@ -140,17 +140,18 @@ class Study:
         """
         self.model = model
         self.source = source
-        self.plan: StudyPlan = study_plan(source.file, source.document, model)
+        plan = study_plan(source.file, source.document, model)
+        self.variation, self.question, self.notes = plan
 
     @property
     def variants(self) -> int:
         """How many."""
-        return len(self.plan.variation)
+        return len(self.variation)
 
     @property
     def piece(self) -> int:
         """Variants of a piece."""
-        question = self.plan.question
+        question = self.question
         if question.run != SWEEP:
             return RESPONSES_IN_PIECE
         wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
@@ -171,7 +172,7 @@ class Study:
         }
         tables = {**document.tables, **self.source.document.tables}
         sources |= {name: _digest(content) for name, content in tables.items()}
-        return Contents(sources, self.variants, file_format, self.plan.question.tables)
+        return Contents(sources, self.variants, file_format, self.question.tables)
 
     def trial(self, workers: Workers, file_format: str) -> Trial:
         """Computes some variants, spread over all, as an estimate of the time and the size of all.
@@ -179,15 +180,15 @@ class Study:
         Raises:
             UsageError: there is no such format.
         """
-        kind, tables = format_of(file_format), self.plan.question.tables
+        kind, tables = format_of(file_format), self.question.tables
         count = TRIAL
         while True:
             count = min(count, self.variants)
             numbers = [number * self.variants // count for number in range(count)]
-            lines = [self.plan.variation.values(k, k + 1) for k in numbers]
+            lines = [self.variation.values(k, k + 1) for k in numbers]
             values = {name: np.concatenate([one[name] for one in lines]) for name in lines[0]}
             begin = perf_counter()
-            computed = chunk(self.model, self.plan.question, values, 0, workers.threads)
+            computed = chunk(self.model, self.question, values, 0, workers.threads)
             seconds = perf_counter() - begin
             if seconds > TRIAL_SECONDS or count == min(self.variants, self.piece):
                 break
@@ -201,7 +202,7 @@ class Study:
         self, tasks: list[Task], workers: Workers
     ) -> Iterator[tuple[Task, dict[str, Records]]]:
         """The records of tasks, in the order in which they end."""
-        question, variation = self.plan.question, self.plan.variation
+        question, variation = self.question, self.variation
         with ExitStack() as stack:
             # threads of the kernel split a piece that is the only one
             is_alone = len(tasks) < 2 and workers.is_here
@@ -233,7 +234,7 @@ class Study:
             UsageError: they are too many for the memory.
         """
         workers = _checked(workers)
-        question = self.plan.question
+        question = self.question
         rows, tables = self.model.problem.motion.rows, question.tables
         width = len(tables[VARIANTS]) + len(tables.get("rows", ())) * rows
         if self.variants * width > MOST_KEPT:
@@ -248,7 +249,7 @@ class Study:
             t.piece: tables for t, tables in self._whole_pieces(tasks, workers, progress, 0)
         }
         records = {name: joined([computed[n][name] for n in pieces]) for name in question.tables}
-        return StudyResults(self.source.name, question.tables, records, self.plan.notes)
+        return StudyResults(self.source.name, question.tables, records, self.notes)
 
     def in_folder(
         self,
@@ -273,11 +274,11 @@ class Study:
             done = self.variants - sum(task.end - task.begin for task in tasks)
             for task, tables in self._whole_pieces(tasks, workers, progress, done):
                 output.put(task.piece, tables)
-            headings = self.plan.question.tables[VARIANTS]
+            headings = self.question.tables[VARIANTS]
             if not output.is_complete:
                 output.finish()
             seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
-            return StudyFiles(self.source.name, tuple(output.results), seen, self.plan.notes)
+            return StudyFiles(self.source.name, tuple(output.results), seen, self.notes)
 
     def _whole_pieces(
         self, tasks: list[Task], workers: Workers, progress: Progress | None, done: int
@@ -292,7 +293,7 @@ class Study:
             done += part.end - part.begin
             if sum(p.end - p.begin for p, _ in own) == task.end - task.begin:
                 own.sort(key=lambda item: item[0].begin)
-                names = self.plan.question.tables
+                names = self.question.tables
                 yield task, {name: joined([tables[name] for _, tables in own]) for name in names}
                 del parts[part.piece]
             if progress is not None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import sweep, tolerances
+from mechkin_cli import tolerances
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import ORIENTATION, turn_count
 from mechkin_cli.sweep.rows import SweepRows
@@ -61,10 +61,14 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
 
 def _explain(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
     """Says which branch points were passed, and what ended the branch, if it ended."""
+    if not (followed.crossings or followed.end != TrackEnd.FINISHED):
+        return
+    from mechkin_cli.sweep import branch_end
+
     if followed.crossings:
-        rows.diagnostics.append(sweep.crossing_note(session, followed))
+        rows.diagnostics.append(branch_end.crossing_note(session, followed))
     if followed.end != TrackEnd.FINISHED and not rows.reached.all():
-        sweep.explain_end(session, path, followed, rows)
+        branch_end.explain_end(session, path, followed, rows)
 
 
 def _count_from_first(session: Session, rows: SweepRows) -> None:

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import idle, sweep, tolerances
+from mechkin_cli import idle, tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
+from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.units import FORCE, MOMENT, Dimension
 from mechkin_cli.verdict import Status, has_rates
 
@@ -63,7 +64,7 @@ def _holding(problem: Problem) -> list[Wanted]:
     return [known[name] for name in dict.fromkeys(i.holding for i in idle.idle_freedoms(problem))]
 
 
-def friction_verdict(result: sweep.Result) -> FrictionVerdict:
+def friction_verdict(result: RunRows) -> FrictionVerdict:
     """The verdict on the friction of a result, whose verdict quantities have been read."""
     rows = result.row_states
     judged = rows.reached & has_rates(rows.status)
@@ -90,7 +91,7 @@ Findings = Iterator[tuple["Bools", Diagnostic]]
 """Rows (rows,) with a message on them."""
 
 
-def _undecided(result: sweep.Result, judged: Bools) -> Findings:
+def _undecided(result: RunRows, judged: Bools) -> Findings:
     frictions = result.problem.mechanism.frictions
     states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
     for code, (why, cure) in _WHY.items():
@@ -108,7 +109,7 @@ def _list(named: Sequence[Rubbing]) -> str:
     return ", ".join(one.joint for one in named)
 
 
-def _not_unique(result: sweep.Result, judged: Bools) -> Findings:
+def _not_unique(result: RunRows, judged: Bools) -> Findings:
     """Friction by a reaction that redundant constraints leave arbitrary."""
     known = result.problem.quantities()
     frictions = result.problem.mechanism.frictions if result.shifts else ()
@@ -146,7 +147,7 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     )
 
 
-def _spinning(result: sweep.Result, judged: Bools) -> Findings:
+def _spinning(result: RunRows, judged: Bools) -> Findings:
     """Friction that would drive an idle freedom."""
     problem = result.problem
     level, length = result.columns[REACTION_LEVEL.name][0], result.session.layout.length
@@ -192,7 +193,7 @@ def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | No
     return None
 
 
-def uncounted_notes(result: sweep.Result) -> list[Diagnostic]:
+def uncounted_notes(result: RunRows) -> list[Diagnostic]:
     """Loads of joints that rub which their friction does not go by, for lack of a length."""
     notes: list[Diagnostic] = []
     problem, known = result.problem, result.problem.quantities()
@@ -279,7 +280,7 @@ class FrictionRows:
         """What `judged_by` names, until the rows are judged."""
         return [] if self.verdict is not None else judged_by(problem, wanted, demand)
 
-    def judge(self, result: sweep.Result, wanted: Iterable[Wanted], demand: Demand) -> None:
+    def judge(self, result: RunRows, wanted: Iterable[Wanted], demand: Demand) -> None:
         """Judges the rows once; empties forces, new and known, that have no ground."""
         if not (demand & Demand.FORCES and result.problem.mechanism.frictions):
             return

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import sweep, tolerances
+from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number, UsageError
 from mechkin_cli.expressions import parse
@@ -26,6 +26,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
 from mechkin_cli.verdict import CONDITION_LIMITS, Status
@@ -109,7 +110,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     return found
 
 
-def redundancy_note(result: sweep.Result, asked: Sequence[Wanted]) -> Diagnostic:
+def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     """Redundant constraints leave some reactions arbitrary; which loads of the bearings asked for
     are unique nevertheless."""
     graph = result.graph
@@ -132,7 +133,7 @@ def redundancy_note(result: sweep.Result, asked: Sequence[Wanted]) -> Diagnostic
     )
 
 
-def _unique_loads(result: sweep.Result, asked: Sequence[Wanted]) -> list[str]:
+def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
     """The bearing loads of the reactions asked for that are unique in every row, where the
     reactions are not; along a slide there is none."""
     known, joints = result.problem.quantities(), result.problem.mechanism.joints
@@ -148,10 +149,10 @@ def _unique_loads(result: sweep.Result, asked: Sequence[Wanted]) -> list[str]:
     return found
 
 
-def _is_unique(result: sweep.Result, text: str) -> bool:
+def _is_unique(result: RunRows, text: str) -> bool:
     expression, reached = parse(text), result.row_states.reached
 
-    def values(source: sweep.Result) -> Floats:
+    def values(source: RunRows) -> Floats:
         value = np.asarray(expression.evaluate(source.quantity).value)
         return np.broadcast_to(value, reached.shape)[reached]
 
@@ -219,7 +220,7 @@ def middle_turn(joint: Joint) -> str | None:
     return None
 
 
-def locked_in(result: sweep.Result, rows: Bools) -> str | None:
+def locked_in(result: RunRows, rows: Bools) -> str | None:
     """The middle turn of a pose that is a quarter turn in some of the rows."""
     for joint in result.problem.mechanism.joints.values():
         name = middle_turn(joint)
@@ -232,7 +233,7 @@ def locked_in(result: sweep.Result, rows: Bools) -> str | None:
     return None
 
 
-def locked_pose_notes(result: sweep.Result) -> list[Diagnostic]:
+def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
     """Warns that rows may be lost by gimbal lock of a pose whose turns are not driven."""
     if result.sound or not np.isin(result.status, [int(status) for status in _TROUBLE]).any():
         return []
@@ -264,7 +265,7 @@ def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
     return [ACTUATION] if demand_of(problem.mechanism, asked) & Demand.FORCES else []
 
 
-def unheld(result: sweep.Result) -> Bools | None:
+def unheld(result: RunRows) -> Bools | None:
     """Rows (rows,) in which the set is singular; None where that was not looked at."""
     if ACTUATION.name not in result.columns:
         return None
@@ -272,13 +273,13 @@ def unheld(result: sweep.Result) -> Bools | None:
     return np.asarray(result.solved & ~(least > tolerances.ACTUATORS_AT_REST))
 
 
-def is_held(result: sweep.Result) -> bool:
+def is_held(result: RunRows) -> bool:
     """Whether the actuators hold the mechanism in every row, as far as that was looked at."""
     lost = unheld(result)
     return lost is None or not lost.any()
 
 
-def actuation_notes(result: sweep.Result) -> list[Diagnostic]:
+def actuation_notes(result: RunRows) -> list[Diagnostic]:
     """Names the set and the rows where it is singular, or next to that."""
     lost, drives = unheld(result), result.problem.mechanism.drives
     if lost is None or drives is None:
@@ -303,7 +304,7 @@ def actuation_notes(result: sweep.Result) -> list[Diagnostic]:
     return notes
 
 
-def _note(code: str, result: sweep.Result, rows: Bools, text: str, limit: float) -> Diagnostic:
+def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> Diagnostic:
     least = float(np.min(result.columns[ACTUATION.name][0][rows]))
     hint = "put an actuator elsewhere, add one, or keep away from that position"
     turn = locked_in(result, rows)
@@ -331,7 +332,7 @@ def _rows(rows: Bools) -> str:
     return f"{len(numbers)} rows, the first is row {numbers[0]}"
 
 
-def undefined_loads(result: sweep.Result, lost: Bools) -> list[Diagnostic]:
+def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
     """What to say of the rows (rows,) of a result in which some load has no value.
 
     The laws are evaluated once more, from the same quantities as in the kernel and with the same

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import assembly, derived, proofs, sweep
+from mechkin_cli import assembly, derived, proofs
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
 from mechkin_cli.plan import WRENCH_KINDS, Demand, Readout, demand_of, forces_demand
@@ -408,7 +408,9 @@ class Result:
             rows = rows.at(np.where(reached, np.arange(reached.size), reached.argmax()))
         batch = session.run(rows, ask)
         if states.dead_centres and ask.readout is not None:
-            sweep.put_unbounded(session, states, rows, ask, batch)
+            from mechkin_cli.sweep.dead_centre import put_unbounded
+
+            put_unbounded(session, states, rows, ask, batch)
         return batch
 
     def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:

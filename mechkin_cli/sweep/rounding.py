@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import sweep, tolerances
+from mechkin_cli import tolerances
 from mechkin_cli.plan import ClosingJoint, HungLinks, TreeJoint, flatten, plan_records
 from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
+from mechkin_cli.sweep.rows import RunRows
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
 _ROUNDING = ldexp(1.0, -53)
 
 
-def error_bound(result: sweep.Result) -> Floats:
+def error_bound(result: RunRows) -> Floats:
     """The bound (rows,); nan in rows without a position, and where none is known."""
     rows = result.row_states
     if not rows.reached.any():
@@ -51,7 +52,7 @@ def error_bound(result: sweep.Result) -> Floats:
     return np.where(rows.reached & np.isfinite(bound), bound, np.nan)
 
 
-def largest_move(result: sweep.Result) -> Floats:
+def largest_move(result: RunRows) -> Floats:
     """The largest move of any state (rows,) in some runs with constants and inputs slightly off;
     nan where one of them did not close."""
     session, rows = result.session, result.row_states

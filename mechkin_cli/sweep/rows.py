@@ -6,17 +6,18 @@ The kernel gives angles within a turn; following the branch counts whole turns
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from mechkin_cli import sweep
-from mechkin_cli.mechanism import is_angle
+from mechkin_cli.expressions import Quantity
+from mechkin_cli.mechanism import Problem, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import dataclass, field
-from mechkin_cli.session import continuous_angle
+from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
+from mechkin_cli.structure import SolverGraph
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
@@ -123,6 +124,72 @@ class SweepRows:
         return bool((self.status == Status.not_converged).any())
 
 
+class RunRows(Protocol):
+    """What is read of a run of rows; `Result` is one."""
+
+    row_states: SweepRows
+    residual: Floats
+    shifts: tuple[int, ...]
+
+    @property
+    def session(self) -> Session:
+        """The part of the mechanism that was followed."""
+
+    @property
+    def problem(self) -> Problem:
+        """Mechanism, motion and assembly of that part."""
+
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, cut joints and blocks."""
+
+    @property
+    def rows(self) -> int:
+        """Number of rows asked for."""
+
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """Verdict of every row, codes of `Status` (rows,)."""
+
+    @property
+    def solved(self) -> Bools:
+        """Rows that have a position (rows,)."""
+
+    @property
+    def sound(self) -> bool:
+        """Whether every row is `ok`."""
+
+    @property
+    def power_error(self) -> Floats:
+        """|sum of powers| / sum of |powers| of every row (rows,)."""
+
+    @property
+    def columns(self) -> Mapping[str, Floats]:
+        """What has been read."""
+
+    @property
+    def alternatives(self) -> Sequence[RunRows]:
+        """The same rows with other reactions in equilibrium."""
+
+    @property
+    def disturbed(self) -> Sequence[RunRows]:
+        """The same rows with reactions off by their rounding."""
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI."""
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+
+    def evaluated(self, wanted: Sequence[Wanted], *, shift: int = 0) -> Columns:
+        """Quantities on the stored states, not kept, with the reactions of a `shift`."""
+
+    def run(
+        self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None
+    ) -> Batch:
+        """One call of the kernel over all rows on their states."""
+
+
 Columns = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI, nan where a row has none."""
 
@@ -131,7 +198,7 @@ Angles = list[tuple[str, int, int]]
 """Names of angles, their outputs, and the rows of `SweepRows.turns` that count their turns."""
 
 
-def make_continuous(result: sweep.Result, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
+def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) -> Columns:
     """Makes the angles among some outputs (outputs, rows) continuous from the first row, in place.
 
     Returns:

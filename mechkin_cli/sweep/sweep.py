@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import idle, sweep, tolerances
+from mechkin_cli import idle, tolerances
 from mechkin_cli.assembly import choose_start
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
@@ -22,7 +22,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows
 from mechkin_cli.sweep.friction import judged_by, uncounted_notes
@@ -48,32 +48,27 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.rows import SweepRows
 
 
-@dataclass(frozen=True)
-class SweepQuantities:
+@remembered
+def question(
+    session: Session, asked: tuple[Wanted, ...], *, verdicts: bool
+) -> tuple[tuple[Wanted, ...], Ask, bool]:
     """The quantities of a sweep.
 
-    Attributes:
-        asked: those asked for, and those by which the rows are judged beside them.
-        ask: what the run that closes the rows computes: no derived quantities.
-        rests_on_reactions: whether some are not unique where reactions are not.
+    Args:
+        verdicts: each row's condition, and its power error where forces are computed.
+
+    Returns:
+        Those asked for, and those by which the rows are judged beside them; what the run that
+        closes the rows computes, no derived quantities; whether some are not unique where reactions
+        are not.
     """
-
-    asked: tuple[Wanted, ...]
-    ask: Ask
-    rests_on_reactions: bool
-
-
-@remembered
-def question(session: Session, asked: tuple[Wanted, ...], *, verdicts: bool) -> SweepQuantities:
-    """What a session is asked; `verdicts`: each row's condition, and its power error where forces
-    are computed."""
     problem, everything = session.problem, list(asked)
     everything += held_moments(problem, everything)
     everything += watched(problem, everything)
     wanted, demand = at_once(session, everything, verdicts)
     wanted += judged_by(problem, wanted, demand)
     ask = Ask(demand, session.readout(wanted) if wanted else None)
-    return SweepQuantities(tuple(everything), ask, rest_on_reactions(problem, everything))
+    return tuple(everything), ask, rest_on_reactions(problem, everything)
 
 
 def held_moments(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -125,15 +120,19 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     known = session.problem.quantities() if names else {}
     asked = [known[name] for name in read_for(names, known)]
     if session.problem.follow is not None:
-        session = sweep.followed_session(session, asked)
+        from mechkin_cli.sweep.follow_part import followed_session
+
+        session = followed_session(session, asked)
     session, start = first_assembly(session)
     if start.stuck:
-        start = replace(start, diagnostics=sweep.input_faults(session) or start.diagnostics)
-    wanted = question(session, tuple(asked), verdicts=verdicts)
-    result = _closed(session, start, wanted)
-    result.read(wanted.asked)
+        from mechkin_cli.sweep.branch_end import input_faults
+
+        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
+    wanted, ask, rests_on_reactions = question(session, tuple(asked), verdicts=verdicts)
+    result = _closed(session, start, ask)
+    result.read(wanted)
     result.row_states.diagnostics += row_notes(
-        result, wanted.asked, rests_on_reactions=wanted.rests_on_reactions
+        result, wanted, rests_on_reactions=rests_on_reactions
     )
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     return result
@@ -144,9 +143,9 @@ def closed_rows(
 ) -> Result:
     """The rows of a session on the branch through the start, with what is asked for and their
     conditions where `verdicts` are, too."""
-    wanted = question(session, tuple(asked), verdicts=verdicts)
-    result = _closed(session, start, wanted)
-    result.read(wanted.asked)
+    wanted, ask, _ = question(session, tuple(asked), verdicts=verdicts)
+    result = _closed(session, start, ask)
+    result.read(wanted)
     return result
 
 
@@ -167,28 +166,26 @@ def _in_parts_of_its_size(session: Session) -> Session:
     return session.sized(assembly_size(session.plan, inputs, start.state))
 
 
-def _closed(session: Session, start: AssemblyStart, asked: SweepQuantities) -> Result:
+def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
     """Follows and closes all rows and reads what can be read at once."""
-    result = _closed_once(session, start, asked, every_row=False)
+    result = _closed_once(session, start, ask, every_row=False)
     if result.row_states.has_failed:
         # a filled-in row ended away from its guess: take every row as a careful step
-        result = _closed_once(session, start, asked, every_row=True)
+        result = _closed_once(session, start, ask, every_row=True)
     return result
 
 
-def _closed_once(
-    session: Session, start: AssemblyStart, asked: SweepQuantities, *, every_row: bool
-) -> Result:
+def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
     rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows, Between.of)
     if not rows.reached.any():
         return result
-    batch = result.run(asked.ask)
+    batch = result.run(ask)
     slow = rows.reached & ~batch.good
     if result.graph.blocks and (slow | rows.reached & _is_near_singular(batch)).any():
-        batch = _closed_on_fold(result, asked)
+        batch = _closed_on_fold(result, ask)
         # what takes more steps and is no fold had a wrong guess
         slow &= ~_is_near_singular(batch)
     failed = slow | _failed(batch, rows)
@@ -203,10 +200,10 @@ def _closed_once(
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
         judge_condition(session, rows, batch)
         _judge_inputs(session, rows)
-        if rows.dead_centres and asked.ask.readout is not None:
-            on_states = asked.ask._replace(iterations=0)
+        if rows.dead_centres and ask.readout is not None:
+            on_states = ask._replace(iterations=0)
             batch = batch._replace(outputs=result.run(on_states).outputs)
-    result.keep(batch, asked.ask)
+    result.keep(batch, ask)
     return result
 
 
@@ -217,11 +214,11 @@ def _is_near_singular(batch: Batch) -> Bools:
     return np.asarray(batch.condition > tolerances.CONDITION_NEAR_SINGULAR)
 
 
-def _closed_on_fold(result: Result, asked: SweepQuantities) -> Batch:
+def _closed_on_fold(result: Result, ask: Ask) -> Batch:
     """The run with so many steps that rows on a fold close, too, where each only halves what is
     left; and with conditions, which show that they do."""
-    demand = asked.ask.demand | Demand.CONDITION
-    return result.run(asked.ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
+    demand = ask.demand | Demand.CONDITION
+    return result.run(ask._replace(demand=demand, iterations=tolerances.FOLD_ITERATIONS))
 
 
 def _failed(batch: Batch, rows: SweepRows) -> Bools:
@@ -263,7 +260,9 @@ def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
         return
     judged = rows.reached & (rows.status == Status.ok)
     rows.status[judged] = by_condition(condition[judged])
-    sweep.judge_dead_centres(session, rows, condition)
+    from mechkin_cli.sweep.dead_centre import judge_dead_centres
+
+    judge_dead_centres(session, rows, condition)
     rows.diagnostics += condition_notes(rows, condition)
 
 
@@ -277,7 +276,9 @@ def _judge_inputs(session: Session, rows: SweepRows) -> None:
     row = int(np.argmax(rows.reached))
     if moves_freely(session, session.inputs.values[:, row], rows.states[:, row]):
         return
-    faults = sweep.input_faults(session)
+    from mechkin_cli.sweep.branch_end import input_faults
+
+    faults = input_faults(session)
     rows.diagnostics.extend(fault for fault in faults if fault not in rows.diagnostics)
     if faults and any(moved.any() for moved in session.inputs.orders[1:]):
         rows.status[rows.reached] = Status.rank_unclear
@@ -314,7 +315,9 @@ def row_notes(
     unclear = rows.status == Status.rank_unclear
     if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
         said = {diagnostic.code for diagnostic in rows.diagnostics}
-        notes += [fault for fault in sweep.input_faults(session) if fault.code not in said]
+        from mechkin_cli.sweep.branch_end import input_faults
+
+        notes += [fault for fault in input_faults(session) if fault.code not in said]
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import sweep, tolerances
+from mechkin_cli import tolerances
 from mechkin_cli.mechanism import REACTION_LEVEL
+from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.units import FORCE
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
 leave an expression unchanged by chance."""
 
 
-def reaction_rounding(result: sweep.Result) -> Floats:
+def reaction_rounding(result: RunRows) -> Floats:
     """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
     unit.
 
@@ -44,7 +45,7 @@ def reaction_rounding(result: sweep.Result) -> Floats:
     return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
 
 
-def _level(result: sweep.Result, shift: int) -> Floats:
+def _level(result: RunRows, shift: int) -> Floats:
     """The largest reaction of each row (rows,), of those of a `shift`."""
     return np.asarray(result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0])
 

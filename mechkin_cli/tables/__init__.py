@@ -11,7 +11,6 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.tables.columns import (
-        Columns as Columns,
         FloatArray as FloatArray,
         RunParameter as RunParameter,
         TableColumn as TableColumn,
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
         column_of as column_of,
         column_of_numbers as column_of_numbers,
         component_text as component_text,
-        evaluate as evaluate,
         row_words as row_words,
         run_parameter as run_parameter,
         solved_rows as solved_rows,
@@ -72,7 +70,6 @@ if TYPE_CHECKING:
         ROW_TEXTS as ROW_TEXTS,
         CoefficientsLayout as CoefficientsLayout,
         ColumnLayout as ColumnLayout,
-        PlotLayout as PlotLayout,
         PrintedSource as PrintedSource,
         Remark as Remark,
         TableLayout as TableLayout,
@@ -99,13 +96,17 @@ if TYPE_CHECKING:
         row_weights as row_weights,
         statistics as statistics,
         summary_of as summary_of,
-        summary_table as summary_table,
         written_notes as written_notes,
+    )
+    from mechkin_cli.tables.table import (
+        Columns as Columns,
+        Results as Results,
+        evaluate as evaluate,
+        summary_table as summary_table,
     )
     from mechkin_cli.tables.writers import (
         USUAL_FORMATS as USUAL_FORMATS,
         WRITERS as WRITERS,
-        Results as Results,
         written_files as written_files,
     )
 
@@ -113,7 +114,6 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": [
-            "Columns",
             "FloatArray",
             "RunParameter",
             "TableColumn",
@@ -121,7 +121,6 @@ __getattr__, __dir__ = lazy_names(
             "column_of",
             "column_of_numbers",
             "component_text",
-            "evaluate",
             "row_words",
             "run_parameter",
             "solved_rows",
@@ -162,7 +161,6 @@ __getattr__, __dir__ = lazy_names(
         "layout": [
             "CoefficientsLayout",
             "ColumnLayout",
-            "PlotLayout",
             "PrintedSource",
             "ROW_NUMBERS",
             "ROW_PROOF",
@@ -189,9 +187,9 @@ __getattr__, __dir__ = lazy_names(
             "row_weights",
             "statistics",
             "summary_of",
-            "summary_table",
             "written_notes",
         ],
-        "writers": ["Results", "USUAL_FORMATS", "WRITERS", "written_files"],
+        "table": ["Columns", "Results", "evaluate", "summary_table"],
+        "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],
     },
 )

@@ -18,17 +18,13 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli import tables
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.record import NamedTuple, dataclass, replace
-from mechkin_cli.show import Listed, Listing
-from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import (
     ROW_EVENT,
     ROW_NUMBERS,
     ROW_PROOF,
     ColumnLayout,
-    TableLayout,
 )
 from mechkin_cli.tolerances import UNIQUE_CELL
 from mechkin_cli.units import DIMENSIONLESS
@@ -342,41 +338,3 @@ def run_parameter(source: TableSource) -> RunParameter | None:
             unit = source.units.label(source.quantity(name).dimension)
             return RunParameter(name, values, unit)
     return None
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Columns(Listed):
-    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
-    below it."""
-
-    name: str
-    title: str
-    columns: tuple[TableColumn, ...]
-    of_rows: bool = True
-    summary: tables.Summary | None = None
-
-    @property
-    def listing(self) -> Listing:
-        """The cells as files write them, below labels with units."""
-        labels = tuple(f"{c.label} [{c.unit}]" if c.unit else c.label for c in self.columns)
-        rows = tuple(zip(*(_cells(column) for column in self.columns), strict=True))
-        return Listing(f"{self.name}: {self.title}" if self.title else self.name, labels, rows)
-
-
-def _cells(column: TableColumn) -> list[str]:
-    if isinstance(column.values, Words):
-        return column.values.texts(range(column.rows))
-    return column.texts(column_texts(column.values, column.decimals))
-
-
-def evaluate(table: TableLayout, source: TableSource) -> Columns:
-    """All columns of a table, in file units.
-
-    Raises:
-        ExpressionError: a column is no number per row, or names what the source does not have.
-    """
-    columns = tuple(column_of(layout, source) for layout in table.columns)
-    summary = None
-    if table.summary:
-        summary = tables.summary_of(table.summary, table.columns, columns, source)
-    return Columns(table.name, table.title, columns, summary=summary)

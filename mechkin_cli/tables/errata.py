@@ -18,7 +18,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError, whole
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.tables.columns import Columns, TableColumn, words_of
+from mechkin_cli.tables.columns import TableColumn, words_of
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.layout import (
     ROW_NUMBER,
@@ -30,6 +30,7 @@ from mechkin_cli.tables.layout import (
     markdown_text,
 )
 from mechkin_cli.tables.print import PrintedCell, TableAgreement, agreement, read_printed
+from mechkin_cli.tables.table import Columns
 
 PAGE = "errata.md"
 _THOUSAND, _MILLION = Decimal(1000), Decimal(1_000_000)

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.record import dataclass
-from mechkin_cli.tables.columns import Columns, FloatArray, TableColumn, Words, words_of
+from mechkin_cli.tables.columns import FloatArray, TableColumn, Words, words_of
 from mechkin_cli.tables.layout import counted
+from mechkin_cli.tables.table import Columns
 from mechkin_cli.tape import DoubleDoubles, difference
 from mechkin_cli.tolerances import DOUBTFUL, NO_DOUBT, ZERO_BUT_FOR_ROUNDING
 from mechkin_cli.verdict import SWEEP

@@ -69,17 +69,17 @@ class PrintedSource(NamedTuple):
     rows_by: str | None = None
 
 
-class PlotLayout(NamedTuple):
-    """The picture of a table, by labels of its columns: `x` None: over the run's parameter, `y`
-    () all others."""
-
-    x: str | None = None
-    y: tuple[str, ...] = ()
-
-
 class TableLayout(NamedTuple):
-    """One table; `name` is the stem of its files, `title` its heading in Markdown, `run` the run
-    whose rows it has, `summary` the words of what stands below it (`reductions.REDUCTIONS`)."""
+    """One table.
+
+    Attributes:
+        name: the stem of its files.
+        title: its heading in Markdown.
+        run: whose rows it has.
+        summary: what stands below it, names of `summary.REDUCTIONS`.
+        plot_x: label of the column over which its picture is drawn; None: the run's parameter.
+        plot_y: labels of the columns that are drawn; () all others.
+    """
 
     name: str
     title: str
@@ -87,7 +87,8 @@ class TableLayout(NamedTuple):
     published: PrintedSource | None = None
     run: str = SWEEP
     summary: tuple[str, ...] = ()
-    plot: PlotLayout | None = None
+    plot_x: str | None = None
+    plot_y: tuple[str, ...] = ()
 
 
 def row_texts(run: str) -> tuple[str, ...]:

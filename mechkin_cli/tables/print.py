@@ -27,9 +27,10 @@ from pathlib import Path
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError
 from mechkin_cli.reading import read_regular
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.tables.columns import Columns, TableColumn, Words
+from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS
 from mechkin_cli.tables.layout import ROW_NUMBER
+from mechkin_cli.tables.table import Columns
 
 _UNESCAPED_BAR = re.compile(r"(?<!\\)\|")
 

@@ -24,13 +24,11 @@ import numpy as np
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import (
     AT,
-    Columns,
     FloatArray,
     TableColumn,
     TableSource,
     column_of_numbers,
     run_parameter,
-    words_of,
 )
 from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
@@ -317,15 +315,3 @@ class Summary(NamedTuple):
         values = iter(own.texts(column_texts(numbers[is_value], column.decimals)))
         others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
         return [next(values) if mine else next(others) for mine in is_value]
-
-
-def summary_table(name: str, title: str, summary: Summary) -> Columns:
-    """The rows below a table as a table of its own, `NAME.summary`."""
-    words: list[str] = []
-    for line in summary.lines:
-        words.append(f"{words[-1]} {AT}" if line == AT else line)
-    columns = [TableColumn("summary", "", words_of(words))]
-    for each in summary.columns:
-        numbers = np.array(summary.numbers(each))
-        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
-    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)

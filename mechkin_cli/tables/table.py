@@ -1,0 +1,100 @@
+"""A whole table: its columns evaluated, with what stands below it; and the tables of a run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.show import Listed, Listing
+from mechkin_cli.tables.columns import (
+    AT,
+    TableColumn,
+    TableSource,
+    Words,
+    column_of,
+    column_of_numbers,
+    words_of,
+)
+from mechkin_cli.tables.decimals import column_texts
+from mechkin_cli.tables.errors import ColumnErrors
+from mechkin_cli.tables.layout import TableLayout
+from mechkin_cli.tables.summary import Summary
+from mechkin_cli.verdict import SWEEP
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Columns(Listed):
+    """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
+    below it."""
+
+    name: str
+    title: str
+    columns: tuple[TableColumn, ...]
+    of_rows: bool = True
+    summary: Summary | None = None
+
+    @property
+    def listing(self) -> Listing:
+        """The cells as files write them, below labels with units."""
+        labels = tuple(f"{c.label} [{c.unit}]" if c.unit else c.label for c in self.columns)
+        rows = tuple(zip(*(_cells(column) for column in self.columns), strict=True))
+        return Listing(f"{self.name}: {self.title}" if self.title else self.name, labels, rows)
+
+
+def _cells(column: TableColumn) -> list[str]:
+    if isinstance(column.values, Words):
+        return column.values.texts(range(column.rows))
+    return column.texts(column_texts(column.values, column.decimals))
+
+
+def evaluate(table: TableLayout, source: TableSource) -> Columns:
+    """All columns of a table, in file units.
+
+    Raises:
+        ExpressionError: a column is no number per row, or names what the source does not have.
+    """
+    columns = tuple(column_of(layout, source) for layout in table.columns)
+    summary = None
+    if table.summary:
+        from mechkin_cli.tables.summary import summary_of
+
+        summary = summary_of(table.summary, table.columns, columns, source)
+    return Columns(table.name, table.title, columns, summary=summary)
+
+
+def summary_table(name: str, title: str, summary: Summary) -> Columns:
+    """The rows below a table as a table of its own, `NAME.summary`."""
+    words: list[str] = []
+    for line in summary.lines:
+        words.append(f"{words[-1]} {AT}" if line == AT else line)
+    columns = [TableColumn("summary", "", words_of(words))]
+    for each in summary.columns:
+        numbers = np.array(summary.numbers(each))
+        columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
+    return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
+
+
+class Results(NamedTuple):
+    """The results of one run of a mechanism.
+
+    Attributes:
+        threads: that write; 0: as many as a table is worth.
+        errors: of all columns; None where they were not asked for.
+        units: whether headers of CSV have them.
+    """
+
+    name: str
+    tables: tuple[Columns, ...]
+    source: TableSource
+    diagnostics: tuple[Diagnostic, ...] = ()
+    threads: int = 0
+    run: str = SWEEP
+    errors: tuple[ColumnErrors, ...] | None = None
+    units: bool = False
+
+    def csv(self, table: Columns) -> bytes:
+        """A table of the run as CSV."""
+        from mechkin_cli.tables.csv import csv_bytes
+
+        return csv_bytes(table, threads=self.threads, units=self.units)
