@@ -84,6 +84,7 @@ if TYPE_CHECKING:
         rows_table as rows_table,
     )
     from mechkin_cli.tables.print import read_table_text as read_table_text
+    from mechkin_cli.tables.results import Results as Results
     from mechkin_cli.tables.summary import (
         OVER_THE_WAY as OVER_THE_WAY,
         REDUCTIONS as REDUCTIONS,
@@ -100,7 +101,6 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.tables.table import (
         Columns as Columns,
-        Results as Results,
         evaluate as evaluate,
         summary_table as summary_table,
     )
@@ -175,6 +175,7 @@ __getattr__, __dir__ = lazy_names(
         ],
         "markdown": ["markdown_bytes", "rows_table"],
         "print": ["read_table_text"],
+        "results": ["Results"],
         "summary": [
             "Extreme",
             "OVER_THE_WAY",
@@ -189,7 +190,7 @@ __getattr__, __dir__ = lazy_names(
             "summary_of",
             "written_notes",
         ],
-        "table": ["Columns", "Results", "evaluate", "summary_table"],
+        "table": ["Columns", "evaluate", "summary_table"],
         "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],
     },
 )

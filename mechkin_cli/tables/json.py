@@ -24,8 +24,8 @@ from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.tables.results import Results
     from mechkin_cli.tables.summary import Extreme, Summary
-    from mechkin_cli.tables.table import Results
 
 
 Plain = dict[str, object]

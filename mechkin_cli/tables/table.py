@@ -1,11 +1,10 @@
-"""A whole table: its columns evaluated, with what stands below it; and the tables of a run."""
+"""A whole table: its columns evaluated, with what stands below it."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.record import NamedTuple, dataclass
+from mechkin_cli.record import dataclass
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables.columns import (
     AT,
@@ -17,10 +16,8 @@ from mechkin_cli.tables.columns import (
     words_of,
 )
 from mechkin_cli.tables.decimals import column_texts
-from mechkin_cli.tables.errors import ColumnErrors
 from mechkin_cli.tables.layout import TableLayout
 from mechkin_cli.tables.summary import Summary
-from mechkin_cli.verdict import SWEEP
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -73,28 +70,3 @@ def summary_table(name: str, title: str, summary: Summary) -> Columns:
         numbers = np.array(summary.numbers(each))
         columns.append(column_of_numbers(each.label, each.unit, numbers, each.decimals))
     return Columns(f"{name}.summary", f"Summary of {title or name}", tuple(columns), of_rows=False)
-
-
-class Results(NamedTuple):
-    """The results of one run of a mechanism.
-
-    Attributes:
-        threads: that write; 0: as many as a table is worth.
-        errors: of all columns; None where they were not asked for.
-        units: whether headers of CSV have them.
-    """
-
-    name: str
-    tables: tuple[Columns, ...]
-    source: TableSource
-    diagnostics: tuple[Diagnostic, ...] = ()
-    threads: int = 0
-    run: str = SWEEP
-    errors: tuple[ColumnErrors, ...] | None = None
-    units: bool = False
-
-    def csv(self, table: Columns) -> bytes:
-        """A table of the run as CSV."""
-        from mechkin_cli.tables.csv import csv_bytes
-
-        return csv_bytes(table, threads=self.threads, units=self.units)

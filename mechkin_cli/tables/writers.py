@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mechkin_cli.tables.table import Results
+    from mechkin_cli.tables.results import Results
 
 
 File = tuple[str, bytes]
