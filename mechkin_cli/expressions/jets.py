@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.expressions import operations as hyperbolic
+from mechkin_cli.expressions import operations
 from mechkin_cli.kernel import functions as kernel
 from mechkin_cli.show import Floats
 
@@ -67,16 +67,6 @@ def of(outer: Sequence[Floats], inner: Jet) -> Jet:
     )
 
 
-def chosen(condition: NDArray[np.bool_], a: Jet, b: Jet) -> Jet:
-    """a in the rows where the condition holds, b in the others."""
-    return np.where(condition, a, b)
-
-
-def is_constant(jet: Jet) -> bool:
-    """Whether no row moves."""
-    return not jet[1:].any()
-
-
 def _stacked(orders: list[Floats]) -> Jet:
     return np.stack(np.broadcast_arrays(*orders))
 
@@ -100,12 +90,8 @@ def tan(x: Floats) -> tuple[Floats, ...]:
     """Tangent."""
     tangent = kernel.tan(x)
     square = tangent * tangent
-    return (
-        tangent,
-        1.0 + square,
-        2.0 * tangent * (1.0 + square),
-        (1.0 + square) * (2.0 + 6 * square),
-    )
+    slope = 1.0 + square
+    return tangent, slope, 2.0 * tangent * slope, slope * (2.0 + 6 * square)
 
 
 def asin(x: Floats) -> tuple[Floats, ...]:
@@ -138,7 +124,7 @@ def sqrt(x: Floats) -> tuple[Floats, ...]:
 
 def sinh(x: Floats) -> tuple[Floats, ...]:
     """Hyperbolic sine."""
-    sine, cosine = hyperbolic.sinh(x), hyperbolic.cosh(x)
+    sine, cosine = operations.sinh(x), operations.cosh(x)
     return sine, cosine, sine, cosine  # type: ignore[return-value]
 
 
@@ -150,14 +136,10 @@ def cosh(x: Floats) -> tuple[Floats, ...]:
 
 def tanh(x: Floats) -> tuple[Floats, ...]:
     """Hyperbolic tangent."""
-    tangent: Any = hyperbolic.tanh(x)
+    tangent: Any = operations.tanh(x)
     slope = 1.0 / (cosh(x)[0] * cosh(x)[0])
-    return (
-        tangent,
-        slope,
-        -2.0 * tangent * slope,
-        slope * (4.0 * tangent * tangent - 2.0 * slope),
-    )
+    third = slope * (4.0 * tangent * tangent - 2.0 * slope)
+    return tangent, slope, -2.0 * tangent * slope, third
 
 
 def asinh(x: Floats) -> tuple[Floats, ...]:
@@ -165,7 +147,7 @@ def asinh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / np.sqrt(x * x + 1.0)
     cube = slope * slope * slope
     third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
-    return hyperbolic.asinh(x), slope, -x * cube, third  # type: ignore[return-value]
+    return operations.asinh(x), slope, -x * cube, third  # type: ignore[return-value]
 
 
 def acosh(x: Floats) -> tuple[Floats, ...]:
@@ -173,7 +155,7 @@ def acosh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / np.sqrt((x - 1.0) * (x + 1.0))
     cube = slope * slope * slope
     third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
-    return hyperbolic.acosh(x), slope, -x * cube, third  # type: ignore[return-value]
+    return operations.acosh(x), slope, -x * cube, third  # type: ignore[return-value]
 
 
 def atanh(x: Floats) -> tuple[Floats, ...]:
@@ -181,7 +163,7 @@ def atanh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / ((1.0 - x) * (1.0 + x))
     square = slope * slope
     third = (6.0 * x * x + 2.0) * (square * slope)
-    return hyperbolic.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]
+    return operations.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]
 
 
 def exp(x: Floats) -> tuple[Floats, ...]:
