@@ -31,6 +31,7 @@ from mechkin_cli.expressions.quantity import (
     OperationNode,
 )
 from mechkin_cli.show import Floats
+from mechkin_cli.tape import SLOPES
 from mechkin_cli.units import conversion
 
 JetVector = tuple[Jet, ...]
@@ -77,7 +78,7 @@ def _negative(a: Any) -> Any:
     return tuple(-each for each in a) if isinstance(a, tuple) else -a
 
 
-def _through(outer: Callable[[Floats], tuple[Floats, ...]]) -> Callable[[Jet], Jet]:
+def _through(outer: Callable[[Floats], Sequence[Floats]]) -> Callable[[Jet], Jet]:
     return lambda inner: jets.of(outer(inner[0]), inner)
 
 
@@ -98,7 +99,7 @@ def _rate(jet: Jet) -> Jet:
 def _power(base: Jet, exponent: Jet) -> Jet:
     if exponent[1:].any():
         value = operations.power(*np.broadcast_arrays(base[0], exponent[0]))
-        by_logarithm = jets.product(exponent, jets.of(jets.log(base[0]), base))
+        by_logarithm = jets.product(exponent, jets.of(SLOPES["LOG"](base[0]), base))
         return jets.of((value,) * jets.ORDERS, by_logarithm)  # type: ignore[arg-type]
     x, n = np.broadcast_arrays(base[0], exponent[0])
     orders, factor = [], np.ones_like(x)
@@ -189,7 +190,7 @@ def _mod(a: Jet, period: Jet) -> Jet:
 
 def _hypot(*sides: Jet) -> Jet:
     square = reduce(lambda a, b: a + b, (jets.product(side, side) for side in sides))
-    return jets.of(jets.sqrt(square[0]), square)
+    return jets.of(SLOPES["SQUARE_ROOT"](square[0]), square)
 
 
 def _wrap(a: Jet) -> Jet:
@@ -217,6 +218,8 @@ def _zero_of(a: JetVector) -> Jet:
     return jets.quotient(jets.constant_jet(0.0), _dot(a, a))
 
 
+_ELEMENTARY = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log")
+
 RULES: dict[str, Callable[..., Any]] = {
     "+": _on_each(lambda a, b: a + b),
     "-": _on_each(lambda a, b: a - b),
@@ -228,16 +231,9 @@ RULES: dict[str, Callable[..., Any]] = {
     ".x": lambda a: a[0],
     ".y": lambda a: a[1],
     ".z": lambda a: a[2],
-    "sin": _through(jets.sin),
-    "cos": _through(jets.cos),
-    "tan": _through(jets.tan),
-    "asin": _through(jets.asin),
-    "acos": _through(jets.acos),
-    "atan": _through(jets.atan),
+    **{name: _through(SLOPES[name.upper()]) for name in _ELEMENTARY},
     "atan2": _angle_of,
-    "sqrt": _through(jets.sqrt),
-    "exp": _through(jets.exp),
-    "log": _through(jets.log),
+    "sqrt": _through(SLOPES["SQUARE_ROOT"]),
     "pow": _power,
     "abs": _absolute,
     "sign": _sign,

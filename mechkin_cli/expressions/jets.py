@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import operations
-from mechkin_cli.kernel import functions as kernel
 from mechkin_cli.show import Floats
 
 Jet = NDArray[np.float64]
@@ -71,55 +70,8 @@ def _stacked(orders: list[Floats]) -> Jet:
     return np.stack(np.broadcast_arrays(*orders))
 
 
-# Elementary functions of rows with their first three derivatives, each of shape (rows,).
-
-
-def sin(x: Floats) -> tuple[Floats, ...]:
-    """Sine."""
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return sine, cosine, -sine, -cosine
-
-
-def cos(x: Floats) -> tuple[Floats, ...]:
-    """Cosine."""
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return cosine, -sine, -cosine, sine
-
-
-def tan(x: Floats) -> tuple[Floats, ...]:
-    """Tangent."""
-    tangent = kernel.tan(x)
-    square = tangent * tangent
-    slope = 1.0 + square
-    return tangent, slope, 2.0 * tangent * slope, slope * (2.0 + 6 * square)
-
-
-def asin(x: Floats) -> tuple[Floats, ...]:
-    """Arcsine."""
-    slope = 1.0 / np.sqrt((1.0 - x) * (1.0 + x))
-    cube = slope * slope * slope
-    return kernel.asin(x), slope, x * cube, cube * (1.0 + 3.0 * (x * slope) * (x * slope))
-
-
-def acos(x: Floats) -> tuple[Floats, ...]:
-    """Arccosine."""
-    _, first, second, third = asin(x)
-    return kernel.acos(x), -first, -second, -third
-
-
-def atan(x: Floats) -> tuple[Floats, ...]:
-    """Arctangent."""
-    slope = 1.0 / (1.0 + x * x)
-    square = slope * slope
-    return kernel.atan(x), slope, -2.0 * x * square, (6.0 * x * x - 2.0) * (square * slope)
-
-
-def sqrt(x: Floats) -> tuple[Floats, ...]:
-    """Square root."""
-    root = np.sqrt(x)
-    first = 0.5 / root
-    second = -0.5 * first / x
-    return root, first, second, -1.5 * second / x
+# Hyperbolic functions of rows with their first three derivatives, each of shape (rows,). Those of
+# other elementary functions are `tape.SLOPES`.
 
 
 def sinh(x: Floats) -> tuple[Floats, ...]:
@@ -164,15 +116,3 @@ def atanh(x: Floats) -> tuple[Floats, ...]:
     square = slope * slope
     third = (6.0 * x * x + 2.0) * (square * slope)
     return operations.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]
-
-
-def exp(x: Floats) -> tuple[Floats, ...]:
-    """Exponential function."""
-    value = kernel.exp(x)
-    return value, value, value, value
-
-
-def log(x: Floats) -> tuple[Floats, ...]:
-    """Natural logarithm."""
-    slope = 1.0 / x
-    return kernel.log(x), slope, -(slope * slope), 2.0 * (slope * slope * slope)

@@ -136,8 +136,8 @@ def _paired(operation: str, left: Scalar, right: Scalar) -> Scalar:
     if isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
         right = np.full(left.shape, right)
     elif isinstance(right, np.ndarray) and not isinstance(left, np.ndarray):
-        left = np.full(right.shape, left)  # type: ignore[no-any-return]
-    return scalars.of_two(operation, left, right)
+        left = np.full(right.shape, left)
+    return scalars.of_two(operation, left, right)  # type: ignore[no-any-return]
 
 
 # Truth values of scalars and rows: 1 where something holds, 0 where it does not, nan where that is
@@ -217,7 +217,7 @@ def nearest(value: Scalar) -> Scalar:
         return branch(is_small, np.rint(value), nan)
     whole = value.apply("WHOLE")
     # a recorded nan is a quotient of zeros
-    return whole + (whole - whole) / branch(is_small, 1.0, 0.0)  # type: ignore[no-any-return]
+    return whole + (whole - whole) / branch(is_small, 1.0, 0.0)
 
 
 def below(value: Scalar) -> Scalar:

@@ -1,14 +1,18 @@
-"""What all sections share: frozen, no unknown keys; and how a rule of ours refuses a value.
+"""Sections and the rules of their values; how annotations become validators and help texts.
 
-A section is declared by its annotations; `compiled` turns them into a validator of pydantic's core
-when the first value of that section is met, so that a run pays only for what its file uses.
+A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. The validator
+obeys `Limits`, `BeforeRule`, `After` and `FormChoice`; the JSON Schema shows them, and the other
+rules, too. `pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
+compiles every class when it is defined: for the sections of format 1 that took longer than the
+analysis of a mechanism. Here a validator is built when the first value of its section is met, so
+that a section which a file does not use costs its class body alone.
 """
 
 from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
 from functools import cache, partial
 from inspect import get_annotations
 from itertools import pairwise
@@ -33,11 +37,12 @@ NOTHING: Any = {}
 
 
 class Section:
-    """A mapping of the file with fixed keys.
+    """A mapping of the file with fixed keys; frozen.
 
     The text below a field is its help text. `advice` answers keys that people are likely to try and
-    that the format does not have; `editors` is what the JSON Schema says of the mapping beside its
-    keys.
+    that the format does not have; `editors` is added to the mapping in the JSON Schema. `tag` names
+    the section among several forms of a value: by default its word at `type` or `law`. It starts
+    with a parenthesis, which no key does, so that an error's location shows which steps are tags.
     """
 
     __slots__ = (
@@ -48,9 +53,16 @@ class Section:
     )
     advice: ClassVar[dict[str, str]] = {}
     editors: ClassVar[dict[str, Any]] = {}
+    tag: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        annotations = get_annotations(cls)
+        word = get_args(annotations.get("type") or annotations.get("law"))
+        if len(word) == 1 and "tag" not in cls.__dict__:
+            cls.tag = f"({word[0]})"
 
     def check(self) -> None:
-        """Raises what `refuse` makes where valid fields do not go together."""
+        """Raises an error of `refuse` where valid fields do not go together."""
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is frozen")
@@ -61,16 +73,16 @@ AnySection = TypeVar("AnySection", bound=Section)
 
 def section_of(kind: type[AnySection], **values: Any) -> AnySection:
     """A section made of values that are known to be valid, and of the defaults of the others."""
-    found = object.__new__(kind)
+    section = object.__new__(kind)
     for key, field in fields_of(kind).items():
-        found.__dict__[field.name] = values.pop(key) if key in values else field.default
+        section.__dict__[field.name] = values.pop(key) if key in values else field.default
     if values:
         raise TypeError(f"{kind.__name__} has no {', '.join(values)}")
-    return found
+    return section
 
 
 class Key(NamedTuple):
-    """The key in the file, where it is no name for a field of Python."""
+    """The key in the file, where it cannot be the name of a field in Python."""
 
     key: str
 
@@ -86,7 +98,7 @@ class FieldOfSection(NamedTuple):
 
 def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
     """The fields of a section by key, those of its base classes first."""
-    found: dict[str, FieldOfSection] = {}
+    fields: dict[str, FieldOfSection] = {}
     for model in reversed(section.__mro__):
         for name, annotation in get_annotations(model).items():
             if name in Section.__annotations__:
@@ -94,8 +106,8 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
             metadata = getattr(annotation, "__metadata__", ())
             key = next((item.key for item in metadata if isinstance(item, Key)), name)
             default = getattr(section, name, _REQUIRED)
-            found[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
-    return found
+            fields[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
+    return fields
 
 
 _REQUIRED = object()
@@ -110,22 +122,46 @@ def refuse(code: str, message: str, hint: str | None = None, *at: str | int) -> 
     return PydanticCustomError(code, "{text}", context)
 
 
-# Values that come in several forms: which form is meant is told by one look at the value.
-#
-# Each form carries a tag. Tags start with a parenthesis, which no key of the format does, so that
-# they can be told apart from keys in the location of an error.
+def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names, if no two are the same."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise refuse("named-twice", f"{name} is named twice", "name it once", index)
+    return names
+
+
+STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
+"""For editors, of sections with `from` and `to`."""
+
+
+def check_step_or_count(step: Any, count: Any, what: str) -> None:
+    """Raises an error unless exactly one of the two is there; `what` they count is for messages."""
+    if step is None and count is None:
+        raise refuse("missing-key", "from and to need a step or a count", "add one of them")
+    if step is not None and count is not None:
+        text = f"step and count both define the number of {what}"
+        raise refuse("two-choices", text, "keep one of them", "count")
 
 
 class Tag(NamedTuple):
-    """The tag of one form."""
+    """The tag of one form that is not a section."""
 
     tag: str
 
 
-class FormChoice(NamedTuple):
-    """Which form a value has: `choose` gives its tag, None where the word is none of `words`.
+def tagged_forms(union: Any) -> Iterator[tuple[str, Any, tuple[Any, ...]]]:
+    """The forms of a union: each with its tag and its rules."""
+    for member in get_args(union):
+        form, *rules = get_args(member) if get_origin(member) is Annotated else (member,)
+        tags = [rule.tag for rule in rules if isinstance(rule, Tag)]
+        yield (tags[0] if tags else form.tag), form, tuple(rules)
 
-    `key` is the key that holds the word; both are None where every value has a form.
+
+class FormChoice(NamedTuple):
+    """How the form of a value is chosen among several: `choose` gives its tag, or None if the word
+    at `key` is not one of `words`.
+
+    `key` and `words` are None where every value has a form.
     """
 
     choose: Callable[[Any], str | None]
@@ -133,34 +169,30 @@ class FormChoice(NamedTuple):
     words: str | None = None
 
 
-def by_word(key: str, choose: Callable[[dict[str, Any]], str | None], words: str) -> FormChoice:
-    """The choice for mappings in which the value of `key` says the form.
+def by_word(
+    key: str,
+    words: Collection[str],
+    choose: Callable[[dict[str, Any]], str | None] | None = None,
+) -> FormChoice:
+    """The choice for mappings whose form is defined by the word at `key`, one of `words`.
 
-    `choose` is shown the mapping and gives the tag, None where the word is unknown; the error then
-    names the `words` possible.
+    `choose` gives the tag of a mapping, None where the word is unknown (None: the word itself in
+    parentheses); the error then names the `words`.
     """
 
     def tag(value: Any) -> str | None:
-        return choose(_as_mapping(value))
+        # Python callers may pass a section that is already built
+        mapping = value if isinstance(value, dict) else getattr(value, "__dict__", {})
+        if choose is not None:
+            return choose(mapping)
+        word = mapping.get(key)
+        return f"({word})" if isinstance(word, str) and word in words else None
 
-    return FormChoice(tag, key, words)
-
-
-def _as_mapping(value: Any) -> dict[str, Any]:
-    if isinstance(value, dict):
-        return value
-    # a section that is already built, as Python callers may pass
-    return getattr(value, "__dict__", {})
-
-
-# What an annotation may say of a value beside its Python type: `Annotated[str, Before(...), ...]`.
-#
-# The validator (`compiled`) obeys `Limits`, `Before`, `After` and the discriminators of
-# `alternatives`; the JSON Schema shows them, and `Named` and `Shown`, too.
+    return FormChoice(tag, key, ", ".join(words))
 
 
 class SchemaName(NamedTuple):
-    """The definition of the JSON Schema that the type and the rules before it make up."""
+    """The name in the JSON Schema of the type with the rules before it."""
 
     name: str
 
@@ -176,19 +208,19 @@ class Limits(NamedTuple):
 
 
 class BeforeRule(NamedTuple):
-    """A function that is shown the value as it was given, and returns what is validated."""
+    """A function from the value as written to the value to validate."""
 
     function: Callable[[Any], Any]
 
 
 class After(NamedTuple):
-    """A function that is shown the valid value, and returns or refuses it."""
+    """A function that returns or refuses the valid value."""
 
     function: Callable[[Any], Any]
 
 
 class Shown(NamedTuple):
-    """What editors are told about a scalar: the JSON types it may have, a help text, examples."""
+    """For editors, of a scalar: the JSON types it may have, a help text, examples."""
 
     types: tuple[str, ...]
     description: str
@@ -196,14 +228,16 @@ class Shown(NamedTuple):
 
 
 class DimensionRule(NamedTuple):
-    """The dimension an expression must have, in words, with examples: for readers and editors."""
+    """The dimension of an expression in words, with examples, and the name of its definition in
+    the JSON Schema: for readers and editors."""
 
     name: str
     examples: tuple[str | float, ...]
+    schema_name: str
 
 
 class ShortForm(NamedTuple):
-    """Tells editors that a section may be written as a single value."""
+    """For editors: a section may be written as a single value."""
 
     types: tuple[str, ...]
     description: str
@@ -216,35 +250,26 @@ class Barred(NamedTuple):
     pattern: str
 
 
-# Annotations to validators of pydantic's core, each built when its first value is met.
-#
-# `pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
-# compiles every class when it is defined: for the sections of format 1 that took longer than the
-# analysis of a mechanism. Here a section of which a file has none costs its class body alone.
-
 _VALIDATORS: dict[type[Section], SchemaValidator] = {}
 
 
 def validated(section: type[AnySection], data: object) -> AnySection:
     """The section that plain data describes; raises pydantic's ValidationError.
 
-    The places of its errors go on from that of the section in which it stands.
+    The locations of its errors continue that of the section around it.
     """
-    validator = _VALIDATORS.get(section)
-    if validator is None:
-        validator = _VALIDATORS[section] = _built(section)
-    found: AnySection = validator.validate_python(data)
-    return found
+    if section not in _VALIDATORS:
+        _VALIDATORS[section] = _built(section)
+    return _VALIDATORS[section].validate_python(data)  # type: ignore[no-any-return]
 
 
 def _built(section: type[Section]) -> SchemaValidator:
-    fields = {
-        field.name: core.model_field(
-            _with_default(_schema(field.annotation), field.required, field.default),
-            validation_alias=key,
-        )
-        for key, field in fields_of(section).items()
-    }
+    fields = {}
+    for key, field in fields_of(section).items():
+        value = _schema(field.annotation)
+        if not field.required:
+            value = core.with_default_schema(value, default=field.default)
+        fields[field.name] = core.model_field(value, validation_alias=key)
     keys = core.model_fields_schema(fields, extra_behavior="forbid")
     schema: core.CoreSchema = core.model_schema(section, keys)
     if section.check is not Section.check:
@@ -255,10 +280,6 @@ def _built(section: type[Section]) -> SchemaValidator:
 def _checked(section: Section) -> Section:
     section.check()
     return section
-
-
-def _with_default(schema: core.CoreSchema, required: bool, default: Any) -> core.CoreSchema:
-    return schema if required else core.with_default_schema(schema, default=default)
 
 
 @cache
@@ -313,11 +334,9 @@ def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
 
 def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
     """A union whose members each carry their tag."""
-    choices: dict[Any, core.CoreSchema] = {}
-    for member in get_args(union):
-        form, *rules = get_args(member)
-        tag = next(rule.tag for rule in rules if isinstance(rule, Tag))
-        choices[tag] = _with_rules(form, tuple(rules))
+    choices: dict[Any, core.CoreSchema] = {
+        tag: _with_rules(form, rules) for tag, form, rules in tagged_forms(union)
+    }
     if choice.words is None:
         return core.tagged_union_schema(choices, choice.choose)
     return core.tagged_union_schema(
@@ -329,13 +348,9 @@ def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
     )
 
 
-# The help text of each key: the string that stands below the field in the model's source.
-#
-# Read only for messages and for the JSON Schema; reading the sources costs more than a validation.
-
-
 def field_descriptions(section: type[Section]) -> dict[str, str]:
-    """Help texts by field name, those of base classes included."""
+    """Help texts by field name, those of base classes included: the strings below the fields in the
+    source. Reading it costs more than a validation: only for messages and the JSON Schema."""
     descriptions: dict[str, str] = {}
     for model in reversed(section.__mro__):
         if model is not Section and Section in model.__mro__:
@@ -347,10 +362,10 @@ def field_descriptions(section: type[Section]) -> dict[str, str]:
 def _below_fields(model: type) -> dict[str, str]:
     definition = ast.parse(dedent(inspect.getsource(model))).body[0]
     body = definition.body if isinstance(definition, ast.ClassDef) else []
-    found = {}
+    texts = {}
     for field, below in pairwise(body):
         if not (isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)):
             continue
         if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
-            found[field.target.id] = inspect.cleandoc(str(below.value.value)).replace("\n", " ")
-    return found
+            texts[field.target.id] = inspect.cleandoc(str(below.value.value)).replace("\n", " ")
+    return texts
