@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from types import UnionType
 from typing import Annotated, Any, Final, Union, get_args, get_origin
 
-from mechkin_cli.schema.base import Section, field_descriptions, fields_of, tagged_forms
+from mechkin_cli.schema.base import Section, field_descriptions, fields_of, tagged
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
@@ -352,11 +352,14 @@ def _alternatives(annotation: Any) -> Iterator[Any]:
 
 
 def _tagged(annotation: Any) -> Iterator[tuple[str, Any]]:
-    while get_origin(annotation) is Annotated:
-        annotation = get_args(annotation)[0]
-    for member in get_args(annotation):
-        if get_origin(member) is Annotated or _is_section(member):
-            yield from ((tag, form) for tag, form, _ in tagged_forms(member | None))
+    tag, form, _ = tagged(annotation)
+    if tag:
+        yield tag, form
+    elif form is not annotation:
+        yield from _tagged(form)
+    elif get_origin(annotation) in (Union, UnionType):
+        for member in get_args(annotation):
+            yield from _tagged(member)
 
 
 def _is_section(annotation: Any) -> bool:

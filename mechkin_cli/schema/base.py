@@ -2,17 +2,17 @@
 
 A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. The validator
 obeys `Limits`, `BeforeRule`, `After` and `FormChoice`; the JSON Schema shows them, and the other
-rules, too. `pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
-compiles every class when it is defined: for the sections of format 1 that took longer than the
-analysis of a mechanism. Here a validator is built when the first value of its section is met, so
-that a section which a file does not use costs its class body alone.
+rules, too. `pydantic.BaseModel` builds the same validators from the same annotations, but it
+inspects and compiles every class when it is defined: for the sections of format 1 that took longer
+than the analysis of a mechanism. Here a validator is built when the first value of its section is
+met, so that a section which a file does not use costs its class body alone.
 """
 
 from __future__ import annotations
 
 import ast
 import inspect
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from functools import cache, partial
 from inspect import get_annotations
 from itertools import pairwise
@@ -149,12 +149,11 @@ class Tag(NamedTuple):
     tag: str
 
 
-def tagged_forms(union: Any) -> Iterator[tuple[str, Any, tuple[Any, ...]]]:
-    """The forms of a union: each with its tag and its rules."""
-    for member in get_args(union):
-        form, *rules = get_args(member) if get_origin(member) is Annotated else (member,)
-        tags = [rule.tag for rule in rules if isinstance(rule, Tag)]
-        yield (tags[0] if tags else form.tag), form, tuple(rules)
+def tagged(member: Any) -> tuple[str, Any, tuple[Any, ...]]:
+    """The tag of a form (empty: none), the form, and its rules."""
+    form, *rules = get_args(member) if get_origin(member) is Annotated else (member,)
+    tags = [rule.tag for rule in rules if isinstance(rule, Tag)]
+    return (tags[0] if tags else getattr(form, "tag", "")), form, tuple(rules)
 
 
 class FormChoice(NamedTuple):
@@ -335,7 +334,7 @@ def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
 def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
     """A union whose members each carry their tag."""
     choices: dict[Any, core.CoreSchema] = {
-        tag: _with_rules(form, rules) for tag, form, rules in tagged_forms(union)
+        tag: _with_rules(form, rules) for tag, form, rules in map(tagged, get_args(union))
     }
     if choice.words is None:
         return core.tagged_union_schema(choices, choice.choose)
