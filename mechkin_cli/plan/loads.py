@@ -28,7 +28,7 @@ def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]
         return [_amount(load.value, values) / per]
     assert isinstance(load, LinkLoad)
     per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
-    components = [_amount(amount, values) for amount in load.value]
+    components: Any = [_amount(amount, values) for amount in load.value]
     if load.axes == "link":
         frame = layout.link_frame[load.link]
         components = [dot(axis, components) for axis in (frame.x, frame.y, frame.z)]
