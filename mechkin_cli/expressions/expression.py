@@ -77,7 +77,7 @@ class Expression(NamedTuple):
 
     @property
     def names(self) -> frozenset[str]:
-        """The dotted names used, as a resolver is asked for them.
+        """The dotted names that a resolver has to look up.
 
         A component of a name with a dot is left out: `pm1.position.x` counts as `pm1.position`.
         `B.x` stays: it is a coordinate x of a joint B, or else the component of a direction B.

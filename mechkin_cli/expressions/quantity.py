@@ -254,7 +254,7 @@ class Site(NamedTuple):
             )
 
     def unit_hint(self, operand: Operand, dimension: Dimension) -> str:
-        """How to give an operand a wanted dimension."""
+        """How to give an operand a dimension."""
         label = self.units.label(dimension)
         number = operand.number
         bare = number is not None and number.unit is None and number.text != "pi"
