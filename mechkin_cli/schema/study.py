@@ -1,4 +1,4 @@
-"""A study file: a mechanism, what varies in it, and what is kept of every variant."""
+"""A study file: a mechanism, its variations, and the results of every variant."""
 
 from typing import Annotated, Any, ClassVar, Literal
 

@@ -28,7 +28,7 @@ START = [
         "expected a time, found a length",
     ),
     response("start: {O.theta: 2}, time: {from: 1, to: »1, count: 3}", "zero-step", "stands still"),
-    response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is no coord"),
+    response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is not a coord"),
     response("start: {»O.theta_ddot: 1}, TIME", "wrong-form", "O1.theta_dot"),
     response("start: {O.theta: »20 mm}, TIME", "expression", "expected an angle", "length"),
     response("start: {O.theta: 2, O.theta_dot: »2 mm}, TIME", "expression", "an angular rate"),
