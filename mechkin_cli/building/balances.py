@@ -32,8 +32,6 @@ def build_balances(
     fields: Fields, sections: Sequence[written.AnyBalance], problem: Problem
 ) -> tuple[AnyBalance, ...]:
     """The balances of a file; errors are noted in `fields`."""
-    if not sections:
-        return ()
     builder = _BalanceBuilder(fields, problem)
     balances = [builder.balance(("balances", i), section) for i, section in enumerate(sections)]
     return tuple(balance for balance in balances if balance is not None)

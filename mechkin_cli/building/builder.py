@@ -11,7 +11,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
-from mechkin_cli.building.balances import build_balances
 from mechkin_cli.building.fields import (
     Fields,
     Path,
@@ -24,7 +23,6 @@ from mechkin_cli.building.fields import (
 from mechkin_cli.building.links import build_linkage
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
-from mechkin_cli.building.responses import Graphs, build_responses, with_graphs
 from mechkin_cli.building.source import MechanismSource
 from mechkin_cli.building.tables import (
     ColumnSample,
@@ -34,7 +32,6 @@ from mechkin_cli.building.tables import (
     runs_of,
     used_quantities,
 )
-from mechkin_cli.building.view import ViewSettings, build_view
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
 from mechkin_cli.expressions import (
     ExpressionError,
@@ -66,6 +63,8 @@ from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.building.responses import Graphs
+    from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
 
@@ -206,9 +205,9 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     problem = _with_definitions(fields, file, problem)
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
-    balances = build_balances(fields, file.balances, problem)
+    balances = _balances(fields, file, problem)
     coefficients = build_coefficients(fields, file, problem, tables)
-    view = None if file.view is None else build_view(fields, file.view, problem.mechanism)
+    view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
     if file.loads or file.responses or coefficients or forces:
         note_force_unit(fields)
@@ -223,6 +222,8 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
         problem = settled(problem)
     graphs: Graphs = {}
     if problem.responses and graph is not None:
+        from mechkin_cli.building.responses import with_graphs
+
         problem, graphs = with_graphs(fields, problem)
     errors = [d for d in fields.diagnostics if d.severity == "error"]
     if errors or graph is None:
@@ -246,6 +247,22 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
         take_derivatives(fields)
         check_quantities(fields, file, problem)
     return replace(problem, definitions=fields.definitions)
+
+
+def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
+    if not file.balances:
+        return ()
+    from mechkin_cli.building.balances import build_balances
+
+    return build_balances(fields, file.balances, problem)
+
+
+def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
+    if file.view is None:
+        return None
+    from mechkin_cli.building.view import build_view
+
+    return build_view(fields, file.view, problem.mechanism)
 
 
 def read_fields(
@@ -300,6 +317,8 @@ def build_problem(
     problem = replace(problem, mechanism=acting.on(mechanism), load_laws=acting.laws)
     if not (file.responses and responses):
         return problem
+    from mechkin_cli.building.responses import build_responses
+
     args = (fields, file.responses, problem, loads, per_row, moving)
     return replace(problem, responses=build_responses(*args))
 

@@ -7,6 +7,7 @@ wrong: so bare numbers of gravity are checked against usual units.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Literal
 
@@ -19,8 +20,6 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
     without,
 )
-from mechkin_cli.building.friction import build_friction
-from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.tables import unknown_run
 from mechkin_cli.diagnostics import Diagnostic, Number, nearest_hint
 from mechkin_cli.expressions import ExpressionError, literal, number_of
@@ -81,6 +80,7 @@ from mechkin_cli.units import (
 )
 
 if TYPE_CHECKING:
+    from mechkin_cli.building.load_laws import LoadLaws
     from mechkin_cli.mechanism import LoadLaw
 
 
@@ -168,7 +168,12 @@ class LoadBuilder:
         self.links, self.joints, self.points = links, joints, points
         self._acting: Collection[str] = runs.keys()
         self._of_runs: list[tuple[Collection[str], Load | Vector | Rubbing]] = []
-        self._laws = LoadLaws(fields, runs)
+
+    @cached_property
+    def _laws(self) -> LoadLaws:
+        from mechkin_cli.building.load_laws import LoadLaws
+
+        return LoadLaws(self.fields, self.runs)
 
     def add_all(self, sections: Sequence[AnyLoad]) -> None:
         """Reads every load of the file."""
@@ -321,6 +326,8 @@ class LoadBuilder:
         return False
 
     def _add_friction(self, path: Path, section: FrictionAtJoint) -> None:
+        from mechkin_cli.building.friction import build_friction
+
         joint = self._joint(path, section.joint)
         if joint is None:
             return

@@ -23,7 +23,6 @@ from typing import Final
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.course import Following, build_course, build_paths
 from mechkin_cli.building.fields import (
     Clock,
     Fields,
@@ -34,7 +33,6 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
 )
 from mechkin_cli.building.joints import Halves, parts_of
-from mechkin_cli.building.laws import law_values
 from mechkin_cli.diagnostics import Number, nearest_hint
 from mechkin_cli.expressions import Expression
 from mechkin_cli.mechanism import (
@@ -225,6 +223,8 @@ def build_inputs(
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
+        from mechkin_cli.building.course import Following
+
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
         followers = Following(fields, orders, rows, time, written.path)
         followers.add_all(following, coordinates)
@@ -250,6 +250,8 @@ def build_inputs(
         )
     if not inputs or (time is None and not expressions):
         return motion
+    from mechkin_cli.building.course import build_course, build_paths
+
     course = build_course(fields, written, inputs, expressions)
     paths = build_paths(fields, inputs, expressions, time) if expressions else motion.paths
     return motion._replace(course=course, paths=paths)
@@ -296,6 +298,8 @@ def _orders(
             rates = _constant_rates(fields, path, item, coordinate, written.time)
             orders[name] = with_rates(values, rates)
         else:
+            from mechkin_cli.building.laws import law_values
+
             assert written.clock is not None  # the schema refuses a law without time
             orders[name] = law_values(fields, path, item, coordinate, written.clock)
     return orders, following

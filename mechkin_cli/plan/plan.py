@@ -26,7 +26,6 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan.codes import ContactCode, FreeCode, LoadCode
 from mechkin_cli.plan.layout import Layout, coordinate_axis
-from mechkin_cli.plan.programs import load_program
 from mechkin_cli.plan.records import PlanRecord, hand_over, record
 from mechkin_cli.structure import CutJoint
 
@@ -322,6 +321,7 @@ def _inertias(layout: Layout) -> Iterator[PlanRecord]:
 def _load_program(layout: Layout) -> Iterator[PlanRecord]:
     if layout.laws is None:
         return
+    from mechkin_cli.plan.programs import load_program
 
     yield from (record("set_load_program", *program) for program in load_program(layout))
 

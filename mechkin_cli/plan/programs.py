@@ -37,8 +37,7 @@ _NOTHING = Output(OutputCode.STATE, 0, 0, 0, (0.0, 0.0, 0.0), 1.0)
 def load_program(layout: Layout) -> list[Program]:
     """The program of the values of the loads that vary, then of the values that end a motion; none
     where there is neither."""
-    if layout.laws is None:
-        return []
+    assert layout.laws is not None
     recording = _Recording(layout, layout.laws)
     return [recording.program()] if recording.laws else []
 
