@@ -7,7 +7,8 @@ m = mk.loads(text)                     the same from a text
 r = m.analyze()                        an Analysis: the sweep; m.respond("NAME"): a response
 
 Of a model
-    m.analyze()  m.respond()           the runs
+    m.parameters                       values by name in the file's units; m.parameters.unit("P1")
+    m.analyze()  m.respond()           the runs; m.analyses(): all of the file
     m.modes()                          the ways to assemble it
     m.ranges()                         how far an input can go: dead centres, circuits
     m.mobility()                       what can move
@@ -44,14 +45,15 @@ TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
     from typing import Any
 
+    from mechkin_cli.analysis import Analysis
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
-    from mechkin_cli.model import Analysis, Model, load, loads
+    from mechkin_cli.model import Model, load, loads
     from mechkin_cli.verdict import Status
 
 
 _PLACES = {
-    "Analysis": "model",
+    "Analysis": "analysis",
     "Diagnostic": "diagnostics",
     "ExpressionError": "expressions",
     "InvalidFile": "diagnostics",

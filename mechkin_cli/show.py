@@ -18,6 +18,9 @@ class Named(tuple[Item, ...], Generic[Item]):
 
     __slots__ = ()
 
+    def __repr__(self) -> str:
+        return f"({', '.join(map(repr, self.keys()))}), by number or name"
+
     def keys(self) -> list[str]:
         """The names, in order."""
         return [item.name for item in self]  # type: ignore[attr-defined]
@@ -75,7 +78,7 @@ class Listing(NamedTuple):
         """Aligned text, at most `MOST_COLUMNS` and `MOST_ROWS` of it; nothing else is left out
         without a word."""
         lines = [_line(self.head)]
-        table = [self.labels, *_shortened(self.rows)] if self.labels else []
+        table = [self.labels, *shortened(self.rows)] if self.labels else []
         cut = [[_cell(cell) for cell in row[:MOST_COLUMNS]] for row in table]
         widths = [max(map(len, column)) for column in zip(*cut, strict=True)]
         for row in cut:
@@ -89,7 +92,7 @@ class Listing(NamedTuple):
         """The same as a fragment of a page, with all columns; every text of a file is escaped."""
         parts = [f"<div><p><strong>{_marked(self.head)}</strong></p>"]
         if self.labels:
-            parts.append(html_table(self.labels, _shortened(self.rows)))
+            parts.append(html_table(self.labels, shortened(self.rows)))
         notes = "".join(f"<li>{_marked(note)}</li>" for note in self.notes)
         return "".join([*parts, f"<ul>{notes}</ul>" if notes else "", "</div>"])
 
@@ -121,7 +124,7 @@ def html_table(labels: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f"<table><thead>{line('th', labels)}</thead><tbody>{body}</tbody></table>"
 
 
-def _shortened(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+def shortened(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
     """The rows, or the first and the last with a row of dots between them."""
     if len(rows) <= MOST_ROWS:
         return list(rows)

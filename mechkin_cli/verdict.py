@@ -1,4 +1,4 @@
-"""Verdict on one row of a table: a fixed enumeration whose members carry what the user reads.
+"""Verdicts on the rows of a table: fixed enumerations whose members say what they mean.
 
 The codes are stored as int8 arrays, one entry per row. A row without solution keeps its input
 values and its status; all its other cells stay empty.
@@ -9,90 +9,167 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import TYPE_CHECKING, Final
 
+from mechkin_cli.tolerances.results import (
+    CONDITION_NEAR_SINGULAR,
+    CONDITION_RANK_UNCLEAR,
+    CONDITION_RATES_UNCLEAR,
+)
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
-    from mechkin_cli.show import Bools
+    from mechkin_cli.show import Bools, Floats
 
 
 class Status(IntEnum):
-    """Outcome of one row; the integer value is the code that the arrays hold."""
+    """Outcome of one row; the integer value is the code that the arrays hold.
 
-    ok = 0
-    near_singular = 1
-    beyond_dead_centre = 2
-    branch_lost = 3
-    not_converged = 4
-    not_assembled = 5
-    rank_unclear = 6
-    friction_undecided = 7
-    singular_inertia = 8
-    step_limit = 9
-    dead_centre = 10
+    Attributes:
+        has_solution: the row has a position; single cells of it may still be missing.
+        has_rates: its rates and accelerations are finite numbers.
+        has_forces: so are its reactions and efforts.
+        ends_run: the run goes no further in this direction: rows beyond have no solution either.
+        sentence: one sentence for the reader of the row.
+    """
+
+    # code, what a row has or that the run ends with it, sentence
+    ok = (
+        0,
+        "position, rates, forces",
+        "solved; the position is right to nine digits or more.",
+    )
+    near_singular = (
+        1,
+        "position, rates, forces",
+        ("solved, but close to a singular position: fewer digits of rates and loads are reliable."),
+    )
+    beyond_dead_centre = (
+        2,
+        "ends",
+        "this branch ends at a dead centre before this row.",
+    )
+    branch_lost = (
+        3,
+        "ends",
+        (
+            "the branch could not be followed to this row without doubt; no neighbour is given "
+            "instead."
+        ),
+    )
+    not_converged = (
+        4,
+        "",
+        "the position iteration did not reach its residual limit.",
+    )
+    not_assembled = (
+        5,
+        "ends",
+        "no start of the first row led to an assembled position.",
+    )
+    rank_unclear = (
+        6,
+        "position",
+        "the rank of the constraints could not be decided, so no reactions are given.",
+    )
+    friction_undecided = (
+        7,
+        "position, rates",
+        (
+            "the friction of a joint has no direction, or not one value alone; what depends on "
+            "it is empty."
+        ),
+    )
+    singular_inertia = (
+        8,
+        "ends",
+        "the response ended before this row: a freedom has no inertia that could be moved.",
+    )
+    step_limit = (
+        9,
+        "ends",
+        "the response ended before this row: its steps became too short, or too many.",
+    )
+    dead_centre = (
+        10,
+        "position",
+        (
+            "stands at a dead centre: rates and loads that grow without bound towards it are "
+            "infinite, the others are empty."
+        ),
+    )
+
+    has_solution: bool
+    has_rates: bool
+    has_forces: bool
+    ends_run: bool
+    sentence: str
+
+    def __new__(cls, code: int, has: str = "", sentence: str = "") -> Status:
+        """`has` names what a row of this status has, and whether the run `ends` with it."""
+        status = int.__new__(cls, code)
+        status._value_ = code
+        status.has_solution, status.has_rates = "position" in has, "rates" in has
+        status.has_forces, status.ends_run = "forces" in has, "ends" in has
+        status.sentence = sentence
+        return status
 
     @property
     def label(self) -> str:
         """The name that files and messages print, such as `near-singular`."""
         return self.name.replace("_", "-")
 
-    @property
-    def sentence(self) -> str:
-        """One sentence for the reader of the row."""
-        return _SENTENCES[self]
-
-    @property
-    def has_solution(self) -> bool:
-        """Whether the row has a position; single cells of it may still be missing."""
-        return self in _SOLVED
-
-
-_SOLVED = frozenset(
-    {
-        Status.ok,
-        Status.near_singular,
-        Status.rank_unclear,
-        Status.friction_undecided,
-        Status.dead_centre,
-    }
-)
-
-_SENTENCES = {
-    Status.ok: "solved; the position is right to nine digits or more.",
-    Status.near_singular: (
-        "solved, but close to a singular position: fewer digits of rates and loads are reliable."
-    ),
-    Status.beyond_dead_centre: "this branch ends at a dead centre before this row.",
-    Status.branch_lost: (
-        "the branch could not be followed to this row without doubt; no neighbour is given instead."
-    ),
-    Status.not_converged: "the position iteration did not reach its residual limit.",
-    Status.not_assembled: "no start of the first row led to an assembled position.",
-    Status.rank_unclear: (
-        "the rank of the constraints could not be decided, so no reactions are given."
-    ),
-    Status.friction_undecided: (
-        "the friction of a joint has no direction, or not one value alone; what depends on it is "
-        "empty."
-    ),
-    Status.singular_inertia: (
-        "the response ended before this row: a freedom has no inertia that could be moved."
-    ),
-    Status.step_limit: (
-        "the response ended before this row: its steps became too short, or too many."
-    ),
-    Status.dead_centre: (
-        "stands at a dead centre: rates and loads that grow without bound towards it are infinite, "
-        "the others are empty."
-    ),
-}
-
 
 def has_solution(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_solution` of many rows, the same shape as the codes."""
+    return _having(codes, lambda status: status.has_solution)
+
+
+def has_rates(codes: NDArray[np.int8]) -> Bools:
+    """`Status.has_rates` of many rows, the same shape as the codes."""
+    return _having(codes, lambda status: status.has_rates)
+
+
+def _having(codes: NDArray[np.int8], mark: Callable[[Status], bool]) -> Bools:
     import numpy as np
 
-    return np.isin(codes, [int(status) for status in _SOLVED])
+    return np.array([mark(status) for status in Status], dtype=bool)[codes]
+
+
+def labels(codes: NDArray[np.int8]) -> NDArray[np.str_]:
+    """The label of every code, the same shape."""
+    import numpy as np
+
+    words: NDArray[np.str_] = np.array([status.label for status in Status])[codes]
+    return words
+
+
+CONDITION_LIMITS = {
+    Status.near_singular: CONDITION_NEAR_SINGULAR,
+    Status.rank_unclear: CONDITION_RANK_UNCLEAR,
+}
+"""The condition of a row's loop closure above which it has a status, by rising limits."""
+
+
+def by_condition(condition: Floats) -> NDArray[np.int8]:
+    """The status that a row's condition alone gives it, codes of the same shape; a condition that
+    could not be computed (nan) is above every limit."""
+    import numpy as np
+
+    codes = np.full(condition.shape, int(Status.ok), dtype=np.int8)
+    for status, limit in CONDITION_LIMITS.items():
+        codes[~(condition <= limit)] = int(status)
+    return codes
+
+
+def rates_are_clear(condition: Floats | float) -> Bools:
+    """Whether rates are more than rounding whatever the row, by its condition alone; where they may
+    not be, the row is looked at again in double-double."""
+    import numpy as np
+
+    return np.asarray(condition) <= CONDITION_RATES_UNCLEAR
 
 
 # What is proven of one row of a table: a fixed enumeration whose members carry what the user

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from benchmarks.stress.judge import TURN, Found
 from benchmarks.stress.numbers.double_double import DoubleDouble, radians
 from benchmarks.stress.quantity import Cell, Mask, Rows, Truth
-from mechkin_cli.model.analysis import Analysis
+from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.verdict import Proof
 
 NOT_ASKED = -1

@@ -23,7 +23,7 @@ from mechkin_cli.model import loads
 from mechkin_cli.verdict import Status, has_solution
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis
+    from mechkin_cli.analysis import Analysis
 
 
 KEPT = "hard_mechanisms.json"

@@ -28,7 +28,8 @@ from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis, Model
+    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.model import Model
 
 
 # The runs of one file: its sweep and its responses.

@@ -10,8 +10,8 @@ from mechkin_cli.plan import WRENCH_KINDS, Demand
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis import Analysis
     from mechkin_cli.mechanism import Joint, Wanted
-    from mechkin_cli.model import Analysis
     from mechkin_cli.structure import Block, SolverGraph
 
 
@@ -100,7 +100,7 @@ def _positions(analysis: Analysis) -> str:
     if analysis.run == SWEEP:
         nodes = f"{result.nodes} nodes followed, the rest filled in between"
         return f"positions: {result.rows} rows, {nodes}"
-    response = analysis.model.response(analysis.run)
+    response = analysis.model.design.response(analysis.run)
     step = f"a tolerance of {response.tolerance:g}"
     if response.fixed_step is not None:
         step = f"steps of {response.fixed_step:g} s"

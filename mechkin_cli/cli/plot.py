@@ -23,7 +23,8 @@ from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis, Model
+    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.model import Model
     from mechkin_cli.plots import Picture
 
 

@@ -28,7 +28,7 @@ from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis
+    from mechkin_cli.analysis import Analysis
     from mechkin_cli.tables import ColumnErrors, Summary
 
 
@@ -167,7 +167,7 @@ def _line(name: str, text: str) -> str:
 
 def _free(analysis: Analysis) -> str:
     """How many freedoms move under forces, where they start, what is driven and what acts."""
-    response = analysis.model.response(analysis.run)
+    response = analysis.model.design.response(analysis.run)
     free = response.independent
     noun = "freedom" if len(free) == 1 else "freedoms"
     parts = [f"{len(free)} {noun} from {', '.join(f'{joint}.{name}' for joint, name in free)}"]

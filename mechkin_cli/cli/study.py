@@ -31,6 +31,7 @@ from mechkin_cli.cli.options import (
     study_format_names,
 )
 from mechkin_cli.diagnostics import InvalidFile, UsageError
+from mechkin_cli.model import load
 
 if TYPE_CHECKING:
     from mechkin_cli.studies import Study, StudyFiles, Workers
@@ -104,7 +105,7 @@ def study(
     code = ExitCode.OK
     try:
         source = open_study(file)
-        planned = Study(source.model(parameters(set_)), source)
+        planned = Study(source.model(parameters(set_), load), source)
         say_diagnostics(planned.plan.notes, str(file))
         workers = Workers(threads, processes, None, scheduler)
         if dry_run:

@@ -27,7 +27,8 @@ from mechkin_cli.diagnostics import InvalidFile, UsageError
 from mechkin_cli.tables import MARK, OVERVIEW_PAGE, OverviewRow, overview_page
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis, Model
+    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.model import Model
     from mechkin_cli.tables import OutputFolder, PrintedTable
 
 
@@ -140,7 +141,11 @@ def _made(
     said = tuple(dict.fromkeys(found for one in analyses for found in one.diagnostics))
     say_diagnostics(said, str(file))
     printed = [table for one in analyses for table in against_print(file, one.layouts, one.tables)]
-    row = None if overview is None else overview_row(file, overview, analyses, printed)
+    row = (
+        None
+        if overview is None
+        else overview_row(model, file.relative_to(overview), analyses, printed)
+    )
     fresh = _fresh_files(model, analyses, printed)
     complete = all(one.complete for one in analyses)
     code = ExitCode.OK if complete else ExitCode.ROWS_MISSING
@@ -263,17 +268,16 @@ def _told(file: Path, printed: Sequence[PrintedTable], json: bool, quiet: bool) 
 
 
 def overview_row(
-    file: Path, folder: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
+    model: Model, file: Path, analyses: Sequence[Analysis], printed: Sequence[PrintedTable]
 ) -> OverviewRow:
-    """One file in a line of the overview of a folder that it lies in, or in a folder of it."""
+    """A line of the overview of a folder; `file` is the path in it."""
     from mechkin_cli.tables import counts
     from mechkin_cli.view import PICTURE_NAME as PICTURE
 
-    model = analyses[0].model
     solved = sum(int(analysis.result.solved.sum()) for analysis in analyses)
     rows = sum(analysis.rows for analysis in analyses)
     return OverviewRow(
-        file.relative_to(folder).with_suffix("").as_posix(),
+        file.with_suffix("").as_posix(),
         model.name,
         " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
         _mobility(model),

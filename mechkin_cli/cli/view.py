@@ -24,7 +24,7 @@ from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Analysis
+    from mechkin_cli.analysis import Analysis
 
 
 def view(
@@ -68,14 +68,14 @@ def view(
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
     responses, in all assembly modes, with curves, tables, verdicts and notes.
     """
-    from mechkin_cli.view import PAGE_NAME, analyses_of, view_page, write_view
+    from mechkin_cli.view import PAGE_NAME, view_page, write_view
 
     tell_as(messages)
     try:
         with working(f"{shown(file)}: reading", quiet) as tell:
             model = model_of(file, parameters(set_))
             tell(f"{shown(file)}: rows")
-            analyses = analyses_of(model, run, mode)
+            analyses = model.analyses(run, mode)
             tell(f"{shown(file)}: the page")
             page, notes = view_page(analyses, not no_modes)
         target = write_view(out or Path("out", stem_of(file), PAGE_NAME), page)

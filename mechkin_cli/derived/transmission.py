@@ -46,7 +46,7 @@ from mechkin_cli.mechanism import (
     reference_point,
 )
 from mechkin_cli.tape import of_two
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.derived.basis import RowVector
@@ -89,7 +89,7 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
         return _between(force, _velocity(guide, quantity.coordinate, axis, arm, unit))
 
     found, rows = angle(0), run.result.row_states
-    lost = ~rows.reached | np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
+    lost = ~(rows.reached & has_rates(rows.status))
     for shift in run.result.shifts:
         lost |= ~(np.abs(angle(shift) - found) <= tolerances.UNIQUE_CELL)
     return np.where(lost, np.nan, found)

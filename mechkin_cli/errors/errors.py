@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.model import Analysis
+    from mechkin_cli.sweep import Readable
     from mechkin_cli.tables import ColumnLayout, Columns, TableColumn
     from mechkin_cli.tape import DoubleDoubles
 
@@ -55,7 +55,7 @@ class Errors(Listed):
         columns: the errors of every column of every table, in order.
     """
 
-    def __init__(self, analysis: Analysis) -> None:
+    def __init__(self, analysis: Readable) -> None:
         self._analysis = analysis
         self.columns: tuple[ColumnErrors, ...] = tuple(
             found

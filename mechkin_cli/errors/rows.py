@@ -30,7 +30,7 @@ from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import Ask, KernelInputs, PreciseConstants, RowInputs
 from mechkin_cli.tape import DoubleDoubles, TraceLost, exactly
 from mechkin_cli.units import TIME, UnitSystem
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import has_rates
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -278,7 +278,7 @@ class Repeated:
         demand |= demand_of(session.problem.mechanism, wanted)
         found = self.wide.run(wanted, session, self._exact(inputs), demand)
         rows = self.row_states
-        unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
+        unclear = ~has_rates(rows.status)
         for quantity in wanted:
             own = found[quantity.name]
             own[:, ~rows.reached] = np.nan

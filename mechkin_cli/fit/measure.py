@@ -7,20 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis import Design
+from mechkin_cli.building import build, open_data
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.fit.nearest import nearest_places
 from mechkin_cli.fit.request import Constraint, FitRequest, Target
 from mechkin_cli.fit.search import Measures
-from mechkin_cli.fit.slopes import nearest_places
 from mechkin_cli.tables import row_weights
 from mechkin_cli.tolerances import LAST_ROW
-from mechkin_cli.variants import way_of
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.variants import file_values, vary, way_of, with_parameters
+from mechkin_cli.verdict import SWEEP, has_solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.mechanism import DrivenInput
-    from mechkin_cli.model import Model
     from mechkin_cli.show import Bools, Floats
 
 
@@ -46,11 +48,11 @@ class FitModels:
         UsageError: it has nothing that runs.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Solvable) -> None:
         if SWEEP in model.runs and not model.problem.motion.inputs:
             raise UsageError(f"{model.name} has no sweep to fit; give it motion: with an input")
         self.model = model
-        self._listed: dict[tuple[float, ...], Model] = {}
+        self._listed: dict[tuple[float, ...], Solvable] = {}
 
     @cached_property
     def moved(self) -> DrivenInput:
@@ -78,7 +80,7 @@ class FitModels:
         return problem.units.label(problem.quantities()[self.moved.name].dimension)
 
     @cached_property
-    def curve(self) -> Model:
+    def curve(self) -> Solvable:
         """The sweep's range in close rows."""
         begin, end = self.ends
         count = max(CURVE_ROWS, self.model.problem.motion.rows)
@@ -92,7 +94,7 @@ class FitModels:
         )
         return written
 
-    def listed(self, inputs: Sequence[float]) -> Model:
+    def listed(self, inputs: Sequence[float]) -> Solvable:
         """The file's first row, then rows at these inputs."""
         key = tuple(inputs)
         if key not in self._listed:
@@ -103,12 +105,8 @@ class FitModels:
     def _text(self, value: float) -> str:
         return f"{value!r} {self.unit}".strip()
 
-    def _with(self, rows: dict[str, Any]) -> Model:
+    def _with(self, rows: dict[str, Any]) -> Solvable:
         """The same mechanism under another motion of the moving input."""
-        from mechkin_cli.building import build, open_data
-        from mechkin_cli.model import Model
-        from mechkin_cli.variants import VariedModel, file_values
-
         document = self.model.built.read.document
         data: dict[str, Any] = {k: v for k, v in document.data.items() if k not in LEFT_OUT}
         motion: dict[str, Any] = data["motion"]
@@ -124,18 +122,16 @@ class FitModels:
                 inputs[driven.name] = written
         data["motion"] = motion | {"inputs": inputs}
         source = open_data(data, document.file, folder=document.folder, tables=document.tables)
-        found = Model(build(source), self.model.stem)
-        if isinstance(self.model, VariedModel):
-            own = self.model.values
-            in_file = file_values(
-                np.array(list(own.values()))[:, None], self.model.problem, tuple(own)
-            )
-            return found.with_parameters({name: float(v[0]) for name, v in in_file.items()})
-        return found
+        model = self.model.of(Design(build(source), self.model.design.stem))
+        own = self.model.design.values
+        if not own:
+            return model
+        in_si = np.array(list(own.values()))[:, None]
+        in_file = file_values(in_si, self.model.problem, tuple(own))
+        return with_parameters(model, {name: float(v[0]) for name, v in in_file.items()})
 
 
 TIME = "time"
-SOLVED = np.array([status.has_solution for status in Status])
 
 
 class FitValues:
@@ -227,16 +223,16 @@ class FitValues:
         return Measures(_beside(residuals, count), tuple(peaks), _beside(margins, count), missing)
 
     def _run(
-        self, model: Model, values: dict[str, Floats], texts: list[str], run: str = SWEEP
+        self, model: Solvable, values: dict[str, Floats], texts: list[str], run: str = SWEEP
     ) -> tuple[dict[str, Floats], Floats]:
         """Expressions over the rows, and the part of rows or values that are missing (S,)."""
         asked = list(dict.fromkeys(texts)) or [model.problem.motion.inputs[0].name]
         if run == SWEEP:
-            variants = model.vary(values, asked)
-            lost = ~SOLVED[variants.codes]
+            variants = vary(model, values, asked)
+            lost = ~has_solution(variants.codes)
         else:
-            variants = model.vary(values, list(dict.fromkeys((*asked, TIME))), run=run)
-            lost = ~SOLVED[variants.codes] | ~self.on_time(run, variants[TIME])
+            variants = vary(model, values, list(dict.fromkeys((*asked, TIME))), run=run)
+            lost = ~has_solution(variants.codes) | ~self.on_time(run, variants[TIME])
         found = {}
         for text in asked:
             value = variants[text]
@@ -259,7 +255,7 @@ def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
     return [sign * (values - bound) / (abs(bound) or 1.0) for bound, sign in constraint.bounds]
 
 
-def rms_weights(model: Model, run: str) -> Floats:
+def rms_weights(model: Solvable, run: str) -> Floats:
     """Roots of what each row counts for in a mean over the way (rows,)."""
     if run != SWEEP:
         weights = row_weights(model.problem.responses[run].moments.written)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from mechkin_cli.analysis import input_values, run_name
 from mechkin_cli.arguments import a_setting, shown
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import Vector
 from mechkin_cli.mechanism import response_problem
-from mechkin_cli.model import input_values, run_name
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.units import TIME
 from mechkin_cli.variants import expressions_of, one_value, parameter_values, sample_of

@@ -8,21 +8,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.arguments import a_whole_number
-from mechkin_cli.fit.measure import SOLVED, TIME, FitModels, FitValues, deviations, margins_of
+from mechkin_cli.fit.measure import TIME, FitModels, FitValues, deviations, margins_of
+from mechkin_cli.fit.nearest import nearest_places
 from mechkin_cli.fit.request import Constraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, found
-from mechkin_cli.fit.slopes import FitSlopes, nearest_places
+from mechkin_cli.fit.slopes import FitSlopes
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.variants import vary, with_parameters
+from mechkin_cli.verdict import SWEEP, Status, has_solution
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from mechkin_cli.analysis import Analysis, Solvable
     from mechkin_cli.fit.search import SearchResult
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.model import Analysis, Model
     from mechkin_cli.show import Bools, Floats
 
 
@@ -162,7 +164,7 @@ class Fit(Listed):
         found = values.values(best.unknowns[:, None])
         self.parameters = {name: float(value[0]) for name, value in found.items()}
         self.units = {one.name: one.unit for one in request.parameters}
-        self.model: Model = values.models.model.with_parameters(self.parameters)
+        self.model: Solvable = with_parameters(values.models.model, self.parameters)
         self.evaluations, self.slopes_taken = measured.evaluations, measured.slopes_taken
         self.exact_taken = measured.exact_taken
         self.slopes = _slopes_told(measured, why)
@@ -271,7 +273,7 @@ class Fit(Listed):
     def _solved(self, run: str) -> Bools:
         """Which of the rows that were asked for have a solution at their places."""
         rows = self._rows(run)
-        found = SOLVED[rows.result.status]
+        found = has_solution(rows.result.status)
         if run == SWEEP:
             return found
         times = self._padded(run, TIME)
@@ -283,7 +285,7 @@ class Fit(Listed):
     def _padded(self, run: str, text: str) -> Floats:
         """A quantity at the moments of a response, nan behind its end."""
         values = self._rows(run)[text]
-        count = self.model.response(run).rows
+        count = self.model.design.response(run).rows
         found: Floats = np.full((count, *values.shape[1:]), np.nan)
         found[: len(values)] = values[:count]
         return found
@@ -308,7 +310,7 @@ class Fit(Listed):
             if run == SWEEP:
                 found = self.model.analyze(_names(self.model.problem, texts), tables=[])
             else:
-                known = response_problem(self.model.problem, self.model.response(run))
+                known = response_problem(self.model.problem, self.model.design.response(run))
                 found = self.model.respond(run, _names(known, texts), tables=[])
             self._kept[run] = found
         return self._kept[run]
@@ -333,7 +335,7 @@ class Fit(Listed):
         # each by itself from the first row, in the order in which they are passed
         order = np.argsort(inputs if self._values.models.ends[1] >= inputs.min() else -inputs)
         listed = self._values.models.listed(tuple(inputs[order].tolist()))
-        found = listed.with_parameters(self.parameters).analyze(
+        found = with_parameters(listed, self.parameters).analyze(
             _names(listed.problem, [target.of]), tables=[]
         )
         values = np.empty((len(inputs), target.width))
@@ -344,9 +346,8 @@ class Fit(Listed):
     def _nearest(self, target: Target) -> Floats:
         """The inputs at which the curve comes nearest to the points."""
         models = self._values.models
-        run = models.curve.vary(
-            {name: np.array([value]) for name, value in self.parameters.items()}, [target.of]
-        )
+        single = {name: np.array([value]) for name, value in self.parameters.items()}
+        run = vary(models.curve, single, [target.of])
         rows, _ = nearest_places(np.nan_to_num(run[target.of]), target.wanted)
         found: Floats = np.interp(rows[0], np.arange(len(models.curve_inputs)), models.curve_inputs)
         return found
@@ -394,7 +395,7 @@ def _names(problem: Problem, texts: list[str]) -> list[str]:
 
 
 def fit_of(
-    model: Model,
+    model: Solvable,
     targets: Any,
     parameters: Any,
     constraints: Any,

@@ -1,20 +1,28 @@
-"""A checked mechanism file, and the questions that can be asked of it."""
+"""A checked mechanism file, and the questions that can be asked of it: `load`, `loads`, `Model`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
-from mechkin_cli.arguments import Setting, a_path, a_text, texts
+from mechkin_cli import fit, mobility, modes, sensitivities, studies, variants, view
+from mechkin_cli.analysis import (
+    Analysis,
+    Design,
+    RunOptions,
+    input_values,
+    respond,
+    run_name,
+    run_sweep,
+)
+from mechkin_cli.arguments import Setting, a_path, a_text, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
-from mechkin_cli.model.analysis import Analysis
-from mechkin_cli.model.runs import RunOptions, run_name
-from mechkin_cli.model.settings import input_values, parameter_texts
+from mechkin_cli.model.position import Position, solver_of
 from mechkin_cli.session import Session
 from mechkin_cli.show import Listed, Listing, Named
 from mechkin_cli.structure import SolverGraph
@@ -26,143 +34,123 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
     from os import PathLike
 
+    from mechkin_cli.analysis import Certificate
     from mechkin_cli.building import ViewSettings
-    from mechkin_cli.expressions import Quantity
     from mechkin_cli.fit import Fit
     from mechkin_cli.mechanism import ResponseProblem
     from mechkin_cli.mobility import Mobility
-    from mechkin_cli.model.position import Position, Solver
     from mechkin_cli.modes import Modes, Ranges
-    from mechkin_cli.proofs import Certificate
     from mechkin_cli.sensitivities import Sensitivities, Tolerances
-    from mechkin_cli.session import Precise, ShiftingPrecise
+    from mechkin_cli.session import Precise
     from mechkin_cli.studies import StudyFiles, StudyResults
-    from mechkin_cli.variants import Base, Reduce, Variants
+    from mechkin_cli.variants import Reduce, Variants
 
 
-# `Model.certify`: the sweep with its proofs.
+class Parameters(Listed, Mapping[str, float]):
+    """The parameters of a model by name: values in the file's units, in the file's order.
+
+    Example:
+        >>> from mechkin_cli import load
+        >>> given = load("mechanisms/dissertation/rcsr.yaml").parameters
+        >>> given["P1"], given.unit("P1")
+        (0.5, 'in')
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._known, self._units = problem.parameters, problem.units
+
+    def __getitem__(self, name: str) -> float:
+        quantity = self._known[name]
+        in_si = float(quantity.value)  # type: ignore[arg-type]
+        return self._units.from_si(in_si, quantity.dimension)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._known)
+
+    def __len__(self) -> int:
+        return len(self._known)
+
+    def unit(self, name: str) -> str:
+        """The unit of a parameter in the file's units, "" of a pure number."""
+        return self._units.label(self._known[name].dimension)
+
+    @property
+    def listing(self) -> Listing:
+        """Names, values and units."""
+        rows = tuple((name, f"{value:.10g}", self.unit(name)) for name, value in self.items())
+        head = f"{len(rows)} parameter{'' if len(rows) == 1 else 's'}"
+        return Listing(head, ("parameter", "value", "unit") if rows else (), rows)
 
 
-class Analyzed(Protocol):
-    """What runs a sweep."""
+class Model(Listed):
+    """A checked mechanism file, as `mk.load` and `mk.loads` return it.
 
-    def analyze(
-        self,
-        *,
-        mode: str | None = None,
-        closed_at: Sequence[str] | None = None,
-        lanes: int = 0,
-        threads: int = 0,
-    ) -> Analysis:
-        """Runs the sweep."""
-        ...
+    `analyze` runs its sweep, `respond` its responses; `modes`, `ranges` and `mobility` tell how it
+    can be assembled and moved. Values are in the file's units throughout.
 
+    Attributes:
+        design: the file with the values of its parameters, in SI and in the kernel.
+    """
 
-class Certified:
-    """The proofs of a model."""
+    def __init__(self, design: Design) -> None:
+        self.design = design
 
-    def certify(
-        self: Analyzed,
-        *,
-        mode: str | None = None,
-        closed_at: Sequence[str] | None = None,
-        lanes: int = 0,
-        threads: int = 0,
-    ) -> Certificate:
-        """Runs the sweep and proves its rows: that each has exactly one position in a small box
-        about the one given, and that all lie on one branch.
+    def of(self, design: Design) -> Model:
+        """A model of another design."""
+        return Model(design)
 
-        Args and errors are those of `analyze`.
+    # What the file says.
 
-        Example:
-            >>> from mechkin_cli import load
-            >>> proofs = load("mechanisms/dissertation/rcsr.yaml").certify()
-            >>> proofs.is_one_branch, sorted(set(proofs.status.tolist()))
-            (True, ['proven'])
-            >>> low, high = proofs.enclosure("O2.theta")
-            >>> bool((high - low < 1e-11).all())
-            True
-        """
-        analysis = self.analyze(mode=mode, closed_at=closed_at, lanes=lanes, threads=threads)
-        return analysis.certificate
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        return self.problem.mechanism.name
 
+    @property
+    def stem(self) -> str:
+        """The name of the file without its ending."""
+        return self.design.stem
 
-# Dimensions that do what is wanted.
+    @property
+    def source(self) -> str:
+        """Where the mechanism comes from, as its file says; "" where it does not."""
+        return self.built.source
 
+    @property
+    def built(self) -> Built:
+        """The file, checked."""
+        return self.design.built
 
-class Fitted:
-    """The fits of a model."""
+    @property
+    def problem(self) -> Problem:
+        """The mechanism, its motion and assembly in SI."""
+        return self.design.problem
 
-    def fit(
-        self,
-        targets: Mapping[str, Any] | Sequence[Mapping[str, Any]],
-        parameters: Mapping[str, tuple[Any, Any]],
-        *,
-        constraints: Mapping[str, Any] | Sequence[Mapping[str, Any]] = (),
-        starts: int = 4,
-        generations: int = 40,
-        seed: int = 0,
-        progress: Callable[[int, int], None] | None = None,
-    ) -> Fit:
-        """The parameters whose mechanism comes nearest to what is wanted.
-
-        The file's sweep is the range over which the mechanism has to assemble, in its mode.
-
-        Args:
-            targets: a quantity or expression (`of`; `run`: of a response) and what it should be
-                (`is`, values or points)
-                at inputs (`at`; a curve without it passes its points wherever it comes nearest), or
-                what of it should be `least`, "peak" or "rms" over the sweep's rows; `within` is the
-                deviation that counts as one, 1 of the file's unit where nothing is said.
-            parameters: the least and the largest value by name, as in `with_parameters`.
-            constraints: an expression (`of`) and its `min` or `max` in every row of the sweep, or
-                of the response that `run` names.
-            starts: local searches, the first from the model's own values, the others from the best
-                of a population; 1: no population.
-            generations: of differential evolution before that.
-            seed: of the population; the same one gives the same answer.
-            progress: told how many steps are done, and of how many.
-
-        Returns:
-            Parameters, deviations, constraints, and a model; `status` says whether all holds.
-
-        Raises:
-            UsageError: scipy is not installed (extra `fit`), an unknown name, an invalid value.
-
-        Example:
-            >>> from mechkin_cli import load
-            >>> m = load("mechanisms/plane/planar_four_bar.yaml")
-            >>> wanted = m.with_parameters({"a": 35, "c": 95}).analyze()["C.theta"][[4, 8, 16]]
-            >>> target = {"of": "C.theta", "at": [60, 120, 240], "is": wanted.tolist()}
-            >>> f = m.fit(target, {"a": (30, 50), "c": (80, 100)}, starts=1)
-            >>> f.status, {name: round(value, 6) for name, value in f.parameters.items()}
-            ('fitted', {'a': 35.0, 'c': 95.0})
-        """
-        from mechkin_cli.fit import fit_of
-
-        model: Model = self  # type: ignore[assignment]
-        return fit_of(model, targets, parameters, constraints, starts, generations, seed, progress)
-
-
-# How a model is copied and pickled, and how it shows itself.
-
-
-class ModelSource(Listed):
-    """What a model is kept as: the text, or the data, that it was read from."""
-
-    built: Built
-    stem: str
+    @property
+    def parameters(self) -> Parameters:
+        """The parameters by name: values in the file's units, and `unit(name)`."""
+        return Parameters(self.problem)
 
     @property
     def tables(self) -> Named[TableLayout]:
-        """Layouts of the file's tables."""
-        raise NotImplementedError
+        """Layouts of the file's tables, in order and by name; a run without any has one of its own
+        name."""
+        return Named(self.built.tables)
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled and copied as the text of the file and of the tables that it names."""
-        document = self.built.read.document
-        given = (document.text, document.file, dict(document.overrides), document.folder)
-        return _rebuilt, (*given, self.stem, document.is_data, dict(document.tables))
+    @property
+    def runs(self) -> tuple[str, ...]:
+        """The file's runs by name: `sweep`, unless it has responses alone, then its responses."""
+        return self.built.runs
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Warnings of the file."""
+        return self.problem.diagnostics
+
+    @cached_property
+    def quantities(self) -> frozenset[str]:
+        """Names of all quantities that columns and `Analysis` can use."""
+        return frozenset(self.problem.quantities())
 
     @property
     def listing(self) -> Listing:
@@ -188,225 +176,165 @@ class ModelSource(Listed):
             f"Model of {mechanism.name}", ("joint", "type", "coordinates"), joints, notes
         )
 
+    @property
+    def view_settings(self) -> ViewSettings:
+        """How the file wants to be shown (`view:`), in SI."""
+        return self.design.view_settings
 
-def _rebuilt(
-    text: str,
-    file: str,
-    overrides: Mapping[str, str],
-    folder: Path | None,
-    stem: str,
-    is_data: bool,
-    tables: Mapping[str, bytes],
-) -> Model:
-    """A model of the text that another had, or of the data that its text was made from."""
-    from mechkin_cli.building import build, open_data, open_text
-
-    if is_data:
-        import json
-
-        return Model(build(open_data(json.loads(text), file, overrides, folder, tables)), stem)
-    return Model(build(open_text(text, file, overrides, folder, tables)), stem)
-
-
-# Studies of a model.
-
-
-class Studied:
-    """The studies of a model."""
-
-    def study(
-        self,
-        study: str | Path | Mapping[str, Any],
-        out: str | Path | None = None,
-        *,
-        format: str = "csv",
-        again: bool = False,
-        threads: int = 0,
-        processes: int = 0,
-        executor: Executor | None = None,
-        scheduler: str | None = None,
-        progress: Callable[[int, int], None] | None = None,
-    ) -> StudyResults | StudyFiles:
-        """Many variants: drawn, crossed or listed, and numbers of each that are kept.
-
-        Args:
-            study: a study file, whose `mechanism:` does not count here; or its sections as a dict.
-            out: a folder for results of any size, which a run that was stopped goes on with; None:
-                they come back as arrays.
-            format: of the files, "csv" or "parquet" (extra `parquet`).
-            again: begin anew where the folder has results already.
-            threads: of the kernel in each process; 0: as many as pay, of workers one.
-            processes: so many new processes compute; 0: this one.
-            executor: computes instead; any of `concurrent.futures`.
-            scheduler: address of a Dask cluster that computes instead (extra `cluster`).
-            progress: told how many variants are done, and of how many.
-
-        Returns:
-            Columns over the variants; of a folder its files and an overview.
+    @property
+    def graph(self) -> SolverGraph:
+        """Tree, cut joints and blocks.
 
         Raises:
-            InvalidFile: with every independent error of the study and its place.
-            UsageError: too many results for the memory, a folder of another study or one that
-                another process writes to, what cannot be written, workers that do not answer.
-
-        Example:
-            >>> from mechkin_cli import load
-            >>> m = load("mechanisms/dissertation/rcsr.yaml")
-            >>> r = m.study(
-            ...     {"vary": {"P1": [0.48, 0.5, 0.52]}, "keep": [{"of": "O1.effort", "as": "peak"}]}
-            ... )
-            >>> r["peak(O1.effort)"].round(2).tolist()
-            [147.41, 135.04, 125.93]
+            InvalidFile: the mechanism cannot be solved as it is driven.
         """
-        from mechkin_cli.studies import Workers, study_of
+        return self.design.graph
 
-        workers = Workers(threads, processes, executor, scheduler)
-        model: Model = self  # type: ignore[assignment]
-        return study_of(model, study, out, format, again, workers, progress)
+    def response(self, name: str) -> ResponseProblem:
+        """What one of the file's responses asks for, in SI."""
+        return self.design.response(name)
 
+    def response_graph(self, name: str) -> SolverGraph:
+        """Tree, cut joints and blocks at the start of a response.
 
-# Sensitivities and tolerances of a model.
-
-
-class Toleranced:
-    """What parameters do to the quantities of a model."""
-
-    built: Built
-
-    @property
-    def problem(self) -> Problem:
-        """The mechanism, its motion and assembly in SI."""
-        raise NotImplementedError
+        Raises:
+            InvalidFile: its start names too few coordinates or too many, or nothing is free.
+        """
+        return self.design.response_graph(name)
 
     @property
-    def _given(self) -> Mapping[str, Quantity]:
-        """Values of parameters that were set, in SI."""
-        return MappingProxyType({})
+    def session(self) -> Session:
+        """The mechanism in the kernel, as the file drives it; every question goes through it.
 
-    @cached_property
-    def shifting(self) -> ShiftingPrecise:
-        """As `Model.precise`, with parameters that can be shifted.
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        return self.design.session
+
+    def session_of(self, run: str) -> Session:
+        """The mechanism in the kernel at the first row of a run: that of a response is driven by
+        the coordinates that its start names.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        return self.design.session_of(run)
+
+    @property
+    def precise(self) -> Precise:
+        """The numbers of this model's sessions as the file's text says them, in double-double.
 
         Raises:
             TraceLost: a number depends on the text in a way that no tape holds.
         """
-        from mechkin_cli.building import shifting
+        return self.design.precise
 
-        return shifting(self.built, self.problem, self._given)
+    # Runs.
 
-    def sensitivities(
+    def analyze(
         self,
-        quantities: Iterable[str],
-        parameters: Iterable[str] | None = None,
-        at: Setting | Iterable[Setting] | None = None,
+        quantities: Iterable[str] | None = None,
         *,
-        run: str | None = None,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        closed_at: Sequence[str] | None = None,
+        lanes: int = 0,
         threads: int = 0,
-    ) -> Sensitivities:
-        """How quantities change with parameters, to first order, at every row: exact to rounding.
-
-        The rows are closed again in double-double with the parameter a little less and a little
-        more, so whatever `--errors` repeats has sensitivities: positions, rates, accelerations,
-        reactions, efforts, expressions, columns. A row keeps its number: where inputs are written
-        with parameters they move with them, as the file says. Other parameters that are written
-        with the one that changes follow it.
-
-        It costs a recording of the file, which the model keeps (0.1 s for the RCSR), and for each
-        parameter two runs of the chosen rows in double-double; a response is run and repeated
-        anew for both values, which takes seconds.
+        errors: bool = False,
+    ) -> Analysis:
+        """Runs the sweep.
 
         Args:
-            quantities: quantities, expressions or labels of columns.
-            parameters: names; None: all.
-            at: values of the input that moves (or of time) at which rows stand, numbers in the
-                file's units or texts; None: all rows.
-            run: a response instead of the sweep; None: the file's first run.
-            threads: how many split the rows, 0 for as many as pay.
+            quantities: names to compute besides those that the tables read; None: no others.
+            tables: names of the tables wanted; None: all, [] none.
+            mode: assembly mode at the first row instead of the file's choice.
+            closed_at: closing joints to use (the answers do not depend on them).
+            lanes: rows computed side by side, 2, 4 or 8; 0: the most the machine can.
+            threads: how many split the rows; 0: all cores. Answers depend on neither.
+            errors: measure the true error of every cell now, not when `errors` is first read.
+
+        Returns:
+            The run: `r["O4.theta"]` is an array (rows,), a vector (rows, 3), or (rows, 2) in a
+            plane; nan where a row has no value, and `r["row.status"]` says why.
 
         Raises:
-            UsageError: unknown names, words instead of numbers, a place without a row.
-            ExpressionError: no such quantity, or dimensions that do not fit.
             InvalidFile: the mechanism cannot be solved as it is driven.
-
-        Example:
-            >>> from mechkin_cli import load
-            >>> m = load("mechanisms/dissertation/rcsr.yaml")
-            >>> s = m.sensitivities(["O4.theta"], ["P1", "alpha1"], at=170)
-            >>> s["O4.theta", "P1"].round(4).tolist(), s.unit("O4.theta", "P1")
-            ([39.755], 'deg/in')
+            UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
-        from mechkin_cli.sensitivities import sensitivities
+        options = RunOptions(quantities, tables, mode, closed_at, lanes, threads, errors)
+        return run_sweep(self, options)
 
-        model: Model = self  # type: ignore[assignment]
-        return sensitivities(model, quantities, parameters, at, run, threads)
-
-    def tolerances(
+    def respond(
         self,
-        tolerances: Mapping[str, Setting | Sequence[Setting]],
-        quantities: Iterable[str],
-        at: Setting | Iterable[Setting] | None = None,
+        name: str | None = None,
+        quantities: Iterable[str] | None = None,
         *,
-        samples: int = 1024,
-        method: str = "latin",
-        seed: int = 0,
-        distribution: str = "uniform",
-    ) -> Tolerances:
-        """What tolerances of parameters do to quantities: worst cases, root sum square and shares
-        to first order, and samples beside them.
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Analysis:
+        """Runs one of the file's responses: the motion under its loads and efforts.
 
         Args:
-            tolerances: by name half the width of a band about the parameter's own value, or its two
-                ends; numbers in the file's units or texts. Each scatters by itself: none follows
-                another that it is written with.
-            quantities: as those of `sensitivities`, but no vectors.
-            at: as there.
-            samples: how many variants are run beside.
-            method: how they are drawn: "latin", "sobol" or "random", with a `seed`.
-            distribution: within the bands: "uniform", or "normal" with a third of half the width
-                as standard deviation, which nothing cuts off.
+            name: of the response; None: the only one.
+            quantities: names to compute beside what its tables read.
+            tables: names of its tables that are wanted; None: all, [] none.
+            mode: assembly mode at the start instead of the file's choice.
+            lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
+            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+
+        Returns:
+            As `analyze`; the rows end with that of the stop that was met, and `row.event` says
+            which.
 
         Raises:
-            UsageError: unknown names, invalid values, empty bands, a vector.
-            ExpressionError: no such quantity, or dimensions that do not fit.
-            InvalidFile: the mechanism cannot be solved as it is driven.
+            InvalidFile: the start names too few coordinates or too many.
+            UsageError: an unknown response, table, quantity or mode, or a width as of `analyze`.
+        """
+        return respond(self, name, RunOptions(quantities, tables, mode, None, lanes, threads))
+
+    def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
+        """All runs of the file, or one.
+
+        Args:
+            run: `sweep`, or a response; None: all.
+            mode: assembly mode at the first row instead of the file's choice.
+
+        Raises:
+            InvalidFile: a run cannot be solved as it is driven.
+            UsageError: an unknown run or mode.
+        """
+        runs = self.runs if run is None else (run_name(self.runs, run),)
+        return [
+            self.analyze(mode=mode) if name == SWEEP else self.respond(name, mode=mode)
+            for name in runs
+        ]
+
+    def certify(
+        self,
+        *,
+        mode: str | None = None,
+        closed_at: Sequence[str] | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Certificate:
+        """Runs the sweep and proves its rows: that each has exactly one position in a small box
+        about the one given, and that all lie on one branch.
+
+        Args and errors are those of `analyze`.
 
         Example:
             >>> from mechkin_cli import load
-            >>> m = load("mechanisms/dissertation/rcsr.yaml")
-            >>> t = m.tolerances({"P1": "0.002 in", "P2": "0.002 in"}, ["O4.theta"], samples=64)
-            >>> {name: round(float(share[-1]), 2) for name, share in t.shares("O4.theta").items()}
-            {'P2': 0.8, 'P1': 0.2}
+            >>> proofs = load("mechanisms/dissertation/rcsr.yaml").certify()
+            >>> proofs.is_one_branch, sorted(set(proofs.status.tolist()))
+            (True, ['proven'])
+            >>> low, high = proofs.enclosure("O2.theta")
+            >>> bool((high - low < 1e-11).all())
+            True
         """
-        from mechkin_cli.sensitivities import stack
-
-        model: Model = self  # type: ignore[assignment]
-        given = (at, samples, method, seed, distribution)
-        return stack(model, tolerances, quantities, *given)
-
-
-# `Model.view`: the page of a model.
-
-
-class Described(Protocol):
-    """What is built of a file."""
-
-    @property
-    def built(self) -> Built:
-        """The file, checked."""
-        ...
-
-
-class Viewed:
-    """The page of a model."""
-
-    @property
-    def view_settings(self: Described) -> ViewSettings:
-        """How the file wants to be shown (`view:`), in SI."""
-        if self.built.view is not None:
-            return self.built.view
-        from mechkin_cli.building import ViewSettings
-
-        return ViewSettings()
+        run = self.analyze(mode=mode, closed_at=closed_at, lanes=lanes, threads=threads)
+        return run.certificate
 
     def view(
         self,
@@ -439,181 +367,103 @@ class Viewed:
             ...     load("mechanisms/dissertation/rcsr.yaml").view(f"{folder}/rcsr.html").name
             'rcsr.html'
         """
-        from mechkin_cli.view import analyses_of, view_page, write_view
+        page, _ = view.view_page(self.analyses(run, mode), modes)
+        return view.write_view(path, page)
 
-        assert isinstance(self, Model)
-        return write_view(path, view_page(analyses_of(self, run, mode), modes)[0])
+    # Positions, modes, what can move.
 
-
-class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
-    """A checked mechanism file, as `mk.load` and `mk.loads` return it.
-
-    `analyze` runs its sweep, `respond` its responses; `modes`, `ranges` and `mobility` tell how it
-    can be assembled and moved. Values are in the file's units throughout."""
-
-    def __init__(self, built: Built, stem: str) -> None:
-        self.built = built
-        self.stem = stem
-        self._solvers: dict[tuple[str, ...] | None, Solver] = {}
-        self._sessions: dict[str, Session] = {}
-
-    @property
-    def name(self) -> str:
-        """The mechanism's name."""
-        return self.problem.mechanism.name
-
-    @property
-    def source(self) -> str:
-        """Where the mechanism comes from, as its file says; "" where it does not."""
-        return self.built.source
-
-    @property
-    def problem(self) -> Problem:
-        """The mechanism, its motion and assembly in SI."""
-        return self.built.problem
-
-    @property
-    def graph(self) -> SolverGraph:
-        """Tree, closing joints and blocks.
-
-        Raises:
-            InvalidFile: the mechanism cannot be solved as it is driven.
-        """
-        return self._sound(self.built.graph)
-
-    def response(self, name: str) -> ResponseProblem:
-        """What one of the file's responses asks for, in SI."""
-        return self.built.problem.responses[name]
-
-    def response_graph(self, name: str) -> SolverGraph:
-        """Tree, closing joints and blocks at the start of a response; InvalidFile where that names
-        too few coordinates or too many, or nothing is free."""
-        graph = self._sound(self.built.response_graphs[name])
-        response = self.built.problem.responses[name]
-        if response.independent:
-            return graph
-        text = "nothing is free to move in this response: all its freedoms are driven"
-        hint = "write the laws under motion: {time: ..., inputs: ...}, which is a sweep in time"
-        return self._sound(Diagnostic("nothing-free", "error", text, response.place, hint=hint))
-
-    def _sound(self, graph: SolverGraph | Diagnostic) -> SolverGraph:
-        if isinstance(graph, Diagnostic):
-            raise InvalidFile([*self.diagnostics, graph])
-        return graph
-
-    @cached_property
-    def session(self) -> Session:
-        """The mechanism in the kernel, as the file drives it; every question goes through it.
-
-        Raises:
-            InvalidFile: the mechanism cannot be solved as it is driven.
-        """
-        return Session.of(self.problem, self.graph).reading(lambda: self.precise)
-
-    @cached_property
-    def precise(self) -> Precise:
-        """The numbers of this model's sessions as the file's text says them, in double-double.
-
-        Raises:
-            TraceLost: a number depends on the text in a way that no tape holds.
-        """
-        from mechkin_cli.building import precise
-
-        return precise(self.built, self.problem)
-
-    @property
-    def tables(self) -> Named[TableLayout]:
-        """Layouts of the file's tables, in order and by name; a run without any has one of its own
-        name."""
-        return Named(self.built.tables)
-
-    @property
-    def runs(self) -> tuple[str, ...]:
-        """The file's runs by name: `sweep`, unless it has responses alone, then its responses."""
-        return self.built.runs
-
-    @property
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Warnings of the file."""
-        return self.problem.diagnostics
-
-    @cached_property
-    def quantities(self) -> frozenset[str]:
-        """Names of all quantities that columns and `Analysis` can use."""
-        return frozenset(self.problem.quantities())
-
-    def analyze(
+    def solve(
         self,
+        inputs: Setting | Mapping[str, Setting],
         quantities: Iterable[str] | None = None,
-        *,
-        tables: Sequence[str] | None = None,
-        mode: str | None = None,
-        closed_at: Sequence[str] | None = None,
-        lanes: int = 0,
-        threads: int = 0,
-        errors: bool = False,
-    ) -> Analysis:
-        """Runs the sweep.
+    ) -> Position:
+        """One position, continued from the nearest row of the file's sweep, straight in the inputs.
+
+        The answer does not depend on what was asked before. Rates, accelerations and forces are
+        those at the rates of the nearest row.
 
         Args:
-            quantities: names to compute besides those that the tables read; None: no others.
-            tables: names of the tables wanted; None: all, [] none.
-            mode: assembly mode at the first row instead of the file's choice.
-            closed_at: closing joints to use (the answers do not depend on them).
-            lanes: rows computed side by side, 2, 4 or 8; 0: the most the machine can.
-            threads: how many split the rows; 0: all cores. Answers depend on neither.
-            errors: measure the true error of every cell now, not when `errors` is first read.
+            inputs: values by name as in `modes`; those left out keep their value of the first row,
+                but one that follows others by its law has to be given with them.
+            quantities: names; None: all joint coordinates.
 
         Returns:
-            The run: `r["O4.theta"]` is an array (rows,), a vector (rows, 3), or (rows, 2) in a
-            plane; nan where a row has no value, and `r["row.status"]` says why.
+            Values by name in the file's units; nan, and `status` not ok, where the branch ends
+            before.
+
+        Raises:
+            UsageError: an unknown input or quantity, or an invalid value.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> place = load("mechanisms/dissertation/rcsr.yaml").solve({"O1.theta": 161.5})
+            >>> round(place["O4.theta"], 6), place.status
+            (28.438352, 'ok')
+        """
+        names = None if quantities is None else texts("quantities", quantities, '["O4.theta"]')
+        return solver_of(self.design, names).solve(inputs)
+
+    def modes(
+        self,
+        at: Setting | Mapping[str, Setting] | None = None,
+        *,
+        run: str | None = None,
+        certify: bool = False,
+    ) -> Modes:
+        """All assembly modes at the first row, or at another place.
+
+        Args:
+            run: `sweep`, or a response, whose start is the first row; None: the file's first run.
+            at: the input there (of several, the first that the file sweeps), or inputs by name, in
+                the file's units or such as "0.5 rad"; those left out are as in the first row.
+            certify: prove that each exists and that all are different (`proofs`).
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
+            UsageError: an unknown input or run, or an invalid value.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> [a.name for a in load("mechanisms/dissertation/rcsr.yaml").modes(at=170).modes]
+            ['A', 'B']
         """
-        from mechkin_cli.model.runs import run_sweep
+        session = self.session_of(run_name(self.runs, run))
+        places = None if at is None else input_values(session.problem, at)
+        return modes.find_modes(session, places, certify=certify)
 
-        options = RunOptions(quantities, tables, mode, closed_at, lanes, threads, errors)
-        return run_sweep(self, options)
-
-    def respond(
-        self,
-        name: str | None = None,
-        quantities: Iterable[str] | None = None,
-        *,
-        tables: Sequence[str] | None = None,
-        mode: str | None = None,
-        lanes: int = 0,
-        threads: int = 0,
-    ) -> Analysis:
-        """Runs one of the file's responses: the motion under its loads and efforts.
+    def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
+        """The ranges of an input over which each mode assembles, and the circuits they form.
 
         Args:
-            name: of the response; None: the only one.
-            quantities: names to compute beside what its tables read.
-            tables: names of its tables that are wanted; None: all, [] none.
-            mode: assembly mode at the start instead of the file's choice.
-            lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
-            threads: how many split the rows, 0 for all cores where that pays (nor on this).
+            input: its name; None: the first that the file sweeps. Others stay as in the first row.
+            outputs: coordinates whose dead centres (extremes) are wanted, too.
 
         Returns:
-            As `analyze`; the rows end with that of the stop that was met, and `row.event` says
-            which.
+            A range for each mode, with what ends it, dead centres and circuits.
 
         Raises:
-            InvalidFile: the start names too few coordinates or too many.
-            UsageError: an unknown response, table, quantity or mode, or a width as of `analyze`.
+            InvalidFile: the mechanism cannot be solved as it is driven.
+            UsageError: no input, or an unknown input or coordinate.
         """
-        from mechkin_cli.model.runs import respond
+        if input is not None:
+            a_text("input", input, '"O1.theta"')
+        names = texts("outputs", outputs, '["O4.theta"]')
+        return modes.find_ranges(self.session, input, names)
 
-        return respond(self, name, RunOptions(quantities, tables, mode, None, lanes, threads))
+    def mobility(self) -> Mobility:
+        """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.
 
-    @cached_property
-    def _variants(self) -> Base:
-        from mechkin_cli.variants import Base
+        Inputs need not be declared.
 
-        return Base(self)
+        Example:
+            >>> from mechkin_cli import load
+            >>> load("mechanisms/classics/bennett.yaml").mobility().mobility
+            1
+        """
+        solvable = not isinstance(self.built.graph, Diagnostic)
+        return mobility.find_mobility(self.problem, self.session if solvable else None)
+
+    # Other parameters.
 
     def with_parameters(self, parameters: Mapping[str, Setting]) -> Model:
         """The model with other values of some parameters: nothing is read, checked or built anew.
@@ -635,9 +485,8 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
             >>> m.with_parameters({"P1": "0.52 in"}).analyze()["O4.theta"][:2].round(3).tolist()
             [36.504, 36.269]
         """
-        from mechkin_cli.variants import with_parameters
-
-        return with_parameters(self._variants, parameters)
+        design = variants.varied_design(self.design, parameters)
+        return self if design is self.design else Model(design)
 
     def vary(
         self,
@@ -685,131 +534,187 @@ class Model(ModelSource, Certified, Fitted, Studied, Toleranced, Viewed):
             >>> bool(least <= effort(0.5))
             True
         """
-        from mechkin_cli.variants import vary
+        return variants.vary(self, parameters, quantities, reduce, run, lanes, threads)
 
-        return vary(self._variants, {}, parameters, quantities, reduce, run, lanes, threads)
-
-    def solve(
+    def study(
         self,
-        inputs: Setting | Mapping[str, Setting],
-        quantities: Iterable[str] | None = None,
-    ) -> Position:
-        """One position, continued from the nearest row of the file's sweep, straight in the inputs.
-
-        The answer does not depend on what was asked before. Rates, accelerations and forces are
-        those at the rates of the nearest row.
+        study: str | Path | Mapping[str, Any],
+        out: str | Path | None = None,
+        *,
+        format: str = "csv",
+        again: bool = False,
+        threads: int = 0,
+        processes: int = 0,
+        executor: Executor | None = None,
+        scheduler: str | None = None,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> StudyResults | StudyFiles:
+        """Many variants: drawn, crossed or listed, and numbers of each that are kept.
 
         Args:
-            inputs: values by name as in `modes`; those left out keep their value of the first row,
-                but one that follows others by its law has to be given with them.
-            quantities: names; None: all joint coordinates.
+            study: a study file, whose `mechanism:` does not count here; or its sections as a dict.
+            out: a folder for results of any size, which a run that was stopped goes on with; None:
+                they come back as arrays.
+            format: of the files, "csv" or "parquet" (extra `parquet`).
+            again: begin anew where the folder has results already.
+            threads: of the kernel in each process; 0: as many as pay, of workers one.
+            processes: so many new processes compute; 0: this one.
+            executor: computes instead; any of `concurrent.futures`.
+            scheduler: address of a Dask cluster that computes instead (extra `cluster`).
+            progress: told how many variants are done, and of how many.
 
         Returns:
-            Values by name in the file's units; nan, and `status` not ok, where the branch ends
-            before.
+            Columns over the variants; of a folder its files and an overview.
 
         Raises:
-            UsageError: an unknown input or quantity, or an invalid value.
+            InvalidFile: with every independent error of the study and its place.
+            UsageError: too many results for the memory, a folder of another study or one that
+                another process writes to, what cannot be written, workers that do not answer.
 
         Example:
             >>> from mechkin_cli import load
-            >>> place = load("mechanisms/dissertation/rcsr.yaml").solve({"O1.theta": 161.5})
-            >>> round(place["O4.theta"], 6), place.status
-            (28.438352, 'ok')
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
+            >>> r = m.study(
+            ...     {"vary": {"P1": [0.48, 0.5, 0.52]}, "keep": [{"of": "O1.effort", "as": "peak"}]}
+            ... )
+            >>> r["peak(O1.effort)"].round(2).tolist()
+            [147.41, 135.04, 125.93]
         """
-        names = None if quantities is None else texts("quantities", quantities, '["O4.theta"]')
-        solver = self._solvers.get(names)
-        if solver is None:
-            from mechkin_cli.model.position import solver_of
+        workers = studies.Workers(threads, processes, executor, scheduler)
+        return studies.study_of(self, study, out, format, again, workers, progress)
 
-            solver = self._solvers[names] = solver_of(self, names)
-        return solver.solve(inputs)
-
-    def session_of(self, run: str) -> Session:
-        """The mechanism in the kernel at the first row of a run: that of a response is driven by
-        the coordinates that its start names.
-
-        Raises:
-            InvalidFile: the mechanism cannot be solved as it is driven.
-        """
-        if run == SWEEP:
-            return self.session
-        if run not in self._sessions:
-            from mechkin_cli.model.runs import session_at_start
-
-            self._sessions[run] = session_at_start(self, run)
-        return self._sessions[run]
-
-    def modes(
+    def sensitivities(
         self,
-        at: Setting | Mapping[str, Setting] | None = None,
+        quantities: Iterable[str],
+        parameters: Iterable[str] | None = None,
+        at: Setting | Iterable[Setting] | None = None,
         *,
         run: str | None = None,
-        certify: bool = False,
-    ) -> Modes:
-        """All assembly modes at the first row, or at another place.
+        threads: int = 0,
+    ) -> Sensitivities:
+        """How quantities change with parameters, to first order, at every row: exact to rounding.
+
+        The rows are closed again in double-double with the parameter a little less and a little
+        more, so whatever `--errors` repeats has sensitivities: positions, rates, accelerations,
+        reactions, efforts, expressions, columns. A row keeps its number: where inputs are written
+        with parameters they move with them, as the file says. Other parameters that are written
+        with the one that changes follow it.
+
+        It costs a recording of the file, which the model keeps (0.1 s for the RCSR), and for each
+        parameter two runs of the chosen rows in double-double; a response is run and repeated
+        anew for both values, which takes seconds.
 
         Args:
-            run: `sweep`, or a response, whose start is the first row; None: the file's first run.
-            at: the input there (of several, the first that the file sweeps), or inputs by name, in
-                the file's units or such as "0.5 rad"; those left out are as in the first row.
-            certify: prove that each exists and that all are different (`proofs`).
+            quantities: quantities, expressions or labels of columns.
+            parameters: names; None: all.
+            at: values of the input that moves (or of time) at which rows stand, numbers in the
+                file's units or texts; None: all rows.
+            run: a response instead of the sweep; None: the file's first run.
+            threads: how many split the rows, 0 for as many as pay.
 
         Raises:
+            UsageError: unknown names, words instead of numbers, a place without a row.
+            ExpressionError: no such quantity, or dimensions that do not fit.
             InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: an unknown input or run, or an invalid value.
 
         Example:
             >>> from mechkin_cli import load
-            >>> [a.name for a in load("mechanisms/dissertation/rcsr.yaml").modes(at=170).modes]
-            ['A', 'B']
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
+            >>> s = m.sensitivities(["O4.theta"], ["P1", "alpha1"], at=170)
+            >>> s["O4.theta", "P1"].round(4).tolist(), s.unit("O4.theta", "P1")
+            ([39.755], 'deg/in')
         """
-        from mechkin_cli.modes import find_modes
+        return sensitivities.sensitivities(self, quantities, parameters, at, run, threads)
 
-        session = self.session_of(run_name(self.runs, run))
-        places = None if at is None else input_values(session.problem, at)
-        return find_modes(session, places, certify=certify)
-
-    def ranges(self, input: str | None = None, outputs: Iterable[str] = ()) -> Ranges:
-        """The ranges of an input over which each mode assembles, and the circuits they form.
+    def tolerances(
+        self,
+        tolerances: Mapping[str, Setting | Sequence[Setting]],
+        quantities: Iterable[str],
+        at: Setting | Iterable[Setting] | None = None,
+        *,
+        samples: int = 1024,
+        method: str = "latin",
+        seed: int = 0,
+        distribution: str = "uniform",
+    ) -> Tolerances:
+        """What tolerances of parameters do to quantities: worst cases, root sum square and shares
+        to first order, and samples beside them.
 
         Args:
-            input: its name; None: the first that the file sweeps. Others stay as in the first row.
-            outputs: coordinates whose dead centres (extremes) are wanted, too.
+            tolerances: by name half the width of a band about the parameter's own value, or its two
+                ends; numbers in the file's units or texts. Each scatters by itself: none follows
+                another that it is written with.
+            quantities: as those of `sensitivities`, but no vectors.
+            at: as there.
+            samples: how many variants are run beside.
+            method: how they are drawn: "latin", "sobol" or "random", with a `seed`.
+            distribution: within the bands: "uniform", or "normal" with a third of half the width
+                as standard deviation, which nothing cuts off.
+
+        Raises:
+            UsageError: unknown names, invalid values, empty bands, a vector.
+            ExpressionError: no such quantity, or dimensions that do not fit.
+            InvalidFile: the mechanism cannot be solved as it is driven.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
+            >>> t = m.tolerances({"P1": "0.002 in", "P2": "0.002 in"}, ["O4.theta"], samples=64)
+            >>> {name: round(float(share[-1]), 2) for name, share in t.shares("O4.theta").items()}
+            {'P2': 0.8, 'P1': 0.2}
+        """
+        given = (at, samples, method, seed, distribution)
+        return sensitivities.stack(self, tolerances, quantities, *given)
+
+    def fit(
+        self,
+        targets: Mapping[str, Any] | Sequence[Mapping[str, Any]],
+        parameters: Mapping[str, tuple[Any, Any]],
+        *,
+        constraints: Mapping[str, Any] | Sequence[Mapping[str, Any]] = (),
+        starts: int = 4,
+        generations: int = 40,
+        seed: int = 0,
+        progress: Callable[[int, int], None] | None = None,
+    ) -> Fit:
+        """The parameters whose mechanism comes nearest to what is wanted.
+
+        The file's sweep is the range over which the mechanism has to assemble, in its mode.
+
+        Args:
+            targets: a quantity or expression (`of`; `run`: of a response) and what it should be
+                (`is`, values or points)
+                at inputs (`at`; a curve without it passes its points wherever it comes nearest), or
+                what of it should be `least`, "peak" or "rms" over the sweep's rows; `within` is the
+                deviation that counts as one, 1 of the file's unit where nothing is said.
+            parameters: the least and the largest value by name, as in `with_parameters`.
+            constraints: an expression (`of`) and its `min` or `max` in every row of the sweep, or
+                of the response that `run` names.
+            starts: local searches, the first from the model's own values, the others from the best
+                of a population; 1: no population.
+            generations: of differential evolution before that.
+            seed: of the population; the same one gives the same answer.
+            progress: told how many steps are done, and of how many.
 
         Returns:
-            A range for each mode, with what ends it, dead centres and circuits.
+            Parameters, deviations, constraints, and a model; `status` says whether all holds.
 
         Raises:
-            InvalidFile: the mechanism cannot be solved as it is driven.
-            UsageError: no input, or an unknown input or coordinate.
-        """
-        from mechkin_cli.modes import find_ranges
-
-        if input is not None:
-            a_text("input", input, '"O1.theta"')
-        names = texts("outputs", outputs, '["O4.theta"]')
-        return find_ranges(self.session, input, names)
-
-    def mobility(self) -> Mobility:
-        """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.
-
-        Inputs need not be declared.
+            UsageError: scipy is not installed (extra `fit`), an unknown name, an invalid value.
 
         Example:
             >>> from mechkin_cli import load
-            >>> load("mechanisms/classics/bennett.yaml").mobility().mobility
-            1
+            >>> m = load("mechanisms/plane/planar_four_bar.yaml")
+            >>> wanted = m.with_parameters({"a": 35, "c": 95}).analyze()["C.theta"][[4, 8, 16]]
+            >>> target = {"of": "C.theta", "at": [60, 120, 240], "is": wanted.tolist()}
+            >>> f = m.fit(target, {"a": (30, 50), "c": (80, 100)}, starts=1)
+            >>> f.status, {name: round(value, 6) for name, value in f.parameters.items()}
+            ('fitted', {'a': 35.0, 'c': 95.0})
         """
-        from mechkin_cli.mobility import find_mobility
+        return fit.fit_of(
+            self, targets, parameters, constraints, starts, generations, seed, progress
+        )
 
-        solvable = not isinstance(self.built.graph, Diagnostic)
-        return find_mobility(self.problem, self.session if solvable else None)
-
-
-# The Python interface: load a mechanism file, analyze it, read quantities by name.
-#
-# The commands are thin calls of these.
 
 DATA = "data"
 """What messages call the dict that a caller gives."""
@@ -848,11 +753,11 @@ def load(
     """
     place = None if folder is None else a_path("folder", folder)
     if isinstance(path, Mapping):
-        return Model(build(open_data(path, DATA, parameter_texts(parameters), place)), DATA)
+        return Model(Design(build(open_data(path, DATA, _texts(parameters), place)), DATA))
     if isinstance(path, str) and "\n" in path:
         raise UsageError("path: this is a text of several lines, no path; use loads(text)")
     path = a_path("path", path)
-    return Model(build(open_file(path, parameter_texts(parameters))), path.stem)
+    return Model(Design(build(open_file(path, _texts(parameters))), path.stem))
 
 
 def loads(
@@ -876,5 +781,11 @@ def loads(
     """
     a_text("text", text, '"format: 1 ..."'), a_text("name", name, '"rcsr.yaml"')
     place = None if folder is None else a_path("folder", folder)
-    built = build(open_text(text, name, parameter_texts(parameters), place))
-    return Model(built, Path(name).stem)
+    built = build(open_text(text, name, _texts(parameters), place))
+    return Model(Design(built, Path(name).stem))
+
+
+def _texts(parameters: Mapping[str, Setting]) -> dict[str, str]:
+    """Parameters as texts; a number stands for itself, without a unit."""
+    given = settings("parameters", parameters, '{"P1": "0.6 in"}')
+    return {k: v if isinstance(v, str) else repr(v) for k, v in given.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite, pi
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.arguments import Setting, texts
+from mechkin_cli.analysis import input_values
+from mechkin_cli.arguments import Setting
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import Vector
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS
-from mechkin_cli.model.settings import input_values
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.session import (
     angle_slots,
@@ -25,15 +26,16 @@ from mechkin_cli.session import (
     step_limits,
     turn_of,
 )
+from mechkin_cli.show import Listing
 from mechkin_cli.sweep import analyze, closed_rows
 from mechkin_cli.units import ANGLE, Conversion
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis import Design
     from mechkin_cli.mechanism import MotionInputs, Wanted
-    from mechkin_cli.model.model import Model
     from mechkin_cli.plan import Slot
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
@@ -59,6 +61,18 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
         super().__init__(values)
         self.status = status
 
+    @property
+    def listing(self) -> Listing:
+        """Names and values, and the verdict."""
+        rows = tuple((name, np.array2string(np.asarray(v))) for name, v in self.items())
+        return Listing(f"Position: {self.status}", ("quantity", "value"), rows)
+
+    def __repr__(self) -> str:
+        return self.listing.text()
+
+    def _repr_html_(self) -> str:
+        return self.listing.html()
+
 
 class _PositionColumn(NamedTuple):
     """Where the kernel's position tells what users see of a quantity."""
@@ -69,12 +83,12 @@ class _PositionColumn(NamedTuple):
 
 
 class Solver:
-    """Positions of a model, each continued from the nearest row of its sweep."""
+    """Positions of a design, each continued from the nearest row of its sweep."""
 
-    def __init__(self, model: Model, names: tuple[str, ...]) -> None:
-        problem = model.problem
-        wanted = _wanted(model, names)
-        result = analyze(model.session, [q.name for q in wanted])
+    def __init__(self, design: Design, names: tuple[str, ...]) -> None:
+        problem = design.problem
+        wanted = _wanted(design, names)
+        result = analyze(design.session, [q.name for q in wanted])
         known = problem.quantities()
         session = result.session
         units = problem.units
@@ -120,7 +134,7 @@ class Solver:
         whole += [0.0] * len(self.held)
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
-        if found is None or not found[1] <= tolerances.CONDITION_RATES_UNCLEAR:
+        if found is None or not rates_are_clear(found[1]):
             return self._judged(places, values)
         outputs = found[0]
         cells: dict[str, float | NDArray[np.float64]] = {}
@@ -176,8 +190,8 @@ def _plain(inputs: object, known: Mapping[str, float]) -> dict[str, float] | Non
     return inputs
 
 
-def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
-    problem = model.problem
+def _wanted(design: Design, names: tuple[str, ...]) -> list[Wanted]:
+    problem = design.problem
     known = problem.quantities()
     found = []
     for name in names:
@@ -187,7 +201,7 @@ def _wanted(model: Model, names: tuple[str, ...]) -> list[Wanted]:
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         quantity = known[name]
         forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
-        unsure = quantity.kind in WRENCH_KINDS and model.session.is_redundant
+        unsure = quantity.kind in WRENCH_KINDS and design.session.is_redundant
         if quantity.owner == "row" or quantity.kind in DERIVED_KINDS or unsure:
             raise UsageError(f"solve does not give {name}; analyze does, at the rows of the file")
         if forces and any("time" in law.reads for law in problem.load_laws):
@@ -243,11 +257,11 @@ def _judging(session: Session) -> Demand:
     return Demand.CONDITION if session.graph.blocks else Demand.POSITION
 
 
-def solver_of(model: Model, quantities: Iterable[str] | None) -> Solver:
+@remembered
+def solver_of(design: Design, quantities: tuple[str, ...] | None) -> Solver:
     """The solver of some quantities; of all joint coordinates if None."""
-    if quantities is None:
-        return Solver(model, model.problem.mechanism.coordinates)
-    return Solver(model, texts("quantities", quantities, '["O4.theta"]'))
+    names = design.problem.mechanism.coordinates if quantities is None else quantities
+    return Solver(design, names)
 
 
 # One position near a singular one: a row behind the one that it is continued from, so that it gets

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep import Readable
     from mechkin_cli.tables import Columns, TableLayout
-    from mechkin_cli.view import Readable
 
 
 class PlotCurve(NamedTuple):
@@ -130,6 +130,10 @@ class Picture(NamedTuple):
     marks: tuple[PlotMark, ...]
     solved: Bools
     doubtful: tuple[tuple[str, Bools], ...]
+
+    def __repr__(self) -> str:
+        curves = ", ".join(curve.words for panel in self.panels for curve in panel.curves)
+        return f"Picture of {curves} over {', '.join(dict.fromkeys(c.words for c in self.x))}"
 
 
 def picture(

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.analysis import run_name
 from mechkin_cli.arguments import a_setting, a_text, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.errors import NotRepeated, reason_of
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.mechanism import read_for
-from mechkin_cli.model import run_name
 from mechkin_cli.sensitivities.slopes import Shifting, Sizes, Slope, slope_of
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables import row_texts
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis import Analysis, Solvable
     from mechkin_cli.arguments import Setting
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.model import Analysis, Model
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.units import Dimension
 
@@ -161,7 +161,7 @@ class Sensitivities(Listed):
         at: Setting | Iterable[Setting] | None,
     ) -> None:
         self._analysis = analysis
-        self.model: Model = analysis.model
+        self.model: Solvable = analysis.model
         self.quantities, self.parameters = tuple(quantities), tuple(parameters)
         along = Along(analysis)
         self.along, self.along_unit = along.name, along.unit
@@ -418,12 +418,12 @@ def _dimension(problem: Problem, expression: Expression) -> Dimension:
 
 
 def sensitivities(
-    model: Model,
+    model: Solvable,
     quantities: Iterable[str],
-    parameters: Iterable[str] | None,
-    at: Setting | Iterable[Setting] | None,
-    run: str | None,
-    threads: int,
+    parameters: Iterable[str] | None = None,
+    at: Setting | Iterable[Setting] | None = None,
+    run: str | None = None,
+    threads: int = 0,
 ) -> Sensitivities:
     """`Model.sensitivities`; arguments and errors are its."""
     names = texts("quantities", quantities, '["O4.theta"]')
@@ -445,7 +445,7 @@ def sensitivities(
     return Sensitivities(analysis, names, chosen, at)
 
 
-def chosen_parameters(model: Model, names: Iterable[str] | None) -> tuple[str, ...]:
+def chosen_parameters(model: Solvable, names: Iterable[str] | None) -> tuple[str, ...]:
     """Names of parameters; None: all.
 
     Raises:

@@ -21,11 +21,12 @@ from mechkin_cli.errors import KernelRows, NotRepeated, Repeated, repetition, tr
 from mechkin_cli.exact import PI
 from mechkin_cli.tape import DoubleDoubles, NotEnclosed, TraceLost
 from mechkin_cli.units import ANGLE, LENGTH
+from mechkin_cli.variants import with_parameters
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis import Analysis, Solvable
     from mechkin_cli.expressions import Expression
-    from mechkin_cli.model import Analysis, Model
     from mechkin_cli.session import ShiftingPrecise
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.units import UnitSystem
@@ -195,7 +196,7 @@ class Shifting:
     def __init__(self, analysis: Analysis, chosen: Bools, asked: Sequence[str]) -> None:
         self.analysis = analysis
         self.asked = tuple(asked)
-        self.model: Model = analysis.model
+        self.model: Solvable = analysis.model
         self.result = analysis.result
         self.chosen = chosen
         self.is_sweep = analysis.run == SWEEP
@@ -240,7 +241,7 @@ class Shifting:
         if not self.is_sweep:
             return None
         try:
-            precise = self.model.shifting
+            precise = self.model.design.shifting
             return None if precise.is_turned(name, amount) else precise
         except (TraceLost, NotEnclosed):
             return None
@@ -279,7 +280,7 @@ class Shifting:
         known = self.model.problem.parameters[name]
         given = float(self.model.problem.units.from_si(value, known.dimension))
         try:
-            varied = self.model.with_parameters({name: given})
+            varied = with_parameters(self.model, {name: given})
             run = self.analysis.run
             if self.is_sweep:
                 found = varied.analyze(self.asked, tables=[])

@@ -18,16 +18,16 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.arguments import a_setting, a_whole_number, refusal, shown
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters
+from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
 from mechkin_cli.show import Listed, Listing
-from mechkin_cli.variants import draws, normal, one_value, uniform
+from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters
 
 if TYPE_CHECKING:
     import pandas
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.arguments import Setting
-    from mechkin_cli.model import Model
     from mechkin_cli.show import Bools, Floats
 
 
@@ -303,11 +303,11 @@ class Tolerances(Listed):
             rest[2 * number : 2 * number + 2] = own + band.least, own + band.most
             values[name] = np.concatenate([sampled, rest])
         asked = list(dict.fromkeys(self.slopes.texts.values()))
-        return self.slopes.model.vary(values, asked)
+        return vary(self.slopes.model, values, asked)
 
 
 def stack(
-    model: Model,
+    model: Solvable,
     given: Mapping[str, Setting | Sequence[Setting]],
     quantities: Iterable[str],
     at: Setting | Iterable[Setting] | None,
@@ -330,7 +330,7 @@ def stack(
     known, units = model.problem.parameters, model.problem.units
     own = {n: float(units.from_si(float(known[n].value), known[n].dimension)) for n in names}  # type: ignore[arg-type]
     # set one by one: what has a tolerance of its own follows no other
-    slopes = model.with_parameters(own).sensitivities(quantities, names, at)
+    slopes = sensitivities(with_parameters(model, own), quantities, names, at)
     numbers = samples * model.problem.motion.rows * len(slopes.texts)
     if numbers > tolerances.MOST_SAMPLED:
         raise UsageError(
@@ -340,7 +340,7 @@ def stack(
     return Tolerances(slopes, bands, own, samples, method, seed, distribution)
 
 
-def _band(model: Model, name: str, given: Setting | Sequence[Setting]) -> Band:
+def _band(model: Solvable, name: str, given: Setting | Sequence[Setting]) -> Band:
     """Half a width, or both ends."""
     known, units = model.problem.parameters[name], model.problem.units
 

@@ -12,6 +12,7 @@ from mechkin_cli.diagnostics import InvalidFile, MechkinError
 from mechkin_cli.studies.formats import Heading, Records, empty_values
 from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
 from mechkin_cli.tolerances import LAST_ROW
+from mechkin_cli.variants import vary, with_parameters
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from mechkin_cli.model import Model
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.show import Floats
     from mechkin_cli.studies.formats import Values
     from mechkin_cli.variants import Variants
@@ -157,7 +158,7 @@ class StudyQuestion:
 
 
 def chunk(
-    model: Model, question: StudyQuestion, values: Mapping[str, Floats], begin: int, threads: int
+    model: Solvable, question: StudyQuestion, values: Mapping[str, Floats], begin: int, threads: int
 ) -> dict[str, Records]:
     """What is kept of variants that have these values (variants,) by name, in the file's units; the
     first has the number `begin`. By name of table."""
@@ -199,13 +200,13 @@ def lost(question: StudyQuestion, values: Mapping[str, Floats], begin: int) -> d
 
 
 def _varied(
-    model: Model, question: StudyQuestion, values: Mapping[str, Floats], threads: int
+    model: Solvable, question: StudyQuestion, values: Mapping[str, Floats], threads: int
 ) -> tuple[Variants, Floats | None]:
     """The variants, with all rows of what is asked for; and the places of the rows."""
     asked = [kept.text for kept in question.kept] + [heading.label for heading in question.rows]
     if question.parameter is not None:
         asked.append(question.parameter.label)
-    found = model.vary(values, list(dict.fromkeys(asked)), run=question.run, threads=threads)
+    found = vary(model, values, list(dict.fromkeys(asked)), run=question.run, threads=threads)
     if question.parameter is None:
         return found, None
     return found, found[question.parameter.label]
@@ -243,7 +244,7 @@ def _study_chunk_place(sizes: Floats, places: Floats | None) -> Floats:
 
 
 def _dead_centres(
-    model: Model, values: Mapping[str, Floats], found: Variants, places: Floats | None
+    model: Solvable, values: Mapping[str, Floats], found: Variants, places: Floats | None
 ) -> Floats:
     """The input at the dead centre at which a variant's branch ends, or at which a row stands, in
     the file's units; nan where it meets none."""
@@ -255,7 +256,7 @@ def _dead_centres(
         )
     for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
         own = {name: float(column[number]) for name, column in values.items()}
-        for diagnostic in model.with_parameters(own).analyze([], tables=[]).diagnostics:
+        for diagnostic in with_parameters(model, own).analyze([], tables=[]).diagnostics:
             if diagnostic.code == "dead-centre" and diagnostic.numbers:
                 ends[number] = diagnostic.numbers[0].value
     return ends

@@ -35,9 +35,9 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.expressions import Quantity
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.model import Model
     from mechkin_cli.reading import Document, KeyPath
     from mechkin_cli.show import Floats
     from mechkin_cli.variants import Draws
@@ -129,12 +129,12 @@ TOO_MANY = "too-many-variants"
 _NOTHING = partial(uniform, least=0.0, most=0.0)
 
 
-def variation_of(file: written.StudyFile, model: Model, faults: Faults) -> StudyVariation:
+def variation_of(file: written.StudyFile, model: Solvable, faults: Faults) -> StudyVariation:
     """The variants that a study's sections describe; what is wrong with them goes to `faults`."""
     return _VariationReader(file, model, faults).variation()
 
 
-def unknown_parameter(model: Model, name: str) -> tuple[str, str]:
+def unknown_parameter(model: Solvable, name: str) -> tuple[str, str]:
     """That there is no such parameter, and what to do."""
     known = list(model.problem.parameters)
     hint = nearest_hint(name, known) or f"parameters are {', '.join(known[:10])}"
@@ -144,7 +144,7 @@ def unknown_parameter(model: Model, name: str) -> tuple[str, str]:
 
 
 class _VariationReader:
-    def __init__(self, file: written.StudyFile, model: Model, faults: Faults) -> None:
+    def __init__(self, file: written.StudyFile, model: Solvable, faults: Faults) -> None:
         self.file, self.model, self.faults = file, model, faults
         self.known = model.problem.parameters
         self.units = model.problem.units
@@ -345,7 +345,7 @@ class _Along(NamedTuple):
     values: Floats
 
 
-def study_plan(file: written.StudyFile, document: Document, model: Model) -> StudyPlan:
+def study_plan(file: written.StudyFile, document: Document, model: Solvable) -> StudyPlan:
     """The plan of a study of a model.
 
     Raises:
@@ -360,7 +360,7 @@ def study_plan(file: written.StudyFile, document: Document, model: Model) -> Stu
 class _Asking:
     """Reads what is asked of the variants."""
 
-    def __init__(self, file: written.StudyFile, model: Model, faults: Faults) -> None:
+    def __init__(self, file: written.StudyFile, model: Solvable, faults: Faults) -> None:
         self.file, self.model, self.faults = file, model, faults
         self.run = self._run()
         whole = model.problem

@@ -90,6 +90,20 @@ class Overview(NamedTuple):
     verdicts: dict[str, int]
     spreads: tuple[Spread, ...]
 
+    def listing(self, name: str) -> Listing:
+        """The overview of a study of some name as a table."""
+        rows = tuple(
+            (
+                s.label,
+                s.unit,
+                *(f"{value:.6g}" for value in (s.least, s.mean, s.largest, s.deviation)),
+            )
+            for s in self.spreads
+        )
+        verdicts = ", ".join(f"{count} {word}" for word, count in self.verdicts.items())
+        labels = ("column", "unit", "least", "mean", "largest", "deviation")
+        return Listing(f"{name}: {self.variants} variants, {verdicts}", labels, rows)
+
 
 def overview(
     pieces: Iterable[Records], headings: Sequence[Heading], number: str, verdict: str
@@ -137,6 +151,15 @@ class StudyFiles(NamedTuple):
     files: tuple[Path, ...]
     overview: Overview
     diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def listing(self) -> Listing:
+        """The overview as a table, and the files."""
+        seen = self.overview.listing(self.name)
+        return seen._replace(notes=tuple(map(str, (*self.diagnostics, *self.files))))
+
+    def __repr__(self) -> str:
+        return self.listing.text()
 
 
 class StudyResults(Listed):
@@ -197,19 +220,8 @@ class StudyResults(Listed):
     @property
     def listing(self) -> Listing:
         """The overview as a table."""
-        seen = self.overview
-        rows = tuple(
-            (
-                s.label,
-                s.unit,
-                *(f"{value:.6g}" for value in (s.least, s.mean, s.largest, s.deviation)),
-            )
-            for s in seen.spreads
-        )
-        verdicts = ", ".join(f"{count} {word}" for word, count in seen.verdicts.items())
-        head = f"{self.name}: {seen.variants} variants, {verdicts}"
-        labels = ("column", "unit", "least", "mean", "largest", "deviation")
-        return Listing(head, labels, rows, tuple(map(str, self.diagnostics)))
+        seen = self.overview.listing(self.name)
+        return seen._replace(notes=tuple(map(str, self.diagnostics)))
 
     def to_pandas(self, table: str = VARIANTS) -> pandas.DataFrame:
         """`variants` or `rows` as a DataFrame; `attrs["units"]` has the unit of each column.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
@@ -11,10 +11,10 @@ import numpy as np
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import Document, in_order, read_document
 from mechkin_cli.schema import InvalidDataError, validate_study
-from mechkin_cli.variants import one_value
+from mechkin_cli.variants import one_value, with_parameters
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Model
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.reading import KeyPath
     from mechkin_cli.schema import StudyFile
     from mechkin_cli.units import Dimension, UnitSystem
@@ -109,15 +109,15 @@ class StudySource(NamedTuple):
         """The study's name, or that of its file."""
         return self.file.name or Path(self.document.file).stem
 
-    def model(self, parameters: Mapping[str, str]) -> Model:
-        """The mechanism that the study names, with the values of `set:` and these.
+    def model(
+        self, parameters: Mapping[str, str], load: Callable[[Path, Mapping[str, str]], Solvable]
+    ) -> Solvable:
+        """The mechanism that the study names, loaded with the values of `set:` and these.
 
         Raises:
             UsageError: its file cannot be read, or an unknown parameter.
             InvalidFile: the study names none, or the mechanism is wrong.
         """
-        from mechkin_cli.model import load
-
         if self.file.mechanism is None:
             self._refuse("missing-key", (), "the study names no mechanism", "add mechanism: FILE")
         folder = self.document.folder or Path()
@@ -135,7 +135,7 @@ class StudySource(NamedTuple):
         except InvalidFile as error:
             raise InvalidFile([self._at_home(d, parameters) for d in error.diagnostics]) from None
 
-    def applied_to(self, model: Model) -> Model:
+    def applied_to(self, model: Solvable) -> Solvable:
         """A model of Python's with the values of `set:`.
 
         Raises:
@@ -143,7 +143,7 @@ class StudySource(NamedTuple):
         """
         for name, value in self.file.set.items():
             try:
-                model = model.with_parameters({name: value})
+                model = with_parameters(model, {name: value})
             except UsageError as error:
                 self._refuse("bad-value", ("set", name), *split(error))
         return model

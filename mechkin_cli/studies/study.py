@@ -31,7 +31,7 @@ from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
 from mechkin_cli.verdict import SWEEP, version
 
 if TYPE_CHECKING:
-    from mechkin_cli.model import Model
+    from mechkin_cli.analysis import Solvable
     from mechkin_cli.show import Floats
     from mechkin_cli.studies.source import StudySource
 
@@ -47,7 +47,7 @@ class Parcel(NamedTuple):
     version: str
 
     @classmethod
-    def of(cls, model: Model, question: StudyQuestion) -> Parcel:
+    def of(cls, model: Solvable, question: StudyQuestion) -> Parcel:
         """The parcel of a model and a question."""
         return cls(pickle.dumps((model, question)), version())
 
@@ -94,13 +94,13 @@ class _Kept(threading.local):
     """What a thread has unpacked last: a model of its own, built once for all its tasks."""
 
     parcel: Parcel | None = None
-    content: tuple[Model, StudyQuestion]
+    content: tuple[Solvable, StudyQuestion]
 
 
 _kept = _Kept()
 
 
-def _unpacked(parcel: Parcel) -> tuple[Model, StudyQuestion]:
+def _unpacked(parcel: Parcel) -> tuple[Solvable, StudyQuestion]:
     if _kept.parcel != parcel:
         _kept.content = pickle.loads(parcel.content)
         _kept.parcel = parcel
@@ -157,7 +157,7 @@ class Trial(NamedTuple):
 class Study:
     """A study of a model, planned and not yet carried out."""
 
-    def __init__(self, model: Model, source: StudySource) -> None:
+    def __init__(self, model: Solvable, source: StudySource) -> None:
         """Raises:
         InvalidFile: with every independent error and its place.
         """
@@ -329,7 +329,7 @@ class Study:
 
 
 def study_of(
-    model: Model,
+    model: Solvable,
     given: str | Path | Mapping[str, Any],
     out: str | Path | None,
     file_format: str,

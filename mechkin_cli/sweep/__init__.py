@@ -14,7 +14,11 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.dead_centre import lost_rates as lost_rates
     from mechkin_cli.sweep.following import follow_rows as follow_rows
     from mechkin_cli.sweep.friction import unfounded_in_motion as unfounded_in_motion
-    from mechkin_cli.sweep.messages import stands_elsewhere as stands_elsewhere
+    from mechkin_cli.sweep.messages import (
+        refuse_loaded_spin as refuse_loaded_spin,
+        stands_elsewhere as stands_elsewhere,
+    )
+    from mechkin_cli.sweep.readable import Readable as Readable
     from mechkin_cli.sweep.result import Result as Result
     from mechkin_cli.sweep.rows import SweepRows as SweepRows, has_turns as has_turns
     from mechkin_cli.sweep.sweep import (
@@ -34,7 +38,8 @@ __getattr__, __dir__ = lazy_names(
         "dead_centre": ["lost_rates"],
         "following": ["follow_rows"],
         "friction": ["unfounded_in_motion"],
-        "messages": ["stands_elsewhere"],
+        "messages": ["refuse_loaded_spin", "stands_elsewhere"],
+        "readable": ["Readable"],
         "result": ["Result"],
         "rows": ["SweepRows", "has_turns"],
         "sweep": [

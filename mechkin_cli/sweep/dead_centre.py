@@ -19,14 +19,13 @@ from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
-    CONDITION_RATES_UNCLEAR,
     DEAD_CENTRE_LOST,
     GROWS_WITHOUT_BOUND,
     ON_FOLD,
     REACTION_ROUNDING,
     RESTS,
 )
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -167,7 +166,7 @@ def judge_dead_centres(session: Session, rows: SweepRows, condition: Floats) -> 
     """Finds the rows that stand at a dead centre as nearly as a double can say, among those whose
     condition (rows,) leaves it open, and says so."""
     judged = np.isin(rows.status, (Status.ok, Status.near_singular, Status.rank_unclear))
-    near = rows.reached & judged & ~(condition <= CONDITION_RATES_UNCLEAR)
+    near = rows.reached & judged & ~rates_are_clear(condition)
     if not near.any() or not session.driven:
         return
     for row in np.flatnonzero(near & _is_lost(session, rows, near)).tolist():

@@ -12,7 +12,7 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
 from mechkin_cli.units import FORCE, MOMENT
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, Rubbing, Wanted
@@ -71,8 +71,7 @@ def _holding(problem: Problem) -> list[Wanted]:
 def friction_verdict(result: RunRows) -> FrictionVerdict:
     """The verdict on the friction of a result, whose verdict quantities have been read."""
     rows, problem = result.row_states, result.problem
-    unclear = np.isin(rows.status, (Status.rank_unclear, Status.dead_centre))
-    judged = rows.reached & ~unclear
+    judged = rows.reached & has_rates(rows.status)
     lost, unfounded = np.zeros((2, judged.size), dtype=bool)
     diagnostics = []
     for where, diagnostic in _undecided(result, judged):

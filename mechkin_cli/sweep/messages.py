@@ -8,7 +8,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, UsageError
 from mechkin_cli.expressions import parse
 from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
@@ -19,11 +19,11 @@ from mechkin_cli.mechanism import (
     undefined_laws,
 )
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand, demand_of
+from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import CONDITION_LIMITS, Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -168,18 +168,13 @@ def _is_unique(result: RunRows, text: str) -> bool:
 def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
     """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
     found = []
-    for status, limit, cost in (
-        (
-            Status.near_singular,
-            tolerances.CONDITION_NEAR_SINGULAR,
-            "rates and loads there keep fewer than nine digits",
-        ),
-        (
-            Status.rank_unclear,
-            tolerances.CONDITION_RANK_UNCLEAR,
-            "the rank of the constraints cannot be decided there; rates and reactions stay empty",
-        ),
-    ):
+    for status, limit in CONDITION_LIMITS.items():
+        cost = (
+            "rates and loads there keep fewer than nine digits"
+            if status.has_rates
+            else "the rank of the constraints cannot be decided there; rates and reactions stay "
+            "empty"
+        )
         numbers = np.flatnonzero(rows.status == status)
         if not numbers.size:
             continue
@@ -358,3 +353,25 @@ def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:
     known = result.problem.quantities()
     result.read([known[name] for name in quantities_read(result.problem)])
     return undefined_laws(result.problem, result.quantity, lost)
+
+
+def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
+    """Forces and energies need what spins freely to have no cause to spin.
+
+    Raises:
+        UsageError: one of some quantities is such, and something would spin.
+    """
+    problem = session.problem
+    if not names or not problem.has_idle:
+        return
+    for diagnostic in _causes_of_spin(session):
+        known = problem.quantities()
+        if needs_all_links(problem.mechanism, [known[name] for name in names]):
+            raise UsageError(str(diagnostic))
+
+
+@remembered
+def _causes_of_spin(session: Session) -> list[Diagnostic]:
+    from mechkin_cli.idle import spin_errors
+
+    return [diagnostic for _, diagnostic in spin_errors(session.problem)]

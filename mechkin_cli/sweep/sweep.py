@@ -36,7 +36,7 @@ from mechkin_cli.sweep.messages import (
 )
 from mechkin_cli.sweep.result import Result
 from mechkin_cli.units import TIME
-from mechkin_cli.verdict import Status
+from mechkin_cli.verdict import Status, by_condition, rates_are_clear
 
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
@@ -275,12 +275,10 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
 def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
     """Verdicts by condition."""
     condition = batch.condition
-    if condition is None or (condition <= tolerances.CONDITION_RATES_UNCLEAR).all():
+    if condition is None or rates_are_clear(condition).all():
         return
-    singular = rows.reached & ~(condition <= tolerances.CONDITION_NEAR_SINGULAR)
-    unclear = rows.reached & ~(condition <= tolerances.CONDITION_RANK_UNCLEAR)
-    rows.status[singular & (rows.status == Status.ok)] = Status.near_singular
-    rows.status[unclear & (rows.status == Status.near_singular)] = Status.rank_unclear
+    judged = rows.reached & (rows.status == Status.ok)
+    rows.status[judged] = by_condition(condition[judged])
     from mechkin_cli.sweep.dead_centre import judge_dead_centres
 
     judge_dead_centres(session, rows, condition)

@@ -20,7 +20,6 @@ from mechkin_cli.tables.columns import (
     event_words,
     proof_words,
     run_parameter,
-    solved_rows,
     status_words,
     words_of,
 )
@@ -28,7 +27,7 @@ from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.decimals import column_texts, decimal_column
 from mechkin_cli.tables.layout import markdown_text
 from mechkin_cli.tables.table import Columns
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.verdict import SWEEP, Status, has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.csv import WordColumn
@@ -55,8 +54,7 @@ def footnotes(
         for status in Status
         if status is not Status.ok and bool((source.status == status).any())
     ]
-    unclear = np.isin(source.status, (Status.rank_unclear, Status.dead_centre))
-    explained = ~solved_rows(source) | unclear
+    explained = ~has_rates(source.status)
     for column in columns.columns:
         if isinstance(column.values, Words):
             continue

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mechkin_cli.tables.columns import TableSource
+from mechkin_cli.tables.columns import TableSource, Words
+from mechkin_cli.tables.decimals import column_texts
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.summary import Summary
@@ -14,12 +15,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables.columns import AT, TableColumn, column_of, column_of_numbers, words_of
 from mechkin_cli.tables.layout import TableLayout
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Columns:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Columns(Listed):
     """One evaluated table; `of_rows` says that its rows are those of the run, `summary` what stands
     below it."""
 
@@ -28,6 +30,19 @@ class Columns:
     columns: tuple[TableColumn, ...]
     of_rows: bool = True
     summary: Summary | None = None
+
+    @property
+    def listing(self) -> Listing:
+        """The cells as files write them, below labels with units."""
+        labels = tuple(f"{c.label} [{c.unit}]" if c.unit else c.label for c in self.columns)
+        rows = tuple(zip(*(_cells(column) for column in self.columns), strict=True))
+        return Listing(f"{self.name}: {self.title}" if self.title else self.name, labels, rows)
+
+
+def _cells(column: TableColumn) -> list[str]:
+    if isinstance(column.values, Words):
+        return column.values.texts(range(column.rows))
+    return column.texts(column_texts(column.values, column.decimals))
 
 
 def summary_table(name: str, title: str, summary: Summary) -> Columns:

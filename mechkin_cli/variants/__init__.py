@@ -6,21 +6,20 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.variants.many import (
+    from mechkin_cli.variants.design import (
+        file_values as file_values,
+        one_value as one_value,
+        parameter_values as parameter_values,
+        varied_design as varied_design,
+        with_parameters as with_parameters,
+    )
+    from mechkin_cli.variants.many import vary as vary
+    from mechkin_cli.variants.result import (
         Reduce as Reduce,
         Variants as Variants,
         expressions_of as expressions_of,
         sample_of as sample_of,
-        vary as vary,
         way_of as way_of,
-    )
-    from mechkin_cli.variants.model import (
-        Base as Base,
-        VariedModel as VariedModel,
-        file_values as file_values,
-        one_value as one_value,
-        parameter_values as parameter_values,
-        with_parameters as with_parameters,
     )
     from mechkin_cli.variants.samples import (
         Draws as Draws,
@@ -34,15 +33,15 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "many": ["Reduce", "Variants", "expressions_of", "sample_of", "vary", "way_of"],
-        "model": [
-            "Base",
-            "VariedModel",
+        "design": [
             "file_values",
             "one_value",
             "parameter_values",
+            "varied_design",
             "with_parameters",
         ],
+        "many": ["vary"],
+        "result": ["Reduce", "Variants", "expressions_of", "sample_of", "way_of"],
         "samples": ["Draws", "draws", "has_scipy", "needs_scipy", "normal", "uniform"],
     },
 )

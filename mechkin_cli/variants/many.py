@@ -1,20 +1,19 @@
-"""Many variants of a model at once: what a caller asks for, and what comes back."""
+"""Many variants of a sweep at once: chunks through the kernel, what takes more one at a time."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli import tolerances
-from mechkin_cli.arguments import a_text, a_whole_number, shown, texts
-from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
-from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName, Vector
+from mechkin_cli.analysis import Solvable, a_packing, response_name
+from mechkin_cli.arguments import a_text
+from mechkin_cli.diagnostics import MechkinError, UsageError
+from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
 from mechkin_cli.kernel._kernel import VariantEnd
-from mechkin_cli.kernel.functions import check_threads, check_width, threads_for
+from mechkin_cli.kernel.functions import threads_for
 from mechkin_cli.mechanism import (
     BEARING_KINDS,
     DERIVED_KINDS,
@@ -22,118 +21,38 @@ from mechkin_cli.mechanism import (
     friction_states,
     read_for,
 )
-from mechkin_cli.model import response_name
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.session import input_rest
+from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Floats
 from mechkin_cli.sweep import has_turns
-from mechkin_cli.tables import (
-    OVER_THE_WAY,
-    REDUCTIONS,
-    ROW_TEXTS,
-    Reduction,
-    mean,
-    root_mean_square,
-)
 from mechkin_cli.tolerances import MOST_KEPT
-from mechkin_cli.variants.model import Base, VariedModel, file_values, parameter_arrays
+from mechkin_cli.variants.design import VariedDesign, base_of, file_values, parameter_arrays
+from mechkin_cli.variants.responses import vary_response
+from mechkin_cli.variants.result import (
+    Reduce,
+    Reductions,
+    Variants,
+    expressions_of,
+    need_places,
+    reduced,
+    reductions_of,
+    sample_of,
+    way_of,
+    with_held,
+)
 from mechkin_cli.variants.variation import Runs, SessionVariation, VariantReadout, run_variants
-from mechkin_cli.verdict import SWEEP, Status
+from mechkin_cli.verdict import SWEEP, Status, by_condition, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.mechanism import Problem, Wanted
+    from mechkin_cli.mechanism import Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools
 
 
-# What is kept of the values of variants: all rows, or what reductions make of them.
-
-Reductions = tuple[Reduction, ...] | Reduction | None
-"""Several, one, or none: all rows."""
-
-
-def need_places(reductions: Mapping[str, Reductions]) -> bool:
-    """Whether one of them is taken over the way."""
-    own = (each if isinstance(each, tuple) else (each,) for each in reductions.values())
-    return any(one in OVER_THE_WAY for several in own for one in several)
-
-
-def reduced(
-    text: str, values: Floats, reduction: Reductions, places: Floats | None = None
-) -> Floats:
-    """What is kept of (variants, rows) or (variants, rows, components), the reductions last where
-    there are several; `places` of the rows (variants, rows), None where nothing moves.
-
-    Raises:
-        UsageError: a function of the caller fails, or gives something else.
-    """
-    if reduction is None:
-        return values
-    if isinstance(reduction, tuple):
-        return np.stack([_by(each, text, values, places) for each in reduction], axis=-1)
-    return _by(reduction, text, values, places)
-
-
-def _by(reduction: Reduction, text: str, values: Floats, places: Floats | None) -> Floats:
-    if values.ndim == 3:
-        parts = [_by(reduction, text, c, places) for c in np.moveaxis(values, 2, 0)]
-        return np.stack(parts, axis=1)
-    if reduction is mean or reduction is root_mean_square:
-        return reduction(values, places)
-    given = values.view()
-    given.flags.writeable = False  # the next reduction reads the same
-    try:
-        found = np.asarray(reduction(given), dtype=np.float64)
-    except Exception as error:
-        raise UsageError(
-            f"the reduction of {text} failed with {type(error).__name__}: "
-            f"{str(error)[:LONGEST_NAME]}; it takes (variants, rows) = {values.shape}"
-        ) from error
-    if found.shape[:1] != values.shape[:1]:
-        raise UsageError(
-            f"the reduction of {text} gives an array of shape {found.shape}; it takes "
-            f"(variants, rows) = {values.shape} and gives one value a variant"
-        )
-    return found
-
-
-# What a sweep goes along: the way over which means are taken and that places are values of.
-
-
-def way_of(problem: Problem) -> tuple[str, Floats] | None:
-    """The name of time where the sweep has one, else of its first input that moves, and its values
-    over the rows (rows,) in the file's units as written; None where nothing moves."""
-    motion = problem.motion
-    if motion.time is not None:
-        return "time", motion.time.written
-    for driven in motion.inputs:
-        if np.ptp(driven.written) > 0.0:
-            return driven.name, driven.written
-    return None
-
-
-# The runs behind `Model.vary`: chunks through the kernel, what takes more one at a time.
-
 CHUNK_NUMBERS = 2_000_000
 """Numbers that a chunk of variants holds at most: memory stays flat."""
-
-
-def sample_of(problem: Problem) -> Any:
-    """A resolver of names to one-row stand-ins of the right dimension."""
-
-    def resolve(name: str) -> Quantity:
-        one = np.ones(1)
-        if name in problem.parameters:
-            return Quantity(one, problem.parameters[name].dimension)
-        known = problem.quantities()
-        if name not in known:
-            raise UnknownName(name, [*problem.parameters, *known])
-        wanted = known[name]
-        return Quantity(wanted.value([one] * 3), wanted.dimension)
-
-    return resolve
 
 
 REST = " within a turn"
@@ -148,17 +67,16 @@ class VariantRun:
 
     def __init__(
         self,
-        base: Base,
+        model: Solvable,
         names: tuple[str, ...],
         asked: Mapping[str, Expression],
         reductions: Mapping[str, Reductions],
-        lanes: int,
-        threads: int,
+        packing: Packing,
     ) -> None:
-        self.base, self.names, self.asked, self.reductions = base, names, asked, reductions
+        self.model, self.base, self.packing = model, base_of(model.design), packing
+        self.names, self.asked, self.reductions = names, asked, reductions
         self.kept = tuple(asked)
-        self.lanes, self.threads = lanes, threads
-        self.problem = base.model.problem
+        self.problem = self.base.design.problem
         way = way_of(self.problem) if need_places(reductions) else None
         self.along = None if way is None else way[0]
         if self.along is not None and self.along not in asked:
@@ -274,8 +192,8 @@ class VariantRun:
             alone = np.arange(count)
         else:
             reading, kernel = native
-            threads = threads_for(count * self.rows, self.threads)
-            runs = run_variants(kernel, values, self.lanes, threads)
+            threads = threads_for(count * self.rows, self.packing.threads)
+            runs = run_variants(kernel, values, self.packing.lanes, threads)
             states = [reading.slots[q.name].first for q in self._states(reading)]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
@@ -340,8 +258,8 @@ class VariantRun:
         """One variant as `with_parameters(...).analyze()` gives it."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         try:
-            model = VariedModel(self.base, named)
-            analysis = model.analyze(self.read, tables=[], lanes=self.lanes)
+            model = self.model.of(VariedDesign(self.base, named))
+            analysis = model.analyze(self.read, tables=[], lanes=self.packing.lanes)
             if analysis.rows != self.rows:
                 raise UsageError(
                     f"variant {number} has {analysis.rows} rows, the file has {self.rows}; vary "
@@ -429,10 +347,9 @@ def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
 
     `states` are the slots that tell the rows without an answer of friction.
     """
-    codes = np.full(runs.condition.shape, int(Status.ok), dtype=np.int8)
-    if not np.isnan(runs.condition).all():
-        codes[~(runs.condition <= tolerances.CONDITION_NEAR_SINGULAR)] = int(Status.near_singular)
-        codes[~(runs.condition <= tolerances.CONDITION_RANK_UNCLEAR)] = int(Status.rank_unclear)
+    # without loops there is no condition
+    loops = not np.isnan(runs.condition).all()
+    codes = by_condition(runs.condition if loops else np.zeros_like(runs.condition))
     for slot in states:
         undecided = ~(runs.outputs[:, slot, :] == 0.0) & (codes != int(Status.rank_unclear))
         codes[undecided] = int(Status.friction_undecided)
@@ -443,115 +360,12 @@ def _doubtful(runs: Runs) -> Bools:
     """Variants (variants,) with a row whose rates may be rounding."""
     if np.isnan(runs.condition).all():
         return np.zeros(len(runs.condition), dtype=bool)
-    doubtful: Bools = np.any(~(runs.condition <= tolerances.CONDITION_RATES_UNCLEAR), axis=1)
+    doubtful: Bools = np.any(~rates_are_clear(runs.condition), axis=1)
     return doubtful
 
 
 def _writable(array: Floats) -> Floats:
     return array if array.flags.writeable else array.copy()
-
-
-LONGEST_MESSAGE = 400
-"""Characters of an expression's error that a message repeats."""
-
-Reduce = str | Callable[["Floats"], "Floats"]
-
-
-class Variants:
-    """Results of `Model.vary`: `r["O4.theta"]` is an array over the variants, in the file's units.
-
-    Attributes:
-        parameters: (variants,) of every parameter given, in the file's units.
-        errors: what was said of variants that cannot be built, by their number.
-    """
-
-    def __init__(
-        self,
-        parameters: Mapping[str, Floats],
-        values: Mapping[str, Floats],
-        codes: NDArray[np.int8],
-        errors: Mapping[int, MechkinError],
-    ) -> None:
-        self.parameters = parameters
-        self.errors = errors
-        self._values = values
-        self._codes = codes
-
-    def __len__(self) -> int:
-        return len(self._codes)
-
-    def __getitem__(self, text: str) -> Floats:
-        """A quantity or expression that was asked for.
-
-        Returns (variants, rows), of a vector (variants, rows, 3), nan where a row has no solution;
-        where it was reduced without the rows, and with several reductions they come last.
-
-        Raises:
-            UsageError: it was not asked for.
-        """
-        if a_text("a quantity or expression", text, '"O4.theta"') not in self._values:
-            asked = ", ".join(self._values)
-            raise UsageError(f"{text[:LONGEST_NAME]} was not asked for; quantities are {asked}")
-        return self._values[text]
-
-    @property
-    def codes(self) -> NDArray[np.int8]:
-        """The verdict of every variant and row, codes of `Status` (variants, rows)."""
-        return self._codes
-
-    @cached_property
-    def status(self) -> NDArray[np.str_]:
-        """The verdict of every variant and row, in words (variants, rows)."""
-        words = np.array([status.label for status in Status])
-        found: NDArray[np.str_] = words[self._codes]
-        return found
-
-    @property
-    def complete(self) -> NDArray[np.bool_]:
-        """Which variants have a position in every row (variants,), as `Analysis.complete`.
-
-        A row at a dead centre has one: `status` tells it, and what has no bound there is infinite.
-        """
-        solved = np.array([status.has_solution for status in Status])
-        found: NDArray[np.bool_] = np.logical_and.reduce(solved[self._codes], axis=1)
-        return found
-
-
-def vary(
-    base: Base,
-    held: Mapping[str, float],
-    parameters: Mapping[str, Any],
-    quantities: Iterable[str] | None,
-    reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None,
-    run: str,
-    lanes: int,
-    threads: int,
-) -> Variants:
-    """`Model.vary`, whose arguments these are; `held` are values (SI) that are set already."""
-    if a_text("run", run, f'"{SWEEP}"') != SWEEP:
-        from mechkin_cli.variants.responses import vary_response
-
-        name = response_name(base.model, run)
-        return vary_response(base, held, parameters, quantities, reduce, name, lanes, threads)
-    lanes = a_whole_number("lanes", lanes, "rows at a time")
-    threads = a_whole_number("threads", threads, "threads")
-    check_width(lanes)
-    check_threads(threads)
-    if SWEEP not in base.model.runs:
-        raise UsageError(
-            f"{base.model.name} has no sweep to vary; vary a response one by one: "
-            f'with_parameters({{...}}).respond("{base.model.runs[0]}")'
-        )
-    problem = base.model.problem
-    names, values = parameter_arrays(problem, parameters)
-    given = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, held)
-    asked = expressions_of(
-        problem.mechanism.coordinates if quantities is None else quantities, problem
-    )
-    study = VariantRun(base, names, asked, reductions_of(asked, reduce), lanes, threads)
-    _check_memory(values.shape[1], study)
-    return Variants(given, *study.run(values))
 
 
 def _check_memory(variants: int, study: VariantRun) -> None:
@@ -564,68 +378,35 @@ def _check_memory(variants: int, study: VariantRun) -> None:
         )
 
 
-def with_held(
-    order: Sequence[str], names: tuple[str, ...], values: Floats, held: Mapping[str, float]
-) -> tuple[tuple[str, ...], Floats]:
-    """Names and values of all parameters that are set, in the file's order."""
-    rows = dict(zip(names, values, strict=True))
-    count = values.shape[1]
-    rows = {name: np.full(count, value) for name, value in held.items()} | rows
-    names = tuple(name for name in order if name in rows)
-    return names, np.stack([rows[name] for name in names])
-
-
-def expressions_of(quantities: Iterable[str], problem: Problem) -> dict[str, Expression]:
-    """What is asked for, by its text.
-
-    Raises:
-        UsageError: no such quantity, or a text.
-    """
-    found = {}
-    for text in texts("quantities", quantities, '["O4.theta"]'):
-        if text.strip() in ROW_TEXTS:
-            raise UsageError(f"{text} is a text, no number; read .status of the result")
-        try:
-            found[text] = problem.definitions.parse(text)
-            found[text].evaluate(sample_of(problem), problem.units)
-        except ExpressionError as error:
-            hint = error.hint or "write an expression of quantities and parameters"
-            shortened = text[:LONGEST_NAME]
-            raise UsageError(f"{shortened}: {error.message[:LONGEST_MESSAGE]}; {hint}") from None
-    return found
-
-
-def reductions_of(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
-    """What is done with each quantity.
-
-    Raises:
-        UsageError: no such reduction.
-    """
-    if isinstance(reduce, Mapping):
-        for text in reduce:
-            if text not in asked:
-                asked_for = ", ".join(asked)
-                raise UsageError(
-                    f"reduce: {shown(text)} was not asked for; quantities are {asked_for}"
-                )
-        return {text: _reduction(reduce.get(text)) for text in asked}
-    return dict.fromkeys(asked, _reduction(reduce))
-
-
-def _reduction(reduce: Any) -> Reductions:
-    if reduce is None:
-        return None
-    if isinstance(reduce, str):
-        if reduce not in REDUCTIONS:
-            known = ", ".join(REDUCTIONS)
-            raise UsageError(f"there is no reduction {reduce[:LONGEST_NAME]}; they are {known}")
-        return REDUCTIONS[reduce]
-    if callable(reduce):
-        return reduce  # type: ignore[no-any-return]
-    if isinstance(reduce, Sequence) and reduce:
-        return tuple(_reduction(each) for each in reduce)  # type: ignore[misc]
-    known = ", ".join(REDUCTIONS)
-    raise UsageError(
-        f"reduce: expected one of {known}, a function, several of these or a mapping by quantity, "
-        f"not {shown(reduce)}"
+def vary(
+    model: Solvable,
+    parameters: Mapping[str, Any],
+    quantities: Iterable[str] | None = None,
+    reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
+    run: str = SWEEP,
+    lanes: int = 0,
+    threads: int = 0,
+) -> Variants:
+    """`Model.vary`, whose arguments these are; values that were set before stay unless they are
+    given again."""
+    if a_text("run", run, f'"{SWEEP}"') != SWEEP:
+        name = response_name(model.problem, run)
+        packing = a_packing(lanes, threads)
+        return vary_response(model, parameters, quantities, reduce, name, packing)
+    packing = a_packing(lanes, threads)
+    if SWEEP not in model.runs:
+        raise UsageError(
+            f"{model.name} has no sweep to vary; vary a response one by one: "
+            f'with_parameters({{...}}).respond("{model.runs[0]}")'
+        )
+    base = base_of(model.design)
+    problem = base.design.problem
+    names, values = parameter_arrays(problem, parameters)
+    given = file_values(values, problem, names)
+    names, values = with_held(list(problem.parameters), names, values, model.design.values)
+    asked = expressions_of(
+        problem.mechanism.coordinates if quantities is None else quantities, problem
     )
+    study = VariantRun(model, names, asked, reductions_of(asked, reduce), packing)
+    _check_memory(values.shape[1], study)
+    return Variants(given, *study.run(values))

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis import Analysis, Design, Solvable
 from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.mechanism import response_problem
-from mechkin_cli.model import Analysis, Model, a_packing
 from mechkin_cli.response import integrated, prepare, read
-from mechkin_cli.variants.many import (
+from mechkin_cli.variants.design import base_of, file_values, parameter_arrays
+from mechkin_cli.variants.result import (
     Reduce,
     Variants,
     expressions_of,
@@ -22,7 +23,6 @@ from mechkin_cli.variants.many import (
     reductions_of,
     with_held,
 )
-from mechkin_cli.variants.model import Base, file_values, parameter_arrays
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
@@ -40,32 +40,29 @@ CHUNK = 512
 
 
 def vary_response(
-    base: Base,
-    held: Mapping[str, float],
+    model: Solvable,
     parameters: Mapping[str, Any],
     quantities: Iterable[str] | None,
     reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None,
     run: str,
-    lanes: int,
-    threads: int,
+    packing: Packing,
 ) -> Variants:
     """`Model.vary` of a response, whose arguments these are.
 
     Rows are the moments asked for; where a stop ends a variant its row takes the place of the next
     moment (`time` tells), and those behind it hold nan.
     """
-    packing = a_packing(lanes, threads)
-    problem = base.model.problem
+    problem = base_of(model.design).design.problem
     names, values = parameter_arrays(problem, parameters)
     given = file_values(values, problem, names)
-    names, values = with_held(list(problem.parameters), names, values, held)
+    names, values = with_held(list(problem.parameters), names, values, model.design.values)
     known = response_problem(problem, problem.responses[run])
     asked = expressions_of(
         problem.mechanism.coordinates if quantities is None else quantities, known
     )
     reductions = reductions_of(asked, reduce)
     read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
-    study = _Study(base, names, list(read), run, packing)
+    study = _Study(model, names, list(read), run, packing)
     found = study.run(values)
     kept = {text: reduced(text, found[text], reductions[text], found.get(TIME)) for text in asked}
     return Variants(given, kept, study.codes, study.errors)
@@ -75,11 +72,12 @@ class _Study:
     """One call: arrays (variants, rows) or (variants, rows, 3) by the texts asked for."""
 
     def __init__(
-        self, base: Base, names: tuple[str, ...], asked: list[str], run: str, packing: Packing
+        self, model: Solvable, names: tuple[str, ...], asked: list[str], run: str, packing: Packing
     ) -> None:
-        self.base, self.names, self.asked = base, names, asked
+        self.model, self.base = model, base_of(model.design)
+        self.names, self.asked = names, asked
         self.name, self.packing = run, packing
-        self.rows = base.model.problem.responses[run].rows
+        self.rows = self.base.design.problem.responses[run].rows
         self.errors: dict[int, MechkinError] = {}
         self.codes: NDArray[np.int8] = np.empty((0, self.rows), dtype=np.int8)
 
@@ -89,7 +87,7 @@ class _Study:
         self.codes = np.full((count, self.rows), int(Status.not_assembled), dtype=np.int8)
         found: dict[str, Floats] = {}
         for begin in range(0, count, CHUNK):
-            models: dict[int, tuple[Model, Prepared]] = {}
+            models: dict[int, tuple[Solvable, Prepared]] = {}
             for number in range(begin, min(begin + CHUNK, count)):
                 self._prepare(number, values[:, number], models)
             results = integrated([one for _, one in models.values()], self.packing)
@@ -99,20 +97,23 @@ class _Study:
             found.setdefault(text, np.full((count, self.rows), np.nan))
         return found
 
-    def _prepare(self, number: int, row: Floats, models: dict[int, tuple[Model, Prepared]]) -> None:
+    def _prepare(
+        self, number: int, row: Floats, models: dict[int, tuple[Solvable, Prepared]]
+    ) -> None:
         try:
             built = self.base.built(dict(zip(self.names, row.tolist(), strict=True)))
-            model = Model(built, self.base.model.stem)
-            session = model.session_of(self.name)
+            design = Design(built, self.base.design.stem)
+            session = design.session_of(self.name)
             response = built.problem.responses[self.name]
-            models[number] = model, prepare(built.problem, response, self.packing, session)
+            prepared = prepare(built.problem, response, self.packing, session)
+            models[number] = self.model.of(design), prepared
         except MechkinError as error:
             self.errors[number] = error
 
     def _take(
         self,
         number: int,
-        model: Model,
+        model: Solvable,
         result: ResponseResult,
         found: dict[str, Floats],
         count: int,

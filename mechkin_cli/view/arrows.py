@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Attached, Mechanism, Problem
     from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Readable
     from mechkin_cli.view.page import Lengths, Plain
-    from mechkin_cli.view.shown import Readable
 
 
 Kind = Literal["force", "moment"]

@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.diagnostics import Diagnostic, Number
     from mechkin_cli.show import Floats
+    from mechkin_cli.sweep import Readable
     from mechkin_cli.view.page import Lengths, Plain, Share
-    from mechkin_cli.view.shown import Readable, ShownBranch
+    from mechkin_cli.view.shown import ShownBranch
 
 
 # Places that are marked on the axis of a run: dead centres, branch points, and what ended or

@@ -2,46 +2,61 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from mechkin_cli.sweep import Readable
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Sequence
 
-    from mechkin_cli.diagnostics import Diagnostic
-    from mechkin_cli.sweep import Result
+    from mechkin_cli.building import Built, ViewSettings
+    from mechkin_cli.mechanism import Problem
+    from mechkin_cli.modes import Modes
     from mechkin_cli.tables import Columns
 
 
-class Readable(Protocol):
-    """An analysis."""
+class ShownAnalysis(Readable, Protocol):
+    """An analysis whose model can be asked for the other assembly modes of its run."""
 
     @property
-    def run(self) -> str:
-        """`sweep`, or the name of a response."""
+    def model(self) -> ShownModel:
+        """Of the file."""
+        ...
+
+
+class ShownModel(Protocol):
+    """What a page reads of a model."""
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
         ...
 
     @property
-    def rows(self) -> int:
-        """Number of rows."""
+    def built(self) -> Built:
+        """The file, checked."""
         ...
 
     @property
-    def result(self) -> Result:
-        """States and verdicts of all rows."""
+    def problem(self) -> Problem:
+        """The mechanism, its motion and assembly in SI."""
         ...
 
     @property
-    def tables(self) -> tuple[Columns, ...]:
-        """The tables of the run, evaluated in the file's units."""
+    def view_settings(self) -> ViewSettings:
+        """How the file wants to be shown."""
         ...
 
-    @property
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Everything that the run has to say."""
+    def modes(self, *, run: str | None = None) -> Modes:
+        """All assembly modes at the first row of a run."""
         ...
 
-    def __getitem__(self, text: str) -> NDArray[Any]:
-        """A quantity in the file's units, (rows,), or (rows, 3) of a vector."""
+    def analyze(self, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
+        """Runs the sweep in a mode."""
+        ...
+
+    def respond(self, name: str, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
+        """Runs a response in a mode."""
         ...
 
 

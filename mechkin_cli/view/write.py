@@ -11,38 +11,23 @@ from typing import TYPE_CHECKING
 from mechkin_cli.arguments import a_path
 from mechkin_cli.assembly import HOME, NEAR
 from mechkin_cli.diagnostics import Diagnostic, UsageError
-from mechkin_cli.model import refuse_loaded_spin, run_name
 from mechkin_cli.modes import UNNAMED
+from mechkin_cli.sweep import refuse_loaded_spin
 from mechkin_cli.tables import write_files
 from mechkin_cli.verdict import SWEEP, version
 from mechkin_cli.view.arrows import has_forces, reactions
 from mechkin_cli.view.page import MOST_MODE_ROWS, MOST_MODES, filled, shares, template
 from mechkin_cli.view.scene import Scene
-from mechkin_cli.view.shown import ShownBranch, ShownRun
+from mechkin_cli.view.shown import ShownAnalysis, ShownBranch, ShownRun
 
 if TYPE_CHECKING:
     from os import PathLike
 
-    from mechkin_cli.model import Analysis, Model
     from mechkin_cli.tables import Columns
 
 
 _OWN_NAMES = {HOME: "as drawn", NEAR: "as chosen"}
 """What the file's own branch is called where its letter is not known."""
-
-
-def analyses_of(model: Model, run: str | None, mode: str | None) -> list[Analysis]:
-    """The runs of a model that are to be shown; None: all.
-
-    Raises:
-        InvalidFile: a run cannot be solved as it is driven.
-        UsageError: an unknown run or mode.
-    """
-    runs = model.runs if run is None else (run_name(model.runs, run),)
-    return [
-        model.analyze(mode=mode) if name == SWEEP else model.respond(name, mode=mode)
-        for name in runs
-    ]
 
 
 def write_view(path: str | PathLike[str], page: bytes) -> Path:
@@ -57,13 +42,17 @@ def write_view(path: str | PathLike[str], page: bytes) -> Path:
     return write_files(target.parent, {target.name: page})[0]
 
 
-def view_page(analyses: Sequence[Analysis], modes: bool = True) -> tuple[bytes, list[Diagnostic]]:
+def view_page(
+    analyses: Sequence[ShownAnalysis], modes: bool = True
+) -> tuple[bytes, list[Diagnostic]]:
     """The page of runs of one model, and the notes on what it leaves out."""
     scene, notes = view_scene(analyses, modes)
     return filled(template(), scene.record()), notes
 
 
-def view_scene(analyses: Sequence[Analysis], modes: bool = True) -> tuple[Scene, list[Diagnostic]]:
+def view_scene(
+    analyses: Sequence[ShownAnalysis], modes: bool = True
+) -> tuple[Scene, list[Diagnostic]]:
     """What a page of runs of one model shows, and the notes on what it leaves out, which are among
     its own; `modes`: with the other ways of assembling."""
     model = analyses[0].model
@@ -82,7 +71,7 @@ def view_scene(analyses: Sequence[Analysis], modes: bool = True) -> tuple[Scene,
     return scene, notes
 
 
-def _shown(analysis: Analysis, modes: bool, notes: list[Diagnostic]) -> ShownRun:
+def _shown(analysis: ShownAnalysis, modes: bool, notes: list[Diagnostic]) -> ShownRun:
     model, run = analysis.model, analysis.run
     forces = _may_read_forces(analysis, notes)
     own = analysis.result.letter if modes else analysis.result.mode
@@ -93,7 +82,7 @@ def _shown(analysis: Analysis, modes: bool, notes: list[Diagnostic]) -> ShownRun
     return ShownRun(run, title, tuple(branches), _other_tables(analysis, notes))
 
 
-def _may_read_forces(analysis: Analysis, notes: list[Diagnostic]) -> bool:
+def _may_read_forces(analysis: ShownAnalysis, notes: list[Diagnostic]) -> bool:
     """Whether reactions are there to be shown; a note says why not."""
     result = analysis.result
     if not has_forces(result.problem.mechanism) or not result.solved.any():
@@ -108,8 +97,8 @@ def _may_read_forces(analysis: Analysis, notes: list[Diagnostic]) -> bool:
 
 
 def _other_modes(
-    analysis: Analysis, own: str, notes: list[Diagnostic]
-) -> Iterator[tuple[str, Analysis]]:
+    analysis: ShownAnalysis, own: str, notes: list[Diagnostic]
+) -> Iterator[tuple[str, ShownAnalysis]]:
     """The same run in the assembly modes that are not its `own`, as far as a page holds them."""
     model, run = analysis.model, analysis.run
     found = model.modes(run=run)
@@ -139,7 +128,7 @@ def _other_modes(
             notes.append(Diagnostic("view-modes-left-out", "note", text))
 
 
-def _other_tables(analysis: Analysis, notes: list[Diagnostic]) -> tuple[Columns, ...]:
+def _other_tables(analysis: ShownAnalysis, notes: list[Diagnostic]) -> tuple[Columns, ...]:
     """The tables of dense systems and of balances."""
     try:
         return (*analysis.coefficients, *analysis.balance_tables)

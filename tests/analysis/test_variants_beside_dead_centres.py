@@ -15,7 +15,7 @@ import pytest
 from dead_centre_cases import CASES, Case
 
 import mechkin_cli as mk
-from mechkin_cli.variants.model import Base
+from mechkin_cli.variants.design import Base
 
 BESIDE = (1e-2, 1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12)
 """Distances of the driven coordinate from its dead centre, in degrees or mm."""

@@ -75,7 +75,6 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
     ("response/endings.py", "np.linalg"): "eigenvectors for a message",
-    ("proofs/certificate.py", "(found.status == proof).sum()"): "a count for a message",
     ("building/links.py", "np.linalg"): "eigenvalues for a warning",
     (
         "building/motion.py",

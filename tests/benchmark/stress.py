@@ -20,8 +20,8 @@ from benchmark.kernel_case import sweep_rows
 from benchmark.specimen import values
 
 from benchmarks.rcsr import SPAN, dimensions
+from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
-from mechkin_cli.model.analysis import Analysis
 from mechkin_cli.model.model import loads
 from mechkin_cli.verdict import Status
 

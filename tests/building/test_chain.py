@@ -10,7 +10,7 @@ from building.denavit_hartenberg import Row, frames, rows_of
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.model.analysis import Analysis
+from mechkin_cli.analysis.analysis import Analysis
 
 BENNETT = FILE_OF["bennett"].read_text()
 SEVEN = yaml.safe_load(FILE_OF["sevenr"].read_text())

@@ -15,7 +15,7 @@ from proofs.perturbed import moved
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.analysis.certificate import Certificate
 from mechkin_cli.proofs.rows import SweepProofs as Found, certify
 
 DEGREE = mp.pi / 180

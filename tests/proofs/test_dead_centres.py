@@ -26,9 +26,9 @@ from random_families.dead_centres.case import linkage, plane_four_bar
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.certificate import SweepDeadCentre
 from mechkin_cli.plan.codes import PassageEnd
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
-from mechkin_cli.proofs.certificate import SweepDeadCentre
 from mechkin_cli.proofs.dead_centre import prove_dead_centre
 from mechkin_cli.proofs.fold import are_one, prove_fold
 from mechkin_cli.session.following import Ending, EndOfRows

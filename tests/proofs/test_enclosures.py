@@ -12,8 +12,8 @@ from proofs.test_boxes import DEGREE, ROWS, certificate, mechanism
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.analysis.certificate import not_enclosed
 from mechkin_cli.proofs import enclose as enclosures, enclosed_rows
-from mechkin_cli.proofs.certificate import not_enclosed
 
 DOUBLES = 1e-13
 """Of the largest of a quantity: what doubles leave, and what bounds in doubles are apart."""

@@ -10,7 +10,7 @@ from oracle import mp
 
 import mechkin_cli as mk
 from benchmarks import train
-from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.analysis.certificate import Certificate
 
 LOOPS = 40
 MOTION = "{from: 0 deg, to: 50 deg, step: 1 deg}"

@@ -12,7 +12,7 @@ from idle_parts import CRANKS, plain, with_idle_link, with_idle_loop
 from oracle import beside_itself, to_text
 
 import mechkin_cli as mk
-from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.analysis.certificate import Certificate
 
 
 @cache

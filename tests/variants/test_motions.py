@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.variants.design import base_of
 
 ARM = """
 format: 1
@@ -56,7 +57,7 @@ def test_as_fresh_files(text: str, taped: bool) -> None:
     first = joint.coordinates[0]
     texts = ["A.effort", first, f"{first}_dot", "norm(A.force)"]
     result = model.vary(given, texts)
-    assert (model._variants.variation(("k", "L")) is not None) is taped
+    assert (base_of(model.design).variation(("k", "L")) is not None) is taped
     for number in range(3):
         one = {name: values[number] for name, values in given.items()}
         varied = model.with_parameters(one).analyze(["A.effort", "A.force"], tables=[])

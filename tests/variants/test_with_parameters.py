@@ -8,7 +8,7 @@ from references import FILE_OF, MECHANISMS
 from variants.recordings import WITH_PARAMETERS, near, parameters_of
 
 import mechkin_cli as mk
-from mechkin_cli.variants.model import VariedModel
+from mechkin_cli.variants.design import VariedDesign
 
 
 def changed(model: mk.Model, seed: int) -> dict[str, float]:
@@ -74,7 +74,7 @@ def test_rows_that_follow_a_parameter() -> None:
     text = text.replace("to: 202", "to: last").replace("rate: 0.1 rad/s", "rate: w")
     model = mk.loads(text, "rcsr")
     longer = model.with_parameters({"last": 170})
-    assert isinstance(longer, VariedModel)
+    assert isinstance(longer.design, VariedDesign)
     assert longer.analyze(tables=[]).rows == 11
     faster = model.with_parameters({"w": 0.2}).analyze(["O4.theta_dot"], tables=[])
     base = model.analyze(["O4.theta_dot"], tables=[])

@@ -10,14 +10,14 @@ import numpy as np
 
 import mechkin_cli as mk
 from mechkin_cli.view.page import script_json
-from mechkin_cli.view.write import analyses_of, view_scene
+from mechkin_cli.view.write import view_scene
 
 TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
 
 
 def data(model: mk.Model, modes: bool = True, run: str | None = None) -> dict[str, Any]:
     """The data of a model's page, through JSON and back."""
-    scene, _ = view_scene(analyses_of(model, run, None), modes)
+    scene, _ = view_scene(model.analyses(run), modes)
     found: dict[str, Any] = json.loads(script_json(scene.record()))
     return found
 

@@ -16,7 +16,6 @@ import mechkin_cli as mk
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markdown import rows_table
 from mechkin_cli.view.page import script_json
-from mechkin_cli.view.write import analyses_of
 
 FILES = list(FILE_OF.values())
 LARGEST = 1_000_000
@@ -67,7 +66,7 @@ def test_the_form_is_told_from_another() -> None:
 def test_tables_are_those_of_the_files(stem: str) -> None:
     model = mk.load(FILE_OF[stem])
     shown = data(model, modes=False)
-    for analysis in analyses_of(model, None, None):
+    for analysis in model.analyses():
         every = (*analysis.tables, *analysis.coefficients, *analysis.balance_tables)
         tables = [one for one in shown["tables"] if one["run"] == analysis.run]
         rows = rows_table(analysis.result, analysis.run)

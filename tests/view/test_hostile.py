@@ -11,7 +11,7 @@ from view.seen import data
 
 import mechkin_cli as mk
 from mechkin_cli.view.page import PLACE, filled, script_json
-from mechkin_cli.view.write import analyses_of, view_scene
+from mechkin_cli.view.write import view_scene
 
 PAGE = f'<script type="application/json" id="mechkin-data">{PLACE}</script><p>end</p>'
 TEXTS = [
@@ -30,7 +30,7 @@ TEXTS = [
 
 
 def page_of(text: str) -> str:
-    scene, _ = view_scene(analyses_of(mk.loads(text), None, None), False)
+    scene, _ = view_scene(mk.loads(text).analyses(), False)
     return filled(PAGE, scene.record()).decode()
 
 

@@ -12,7 +12,7 @@ from view.seen import data, moved, number_of, posed_rows, poses
 import mechkin_cli as mk
 from mechkin_cli.view.branch import BranchScene
 from mechkin_cli.view.joints import carried
-from mechkin_cli.view.write import analyses_of, view_scene
+from mechkin_cli.view.write import view_scene
 
 F32 = 1e-6
 """Of the size: a float's 24 bits, and the few roundings of what the page computes of them."""
@@ -21,7 +21,7 @@ F64 = 1e-12
 
 def own_branch(model: mk.Model) -> BranchScene:
     """The first branch with poses in doubles."""
-    scene, _ = view_scene(analyses_of(model, None, None), False)
+    scene, _ = view_scene(model.analyses(), False)
     return scene.branches[0][0]
 
 
@@ -103,7 +103,7 @@ def test_joints_hold_and_points_are_where_the_tables_have_them(path) -> None:
     """In doubles to 1e-12 of the size: J.point and p.position, which the kernel tells by another
     way; and both halves of a joint with a point of its own meet."""
     model = mk.load(path)
-    for analysis in analyses_of(model, None, None):
+    for analysis in model.analyses():
         scene, _ = view_scene([analysis], False)
         branch, mechanism = scene.branches[0][0], analysis.result.problem.mechanism
         size = np.linalg.norm(scene.box[1] - scene.box[0]) or 1.0

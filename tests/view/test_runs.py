@@ -21,7 +21,7 @@ from mechkin_cli.view.page import (
     thinned,
     turning_points,
 )
-from mechkin_cli.view.write import analyses_of, view_scene
+from mechkin_cli.view.write import view_scene
 
 ROCKING = (
     FOUR_BAR.replace("[20, 0, 0]", "[60, 0, 0]")
@@ -113,7 +113,7 @@ def test_a_response_and_a_sweep_are_two_runs() -> None:
 def test_twenty_thousand_rows_keep_curves_and_thin_poses() -> None:
     text = FOUR_BAR.replace("step: 10", "step: 0.018")
     model = mk.loads(text)
-    scene, notes = view_scene(analyses_of(model, None, None))
+    scene, notes = view_scene(model.analyses())
     shown = scene.record()
     own = shown["runs"][0]["branches"][0]
     assert model.analyze().rows == 20001
@@ -133,7 +133,7 @@ def test_many_columns_and_modes_share_a_page() -> None:
     other modes together."""
     text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     model = mk.loads(text.replace("to: 202, step: 2", "to: 202, count: 20001"))
-    scene, _ = view_scene(analyses_of(model, None, None))
+    scene, _ = view_scene(model.analyses())
     shown = scene.record()
     columns = sum(len(table.columns) for table in model.analyze().tables)
     for one in shown["runs"][0]["branches"]:
@@ -165,7 +165,7 @@ def test_a_pose_is_kept_on_both_sides_of_what_happens() -> None:
 def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
     monkeypatch.setattr("mechkin_cli.view.write.MOST_MODES", 2)
     model = mk.load(FILE_OF["phchc"])
-    scene, notes = view_scene(analyses_of(model, None, None))
+    scene, notes = view_scene(model.analyses())
     assert len(scene.runs[0].branches) == 3
     (note,) = notes
     left = model.modes().modes
@@ -193,7 +193,7 @@ def test_modes_are_all_there_is_and_each_once(stem: str) -> None:
 
 def test_a_mode_asked_for_is_the_own_one() -> None:
     model = mk.load(FILE_OF["rcsr"])
-    scene, _ = view_scene(analyses_of(model, None, "A"))
+    scene, _ = view_scene(model.analyses(mode="A"))
     assert [one.name for one in scene.runs[0].branches] == ["mode A", "mode B"]
 
 

@@ -17,7 +17,7 @@ from random_families.proofs.rows import ways
 from random_families.proofs.spatial import rssr
 
 import mechkin_cli as mk
-from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.analysis.certificate import Certificate
 from mechkin_cli.proofs.rows import certify
 
 DRAWS = (four_bar, slider_crank, rssr, five_bar)

@@ -13,7 +13,7 @@ from oracle import random_loop, read, solve
 from oracle.numerics import mp
 
 import mechkin_cli as mk
-from mechkin_cli.proofs.certificate import Certificate
+from mechkin_cli.analysis.certificate import Certificate
 
 TYPES = ("RCSR", "RRRRRRR", "RCCC", "RSCR", "HCSR", "RCRCR", "RPSC", "RRCRRR", "PCSR", "RHCS")
 SUFFIXES = ("", "_dot", "_ddot")

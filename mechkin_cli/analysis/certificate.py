@@ -10,15 +10,17 @@ import numpy as np
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.plan import Demand, demand_of
-from mechkin_cli.proofs.enclose import (
+from mechkin_cli.proofs import (
+    are_one,
     bounds,
+    dead_centre_enclosure,
+    enclosures,
+    input_bounds,
     inside_boxes,
     is_angle_of_place,
     reason_against,
     reason_unknown,
 )
-from mechkin_cli.proofs.enclosed_rows import dead_centre_enclosure, enclosures, input_bounds
-from mechkin_cli.proofs.fold import are_one
 from mechkin_cli.session import input_number, input_text
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.verdict import SWEEP, Proof
@@ -29,11 +31,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.model import Analysis
-    from mechkin_cli.proofs.dead_centre import DeadCentreProof as Found
-    from mechkin_cli.proofs.enclose import Enclosure
-    from mechkin_cli.proofs.rows import Gap, SweepProofs
+    from mechkin_cli.proofs import DeadCentreProof as Found, Enclosure, Gap, SweepProofs
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep import Readable
 
 
 # Dead centres at which a sweep ends, as they are proven, in the file's units and words.
@@ -61,7 +61,7 @@ class SweepDeadCentre:
         tubes: how many tubes lead there from that row.
     """
 
-    def __init__(self, analysis: Analysis, found: Found) -> None:
+    def __init__(self, analysis: Readable, found: Found) -> None:
         self._analysis = analysis
         self._found = found
         self.row = found.row
@@ -226,7 +226,7 @@ class Certificate(Listed):
         UsageError: the rows are those of a response.
     """
 
-    def __init__(self, analysis: Analysis) -> None:
+    def __init__(self, analysis: Readable) -> None:
         if analysis.run != SWEEP:
             raise UsageError(f"{analysis.run} is a response: proofs are of sweeps")
         self.analysis = analysis

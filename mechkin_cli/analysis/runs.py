@@ -1,37 +1,39 @@
-"""`Model.analyze`: the sweep of the file."""
+"""What a caller may ask of a run, checked, and the runs themselves: sweeps and responses."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from mechkin_cli import response as response_room
-from mechkin_cli.arguments import a_text, a_whole_number, texts
-from mechkin_cli.building import used_quantities
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError, nearest_hint
+from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli.arguments import (
+    Setting,
+    a_setting,
+    a_text,
+    a_whole_number,
+    settings,
+    shown,
+    texts,
+)
+from mechkin_cli.building import is_tiny_length, used_quantities
+from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
+from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.kernel.functions import check_threads, check_width
-from mechkin_cli.mechanism import response_problem
+from mechkin_cli.mechanism import Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
-from mechkin_cli.model.analysis import Analysis
-from mechkin_cli.plan import needs_all_links
 from mechkin_cli.session import Packing, Session
 from mechkin_cli.structure import UnsolvableGraph
-from mechkin_cli.sweep import analyze
+from mechkin_cli.sweep import analyze, refuse_loaded_spin
 from mechkin_cli.tables import TableLayout, chosen, row_texts
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.building import Built
-    from mechkin_cli.expressions import Quantity
-    from mechkin_cli.mechanism import Problem
-    from mechkin_cli.model.model import Model
-    from mechkin_cli.session import Precise
-
-
-# What a caller wants of a run: its tables, and the quantities that are computed with them.
 
 QUANTITIES = (
     "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
@@ -77,6 +79,66 @@ def run_name(runs: Sequence[str], name: str | None) -> str:
         hint = nearest_hint(name, runs) or f"runs are {', '.join(runs)}"
         raise UsageError(f"there is no run {name[:LONGEST_NAME]}; {hint}")
     return name
+
+
+def response_name(problem: Problem, name: str | None) -> str:
+    """The response that is meant; without a name the only one.
+
+    Raises:
+        UsageError: there is none, or none of this name.
+    """
+    known = list(problem.responses)
+    if not known:
+        raise UsageError(
+            "the file has no responses; add responses: {NAME: {start: {...}, time: {...}}}"
+        )
+    if name is None:
+        if len(known) > 1:
+            raise UsageError(f"respond() needs a name; responses are {', '.join(known)}")
+        return known[0]
+    a_text("name", name, f'"{known[0]}"')
+    if name not in known:
+        hint = nearest_hint(name, known) or f"responses are {', '.join(known)}"
+        raise UsageError(f"there is no response {name[:LONGEST_NAME]}; {hint}")
+    return name
+
+
+def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[str, float]:
+    """Inputs by name in the file's units; a bare value is for the first input that is swept.
+
+    Raises:
+        UsageError: an unknown input, or an invalid value.
+    """
+    inputs = {item.name: item for item in problem.motion.inputs}
+    if not isinstance(at, Mapping):
+        swept = [name for name, item in inputs.items() if np.ptp(item.written) > 0.0]
+        names = swept or list(inputs)
+        if not names:
+            raise UsageError(f"{problem.mechanism.name} has no input to be put at {shown(at)}")
+        at = {names[0]: a_setting("at", at)}
+    places = {}
+    for name, value in settings("at", at, '{"O1.theta": 170}').items():
+        if name not in inputs:
+            raise UsageError(
+                f"{name[:LONGEST_NAME]} is no input; inputs are {', '.join(inputs) or 'none'}"
+            )
+        places[name] = _input_value(problem, name, value)
+    return places
+
+
+def _input_value(problem: Problem, name: str, value: Setting) -> float:
+    """A value of an input in the file's units."""
+    text = value if isinstance(value, str) else repr(value)
+    dimension = dimension_of(name.rpartition(".")[2])
+    resolve = lookup(problem.parameters)
+    try:
+        found = constant_in_file_units(text, dimension, problem.units, resolve)
+        if is_tiny_length(problem.units.to_si(found, dimension), dimension):
+            raise ExpressionError("this length is too small", 0, "check its exponent and unit")
+        return found
+    except ExpressionError as error:
+        hint = f"; {error.hint}" if error.hint else ""
+        raise UsageError(f"{name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None
 
 
 def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[TableLayout, ...]:
@@ -144,7 +206,7 @@ def known_mode(analysis: Analysis) -> Analysis:
     return analysis
 
 
-def run_sweep(model: Model, options: RunOptions) -> Analysis:
+def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
     """Runs the sweep of a model; errors are those of `Model.analyze`."""
     packing, mode = a_packing(options.lanes, options.threads), options.mode
     if SWEEP not in model.runs:
@@ -152,7 +214,7 @@ def run_sweep(model: Model, options: RunOptions) -> Analysis:
             f"{model.name} has no sweep: its file has no motion:; its responses are run by "
             f'respond("{model.runs[0]}")'
         )
-    session, problem = model.session, model.problem
+    session, problem = model.design.session, model.problem
     if options.closed_at is not None:
         session = _closed_at(problem, options.closed_at)
     if mode is not None:
@@ -163,8 +225,6 @@ def run_sweep(model: Model, options: RunOptions) -> Analysis:
     names = wanted_names(session, SWEEP, layouts, options.quantities)
     asked = tuple(names)
     if balances:
-        from mechkin_cli.mechanism import read_by
-
         names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     result = analyze(session.packed(packing), names)
@@ -194,87 +254,21 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         raise UsageError(f"{why}; {cure}") from None
 
 
-def refuse_loaded_spin(session: Session, names: Sequence[str]) -> None:
-    """Forces and energies need what spins freely to have no cause to spin.
-
-    Raises:
-        UsageError: one of some quantities is such, and something would spin.
-    """
-    problem = session.problem
-    if not names or not problem.has_idle:
-        return
-    for diagnostic in _causes_of_spin(session):
-        known = problem.quantities()
-        if needs_all_links(problem.mechanism, [known[name] for name in names]):
-            raise UsageError(str(diagnostic))
-
-
-@remembered
-def _causes_of_spin(session: Session) -> list[Diagnostic]:
-    from mechkin_cli.idle import spin_errors
-
-    return [diagnostic for _, diagnostic in spin_errors(session.problem)]
-
-
-# `Model.respond`: one of the file's responses, by its name.
-
-_AS_WRITTEN: Mapping[str, Quantity] = MappingProxyType({})
-
-
-def respond(model: Model, name: str | None, options: RunOptions) -> Analysis:
+def respond(model: Solvable, name: str | None, options: RunOptions) -> Analysis:
     """Runs a response of a model; errors are those of `Model.respond`."""
     packing, mode = a_packing(options.lanes, options.threads), options.mode
-    run = response_name(model, name)
-    session = model.session_of(run)
-    problem = model.problem
+    design = model.design.at_responses
+    problem = design.problem
+    run = response_name(problem, name)
+    session = design.session_of(run)
     response = problem.responses[run]
     if mode is not None:
         a_text("mode", mode, '"A"')
         assembly = replace(response.assembly, near={}, mode=mode)
         response = replace(response, assembly=assembly)
         session = session.assembled(assembly)
-    layouts = chosen_tables(model.built, options.tables, run)
+    layouts = chosen_tables(design.built, options.tables, run)
     names = wanted_names(session, run, layouts, options.quantities)
     result = response_room.respond(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     return analysis if mode is None else known_mode(analysis)
-
-
-def session_at_start(model: Model, run: str) -> Session:
-    """The mechanism in the kernel at the start of a response; errors as those of
-    `Model.session_of`."""
-    graph = model.response_graph(run)
-    first = response_problem(model.problem, model.problem.responses[run])
-    return Session.of(first, graph).reading(exactly_read(model.built, first, model._given))
-
-
-def exactly_read(
-    built: Built, first: Problem, given: Mapping[str, Quantity] = _AS_WRITTEN
-) -> Callable[[], Precise]:
-    """What gives the numbers of a response as its text says them, read when they are first asked
-    for; `first` is its first moment, `given` are values of parameters that were set."""
-    from mechkin_cli.building import precise_response
-
-    return cache(lambda: precise_response(built, first, given))
-
-
-def response_name(model: Model, name: str | None) -> str:
-    """The response that is meant; without a name the only one.
-
-    Raises:
-        UsageError: there is none, or none of this name.
-    """
-    known = list(model.built.problem.responses)
-    if not known:
-        raise UsageError(
-            "the file has no responses; add responses: {NAME: {start: {...}, time: {...}}}"
-        )
-    if name is None:
-        if len(known) > 1:
-            raise UsageError(f"respond() needs a name; responses are {', '.join(known)}")
-        return known[0]
-    a_text("name", name, f'"{known[0]}"')
-    if name not in known:
-        hint = nearest_hint(name, known) or f"responses are {', '.join(known)}"
-        raise UsageError(f"there is no response {name[:LONGEST_NAME]}; {hint}")
-    return name

@@ -1,25 +1,26 @@
-"""A model under other parameters, without reading or building anew.
+"""Designs with other values of parameters, without reading or building the file again.
 
-The base model records once, for each set of parameters, how its plan depends on them; variants are
-replays of that. Where a recording does not hold, the variant is built anew: the same answers and
-the same errors, only slower.
+The file's own design records once, for each set of parameters, how its plan depends on them;
+variants are replays of that. Where a recording does not hold, the variant is built again: the same
+answers and the same errors, only slower.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mechkin_cli.analysis import Design, Solvable
 from mechkin_cli.arguments import Setting, a_setting, a_text, settings, shown
 from mechkin_cli.building import build, is_tiny_length, record
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
-from mechkin_cli.model import Model
+from mechkin_cli.memo import remembered
 from mechkin_cli.session import Continued, Session
 from mechkin_cli.structure import SolverGraph, structure_of
 from mechkin_cli.sweep import first_assembly
@@ -31,12 +32,8 @@ from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Built, ViewSettings
-    from mechkin_cli.mechanism import ResponseProblem
-    from mechkin_cli.model import Analysis
-    from mechkin_cli.session import Precise
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension, UnitSystem
-    from mechkin_cli.variants.many import Reduce, Variants
 
 
 # Values of parameters as a caller gives them, to SI: one of each, or arrays.
@@ -159,31 +156,31 @@ def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> fl
 
 
 class Base:
-    """What the variants of a model share: its first assembly, and its recordings by parameters."""
+    """What the variants of a design share: its first assembly, and its recordings by parameters."""
 
-    def __init__(self, model: Model) -> None:
-        self.model = model
+    def __init__(self, design: Design) -> None:
+        self.design = design
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
 
     @cached_property
     def _assembled(self) -> tuple[Session, FirstAssembly] | None:
-        if self.model.problem.follow is not None:
+        if self.design.problem.follow is not None:
             return None  # which loops are followed depends on what is asked
-        if SWEEP not in self.model.runs:
+        if SWEEP not in self.design.built.runs:
             return None  # there is no first row to continue
-        session, start = first_assembly(self.model.session)
+        session, start = first_assembly(self.design.session)
         if start.state is None or session.size is None:
             return None
         return session, FirstAssembly(start.state, start.row, session.size)
 
     @property
     def start(self) -> FirstAssembly:
-        """The first assembly of a model that has a variation."""
+        """The first assembly of a design that has a variation."""
         assert self._assembled is not None
         return self._assembled[1]
 
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
-        """How the model depends on some parameters; None where every variant is built anew."""
+        """How the design depends on some parameters; None where every variant is built anew."""
         key = tuple(names)
         if key not in self._variations:
             self._variations[key] = self._recorded(key)
@@ -193,49 +190,58 @@ class Base:
         if self._assembled is None:
             return None
         try:
-            recording = record(self.model.built, names)
+            recording = record(self.design.built, names)
             return SessionVariation(self._assembled[0], recording.recorder, recording.problem)
         except (TraceLost, TypeError, ValueError):
             # numpy refuses recorded numbers in words of its own
             return None
 
     def built(self, values: Mapping[str, float]) -> Built:
-        """The model with other parameters (SI), by the ordinary path.
+        """The file with other parameters (SI), by the ordinary path.
 
         Raises:
             InvalidFile: with every independent error.
         """
-        known = self.model.problem.parameters
+        known = self.design.problem.parameters
         given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
-        return build(self.model.built.read, given)
+        return build(self.design.built.read, given)
 
 
-class VariedModel(Model):
-    """A model with other values of some parameters.
+def base_of(design: Design) -> Base:
+    """What the variants of a design share with those of all others of its file."""
+    return design.base if isinstance(design, VariedDesign) else _own_base(design)
+
+
+@remembered
+def _own_base(design: Design) -> Base:
+    return Base(design)
+
+
+class VariedDesign(Design):
+    """A design with other values of some parameters.
 
     Args:
-        base: the model as its file has it.
+        base: of the design as its file has it.
         values: by name, in SI.
     """
 
     def __init__(self, base: Base, values: Mapping[str, float]) -> None:
+        known = base.design.problem.parameters
         variation = base.variation(tuple(values))
         if variation is None:
             # what has the file's own value need not be named, and may be what no tape holds
-            own = base.model.problem.parameters
-            values = {name: v for name, v in values.items() if v != own[name].value}
+            values = {name: v for name, v in values.items() if v != known[name].value}
             variation = base.variation(tuple(values)) if values else None
-        self._base, self._values = base, dict(values)
-        self._variation = variation
-        row = np.array(list(values.values()))
-        self._row = row
-        verdict = Verdict.OTHER_WAY if variation is None else variation.verdicts(row[:, None])[0]
-        if variation is None or verdict == Verdict.OTHER_WAY:
-            self._variation = None
-            super().__init__(base.built(values), base.model.stem)
-            return
-        super().__init__(base.model.built, base.model.stem)
+        self.base, self._values = base, dict(values)
+        self._row = np.array(list(values.values()))
+        verdict = Verdict.OTHER_WAY
+        if variation is not None:
+            verdict = variation.verdicts(self._row[:, None])[0]
+        self._variation = None if verdict == Verdict.OTHER_WAY else variation
         self._advised = verdict == Verdict.OTHER_ADVICE
+        built = base.built(values) if self._variation is None else base.design.built
+        given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
+        super().__init__(built, base.design.stem, given)
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -243,8 +249,8 @@ class VariedModel(Model):
         return self._values
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled and copied as the file's model and the values."""
-        return _revaried, (self._base.model, self._values)
+        """Pickled and copied as the file's design and the values."""
+        return _revaried, (self.base.design, self._values)
 
     @cached_property
     def problem(self) -> Problem:
@@ -253,7 +259,7 @@ class VariedModel(Model):
             return self.built.problem
         problem = self._variation.problem(self._row)
         if self._advised:
-            fresh = self._base.built(self._values).problem
+            fresh = self.base.built(self._values).problem
             problem = replace(problem, diagnostics=fresh.diagnostics)
         return problem
 
@@ -261,135 +267,70 @@ class VariedModel(Model):
     def session(self) -> Session:
         """The mechanism in the kernel."""
         if self._variation is None:
-            base = self._base.model.session
+            base = self.base.design.session
             own = Session.of(
                 self.problem, self.graph, closed_at=base.closed_at, packing=base.packing
             )
             return own.continuing(base, self._between).reading(lambda: self.precise)
-        varied = varied_session(self._variation, self._row, self.problem, self._base.start)
+        varied = varied_session(self._variation, self._row, self.problem, self.base.start)
         if isinstance(varied.first, Continued) and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
-            fresh = self._base.built(self._values)
+            fresh = self.base.built(self._values)
             if isinstance(fresh.graph, Diagnostic):
                 raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
             if structure_of(fresh.graph) != structure_of(varied.graph):
                 return Session.of(fresh.problem, fresh.graph)
         return varied.reading(lambda: self.precise)
 
-    @cached_property
-    def precise(self) -> Precise:
-        """As `Model.precise`; values that were set are the doubles that they are."""
-        from mechkin_cli.building import precise
-
-        return precise(self.built, self.problem, self._given)
-
-    @property
-    def _given(self) -> dict[str, Quantity]:
-        """The values that were set, in SI."""
-        known = self._base.model.problem.parameters
-        return {name: Quantity(v, known[name].dimension) for name, v in self._values.items()}
-
     def _between(self, place: float) -> Session:
         """The session between the file's own parameters (0) and these (1), built anew."""
-        own = self._base.model.problem.parameters
+        own = self.base.design.problem.parameters
         values = {}
         for name, value in self._values.items():
             start = float(own[name].value)  # type: ignore[arg-type]
             values[name] = start + place * (value - start)
-        built = self._base.built(values)
+        built = self.base.built(values)
         if isinstance(built.graph, Diagnostic):
             raise InvalidFile([*built.problem.diagnostics, built.graph])
         return Session.of(built.problem, built.graph)
 
     @property
     def graph(self) -> SolverGraph:
-        """Tree, closing joints and blocks."""
+        """Tree, cut joints and blocks."""
         return super().graph if self._variation is None else self.session.graph
 
     @cached_property
-    def _fresh(self) -> Model:
-        """The same model built anew: no recording holds responses."""
-        built = self.built if self._variation is None else self._base.built(self._values)
-        return _BuiltAnew(built, self.stem, self._given)
+    def at_responses(self) -> Design:
+        """The same design built anew: no recording holds responses."""
+        built = self.built if self._variation is None else self.base.built(self._values)
+        return Design(built, self.stem, self.given)
 
     @property
     def view_settings(self) -> ViewSettings:
-        """As `Model.view_settings`; its lengths are those of these parameters."""
-        return super().view_settings if self.built.view is None else self._fresh.view_settings
-
-    def response(self, name: str) -> ResponseProblem:
-        """What one of the file's responses asks for, in SI."""
-        return self._fresh.response(name)
-
-    def response_graph(self, name: str) -> SolverGraph:
-        """Tree, closing joints and blocks at the start of a response."""
-        return self._fresh.response_graph(name)
-
-    def session_of(self, run: str) -> Session:
-        """As `Model.session_of`."""
-        return self.session if run == SWEEP else self._fresh.session_of(run)
-
-    def respond(
-        self,
-        name: str | None = None,
-        quantities: Iterable[str] | None = None,
-        *,
-        tables: Sequence[str] | None = None,
-        mode: str | None = None,
-        lanes: int = 0,
-        threads: int = 0,
-    ) -> Analysis:
-        """As `Model.respond`; the assembly at the start is chosen for these parameters."""
-        found = self._fresh.respond(
-            name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
-        )
-        found.model = self
-        return found
-
-    def with_parameters(self, parameters: Mapping[str, Any]) -> Model:
-        """As `Model.with_parameters`; values of before stay unless they are given anew."""
-        root = self._base.model
-        values = {**self._values, **parameter_values(root.problem, parameters)}
-        ordered = {name: values[name] for name in root.problem.parameters if name in values}
-        return VariedModel(self._base, ordered) if parameters else self
-
-    def vary(
-        self,
-        parameters: Mapping[str, Any],
-        quantities: Iterable[str] | None = None,
-        reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None = None,
-        *,
-        run: str = SWEEP,
-        lanes: int = 0,
-        threads: int = 0,
-    ) -> Variants:
-        """As `Model.vary`; values of before stay unless they are given anew."""
-        from mechkin_cli.variants.many import vary
-
-        return vary(self._base, self._values, parameters, quantities, reduce, run, lanes, threads)
+        """As `Design.view_settings`; its lengths are those of these parameters."""
+        return super().view_settings if self.built.view is None else self.at_responses.view_settings
 
 
-class _BuiltAnew(Model):
-    """A model that was built with values, which its file does not have; `given` are those in SI."""
-
-    def __init__(self, built: Built, stem: str, given: Mapping[str, Quantity]) -> None:
-        super().__init__(built, stem)
-        self._values_given = given
-
-    @property
-    def _given(self) -> Mapping[str, Quantity]:
-        return self._values_given
+def _revaried(design: Design, values: Mapping[str, float]) -> Design:
+    """A design with the values that another had."""
+    return VariedDesign(base_of(design), values) if values else design
 
 
-def _revaried(model: Model, values: Mapping[str, float]) -> Model:
-    """A model with the values that another had."""
-    return VariedModel(Base(model), values) if values else model
+def varied_design(design: Design, parameters: Mapping[str, Any]) -> Design:
+    """The design with other values of some parameters; values that were set before stay unless
+    they are given again."""
+    base = base_of(design)
+    known = base.design.problem
+    values = {**design.values, **parameter_values(known, parameters)}
+    if not parameters or not values:
+        return design
+    return VariedDesign(base, {name: values[name] for name in known.parameters if name in values})
 
 
-def with_parameters(base: Base, parameters: Mapping[str, Any]) -> Model:
-    """`Model.with_parameters` of a model as its file has it."""
-    values = parameter_values(base.model.problem, parameters)
-    return VariedModel(base, values) if values else base.model
+def with_parameters(model: Solvable, parameters: Mapping[str, Any]) -> Solvable:
+    """`Model.with_parameters`, whose arguments and errors these are."""
+    design = varied_design(model.design, parameters)
+    return model if design is model.design else model.of(design)
 
 
 def file_values(values: Floats, problem: Problem, names: Sequence[str]) -> dict[str, Floats]:

@@ -1,0 +1,43 @@
+"""A design and its runs: what a checked file is with the values of its parameters, the sweep and
+the responses of it, and the `Analysis` that reads their results by name or expression.
+
+Hides how runs are asked for, pickled and proven. Models with other values are made above, in
+`variants`; `model` puts all questions together.
+"""
+
+from __future__ import annotations
+
+from mechkin_cli.lazy import lazy_names
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from mechkin_cli.analysis.analysis import Analysis as Analysis, Solvable as Solvable
+    from mechkin_cli.analysis.certificate import Certificate as Certificate
+    from mechkin_cli.analysis.design import Design as Design
+    from mechkin_cli.analysis.runs import (
+        RunOptions as RunOptions,
+        a_packing as a_packing,
+        input_values as input_values,
+        respond as respond,
+        response_name as response_name,
+        run_name as run_name,
+        run_sweep as run_sweep,
+    )
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "analysis": ["Analysis", "Solvable"],
+        "certificate": ["Certificate"],
+        "design": ["Design"],
+        "runs": [
+            "RunOptions",
+            "a_packing",
+            "input_values",
+            "respond",
+            "response_name",
+            "run_name",
+            "run_sweep",
+        ],
+    },
+)
