@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 Quick = Annotated[
-    bool, typer.Option("--quick", help="Few rounds: takes seconds, and measures less well.")
+    bool, typer.Option("--quick", help="Fewer rounds: takes seconds, with less accurate times.")
 ]
 Out = Annotated[
     Path | None,
@@ -49,7 +49,7 @@ def bench(
     out: Out = None,
     json: Json = False,
     stress: Annotated[
-        bool, typer.Option("--stress", help="Hard mechanisms of known rows instead of run times.")
+        bool, typer.Option("--stress", help="Run hard mechanisms with known rows instead of timing.")
     ] = False,
 ) -> None:
     """Measure run time against error.

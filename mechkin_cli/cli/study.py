@@ -67,7 +67,7 @@ def study(
         ),
     ] = "csv",
     again: Annotated[
-        bool, typer.Option("--again", help="Discard the results in the folder and begin anew.")
+        bool, typer.Option("--again", help="Discard the results in the folder and start over.")
     ] = False,
     threads: Annotated[
         int, typer.Option("--threads", help="Threads of each process (0: as many as pay).")
