@@ -49,7 +49,7 @@ def bench(
     out: Out = None,
     json: Json = False,
     stress: Annotated[
-        bool, typer.Option("--stress", help="Run hard mechanisms with known rows instead of timing.")
+        bool, typer.Option("--stress", help="Run hard mechanisms with known rows instead.")
     ] = False,
 ) -> None:
     """Measure run time against error.
