@@ -206,7 +206,7 @@ class PrintedCell:
         """Printed less computed, in units of the last printed digit."""
         return _WIDE.divide(self.difference, self.unit)
 
-    @property
+    @cached_property
     def agrees(self) -> bool:
         """Whether the printed number is the computed one, rounded to the printed digits."""
         return abs(self.units) <= HALF
