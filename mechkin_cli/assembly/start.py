@@ -34,17 +34,13 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Layout, TrackEnd, build_plan
-from mechkin_cli.search import (
-    Assemblies,
-    all_assemblies,
-    is_in_reach,
-    pose_number,
-    with_assemblies,
-)
+from mechkin_cli.search import Assemblies, all_assemblies, is_in_reach, pose_number, with_assemblies
 from mechkin_cli.session import (
     BranchFold,
     Continued,
     ContinuedFrom,
+    Followed,
+    Session,
     find_limit,
     input_numbers,
     input_text,
@@ -55,7 +51,6 @@ from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
 
 
