@@ -18,9 +18,9 @@ SECTION = re.compile(
 HEAD = """\
 # Hard mechanisms
 
-How often does mechkin give a wrong row, and how often none although there is one? This page
-answers with random mechanisms that are hard, each family in one way. In the table below, *false
-ok* is the number to look at first: wrong rows that call themselves right.
+How often does mechkin give a wrong row, and how often no row although one exists? This page
+answers with random hard mechanisms, each family hard in one way. In the table below, *false
+ok* is the number to look at first: wrong rows reported as right.
 
 Every row is judged in double-double arithmetic (about 31 digits) by code that shares no line
 with the solver: by a closed form, or, for loops that have none, by their closing equations,
@@ -29,12 +29,12 @@ followed from the drawing. The page is written in the repository's root by `pyth
 computes the small set at the end again and compares it. The numbers depend on rows and seed
 alone, not on the machine. To see a mechanism, `python -m benchmarks --stress --family NAME --only
 K` prints mechanism K of a family as a file. `mechkin bench --stress` runs one mechanism of each
-family but long sweeps. The families share the rows evenly, except that loops which take long get
-fewer (spatial loops a quarter, many loops a tenth) and that long sweeps come on top.
+family except long sweeps. The families share the rows evenly, except that slow loops get fewer
+(spatial loops a quarter, many loops a tenth) and that long sweeps come on top.
 
 {families}
 
-What can become of a row (u = 2^-53, the rounding of a double; k is the row's own condition):
+The possible outcomes of a row (u = 2^-53, the rounding of a double; k is the row's own condition):
 
 - *Right*: the place is within {wrong} u k of the true one, or right to nine digits (responses:
   within {tolerances} tolerances), and it is nearer to the true assembly than to the other.
@@ -44,10 +44,10 @@ What can become of a row (u = 2^-53, the rounding of a double; k is the row's ow
   there is a row at all.
 - *As drawn*: one of the faults below, in a run whose notes (`nearly-common`, `conventional`,
   `undriven-freedom`, `input-locked`) say that axes or points less than 1e-7 apart, or loops that
-  are dependent to 1e-6, are taken for coinciding (`COMMON_MOTION`, `LOOP_RANK`), because numbers
+  are dependent to 1e-6, are treated as coinciding (`COMMON_MOTION`, `LOOP_RANK`), because numbers
   of nine digits cannot say more. The row is that of a mechanism in which they coincide. A
   documented limit.
-- *Rates lost*: the place is right and says ok, but a rate is off by more than {wrong} u k^2, or
+- *Rates lost*: the place is right and the row ok, but a rate is off by more than {wrong} u k^2, or
   an acceleration or a force by more than {wrong} u k^3, and by more than 1e-9 of the row's
   largest. The direction of a rod that is short compared with the mechanism is known only to u
   over its length, and `row.condition`, a measure of places, does not show that. A documented
@@ -55,17 +55,17 @@ What can become of a row (u = 2^-53, the rounding of a double; k is the row's ow
 - *Wrong, warned*: a wrong place, with a warning.
 - *False alarm*: the row exists but stays empty, with a status that says why. Known: change
   points 47 of seed 7 is `branch-lost` after 23 rows.
-- *False ok*: a wrong place, or one that cannot exist, that says ok.
+- *False ok*: a wrong place, or one that cannot exist, in a row that is ok.
 
-And what [`--certify`](verdicts.md#proofs) makes of the same rows; enclosures of places, rates,
-accelerations and forces must contain the true values of the numbers that the file says:
+The outcomes of [`--certify`](verdicts.md#proofs) for the same rows; enclosures of places, rates,
+accelerations and forces must contain the true values for the numbers written in the file:
 
 - *Proven*, or *proven to closure*: as on the page of verdicts. *Not proven*: the row exists, and
-  nothing is claimed of it. *Proven elsewhere*: an enclosure that is proven and does not contain
+  nothing is claimed about it. *Proven elsewhere*: a proven enclosure that does not contain
   the true value.
-- Of most families every row is tried; of some, in which the mechanism makes many turns between
-  two rows and needs up to 25 000 tubes, one mechanism in so many; of responses none, since there
-  are no proofs of them.
+- In most families every row is tried; in some, whose mechanisms make many turns between
+  two rows and need up to 25 000 tubes, only one mechanism in so many; responses are not tried,
+  since there are no proofs for them.
 """
 
 

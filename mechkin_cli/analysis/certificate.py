@@ -13,7 +13,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Number, UsageError
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.proofs import are_one, bounds, reason_against
 from mechkin_cli.session import input_number, input_text
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.verdict import SWEEP, Proof
 
 if TYPE_CHECKING:
@@ -330,13 +330,13 @@ class Certificate(Listed):
         return (low, high) if len(wanted.places) > 1 else (low[:, 0], high[:, 0])
 
     def _gap(self, gap: Gap) -> Diagnostic:
-        first, last = gap.first + 1, gap.last + 1
+        first, last = gap[0] + 1, gap[1] + 1
         rows = f"row {first} is" if first == last else f"rows {first} to {last} are"
         numbers = (Number("first_row", first), Number("last_row", last))
         measured = None
-        if gap.why == "box":
-            worst = float(self._proofs.boxes.contraction[gap.first : last].max())
+        if gap[2] == "box":
+            worst = float(self._proofs.boxes.contraction[first - 1 : last].max())
             measured = f"the operator leaves {worst:.2g} of a box (limit 1)"
-        why, cure = _ROWS_WHY[gap.why]
+        why, cure = _ROWS_WHY[gap[2]]
         text = f"{rows} not proven: {why}"
         return Diagnostic("not-proven", "warning", text, None, measured, None, cure, numbers)

@@ -11,12 +11,11 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import is_cyclic, probe_of, wrapped
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.mechanism import dimension_of, is_angle
+from mechkin_cli.mechanism import Problem, dimension_of, is_angle
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Problem
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
@@ -118,10 +117,10 @@ def unclear(both: str, distances: tuple[float, float]) -> Diagnostic:
 @dataclass(frozen=True)
 class AssemblyStart:
     """States at a row (the first, or the one nearest to an assembled home) and the mode's name,
-    where it is known (`near` and `home` stand for one that nobody asked for); `how` says how it was
-    found. Without states `status` says why there are none, and `stuck` whether the inputs did not
-    move from the drawing at all. `off` is the distance from what `near` names and `condition` that
-    of the assembly, as far as the choice has found them."""
+    where it is known (else `near` or `home`); `how` it was found, in words. Without states `status`
+    is the reason why there are none, and `stuck` whether the inputs did not move from the drawing
+    at all. `off` is the distance from what `near` names and `condition` that of the assembly, as
+    far as the choice has needed them."""
 
     state: Floats | None
     mode: str

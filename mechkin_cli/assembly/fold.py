@@ -16,6 +16,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.distances import (
+    AssemblyStart,
     distances_home,
     distances_near,
     distances_of,
@@ -27,12 +28,10 @@ from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.search import pose_number
-from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.session import Ask, Batch, RowInputs, Session
 from mechkin_cli.tolerances import BEFORE_DEAD_CENTRE, OFF_FOLD
 
 if TYPE_CHECKING:
-    from mechkin_cli.assembly.distances import AssemblyStart
-    from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Floats
 
 

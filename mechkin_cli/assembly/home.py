@@ -24,12 +24,11 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.plan import TrackEnd, home_inputs, home_state
 from mechkin_cli.record import dataclass
 from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
-from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.session import Ask, Followed, RowInputs, Session
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Bools, Floats
 
 

@@ -1,4 +1,4 @@
-"""The assembly nearest to the coordinates that `near` names, and what to say where none is found.
+"""The assembly nearest to the coordinates that `near` names, or the report that there is none.
 
 If all unknowns are named, Newton's method from them ends at an assembly x at a distance d. With
 the closing equations f, the Jacobian J there and a bound L of their second derivatives, two
@@ -22,13 +22,11 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import GROUND_NAME, norm
-from mechkin_cli.plan import Demand, home_state
+from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.search import Within, single_assembly
+from mechkin_cli.search import Assemblies, Within, single_assembly
 
 if TYPE_CHECKING:
-    from mechkin_cli.plan import Layout
-    from mechkin_cli.search import Assemblies
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
@@ -159,10 +157,10 @@ LOOP_SHOWN = 12
 
 
 def nothing_found(
-    session: Session, found: Assemblies, place: str = "at the first row"
+    session: Session, assemblies: Assemblies, place: str = "at the first row"
 ) -> Diagnostic:
     """Why a mechanism cannot be assembled: which loop does not close."""
-    loop, name = _failed_loop(session, found), session.problem.mechanism.name
+    loop, name = _failed_loop(session, assemblies), session.problem.mechanism.name
     hint = "check the dimensions, or start the sweep at another input"
     if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
         turns = session.problem.assembly.turns
@@ -173,36 +171,33 @@ def nothing_found(
         "not-assembled",
         "error",
         f"{name} cannot be assembled {place}{loop}",
-        measured=_missed(found),
-        limit=None if found.complete else f"{tolerances.RESIDUAL_ACCEPT:g}",
+        measured=_missed(assemblies),
+        limit=None if assemblies.complete else f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint=hint,
         numbers=(
-            Number("starts", found.tried),
-            Number("residual", found.closest, limit=tolerances.RESIDUAL_ACCEPT),
+            Number("starts", assemblies.tried),
+            Number("residual", assemblies.closest, limit=tolerances.RESIDUAL_ACCEPT),
         ),
     )
 
 
-def _missed(found: Assemblies) -> str:
-    if found.free:
-        return (
-            f"{found.free} of {found.starts} random starts closed the loops, all where they still "
-            "move with the inputs held, or in a singular position"
-        )
-    if found.complete:
+def _missed(assemblies: Assemblies) -> str:
+    if assemblies.free:
+        text = f"{assemblies.free} of {assemblies.starts} random starts closed the loops, all where"
+        return f"{text} they still move with the inputs held, or in a singular position"
+    if assemblies.complete:
         return "its equations have no real root"
-    return (
-        f"none of {found.tried} random starts closed, the best to {found.closest:.2g} of the size"
-    )
+    best = f"the best to {assemblies.closest:.2g} of the size"
+    return f"none of {assemblies.tried} random starts closed, {best}"
 
 
-def _failed_loop(session: Session, found: Assemblies) -> str:
+def _failed_loop(session: Session, assemblies: Assemblies) -> str:
     """The joints of the loops that did not close, and whether others were closed before."""
-    if found.failed is None or found.free:
+    if assemblies.failed is None or assemblies.free:
         return ""
     graph = session.graph
     names: dict[str, None] = {}
-    closings = graph.blocks[found.failed].closings
+    closings = graph.blocks[assemblies.failed].closings
     for closing in (graph.closings[c] for c in closings):
         joints = closing.constraint.joints
         # outward to the cut joint's first link, and back
@@ -213,5 +208,6 @@ def _failed_loop(session: Session, found: Assemblies) -> str:
     more = f" and {len(shown) - LOOP_SHOWN} more" if len(shown) > LOOP_SHOWN else ""
     loops = "the loop" if len(closings) == 1 else f"the {len(closings)} loops"
     close = "does not close" if len(closings) == 1 else "do not close together"
-    before = f", in none of {found.places} assemblies before it" if found.places > 1 else ""
+    places = assemblies.places
+    before = f", in none of {places} assemblies before it" if places > 1 else ""
     return f": {loops} through {', '.join(shown[:LOOP_SHOWN])}{more} {close}{before}"

@@ -45,6 +45,8 @@ from mechkin_cli.session import (
     BranchFold,
     Continued,
     ContinuedFrom,
+    Followed,
+    Session,
     find_limit,
     input_numbers,
     input_text,
@@ -55,7 +57,6 @@ from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
 
 

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.balances.dense import (
+    RowMotion,
     Wrench,
     borne_wrenches,
     coordinate_wrench,
@@ -34,15 +35,12 @@ from mechkin_cli.balances.dense import (
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, cross, scale
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.tables import Columns, TableColumn, words_of
+from mechkin_cli.tables import CoefficientsLayout, Columns, TableColumn, words_of
 from mechkin_cli.tolerances import DENSE_PIVOT, DENSE_ROUNDING
-from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT, Dimension
+from mechkin_cli.units import DIMENSIONLESS, FORCE, LENGTH, MOMENT, Dimension, UnitSystem
 
 if TYPE_CHECKING:
-    from mechkin_cli.balances.dense import RowMotion
     from mechkin_cli.sweep import Result
-    from mechkin_cli.tables import CoefficientsLayout
-    from mechkin_cli.units import UnitSystem
 
 UNIT_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _XYZ = "xyz"

@@ -45,21 +45,17 @@ from mechkin_cli.derived import (
 )
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import atan2, cos, sin
-from mechkin_cli.mechanism import AnyBalance, Flywheel, Harmonics, LoadWork
-from mechkin_cli.session import input_path
-from mechkin_cli.sweep import stands_elsewhere
+from mechkin_cli.mechanism import AnyBalance, Cycle, Flywheel, Harmonics, Load, LoadWork
+from mechkin_cli.session import KernelInputs, input_path
+from mechkin_cli.sweep import Result, stands_elsewhere
 from mechkin_cli.tables import ColumnLayout, Columns, TableColumn, column_of, words_of
 from mechkin_cli.tolerances import REACTION_ROUNDING
-from mechkin_cli.units import ANGLE, ANGULAR_RATE, ENERGY, INERTIA, MOMENT
+from mechkin_cli.units import ANGLE, ANGULAR_RATE, ENERGY, INERTIA, MOMENT, Dimension
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from mechkin_cli.mechanism import Cycle, Load
-    from mechkin_cli.session import KernelInputs
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep import Result
-    from mechkin_cli.units import Dimension
 
 
 def rates_along(result: Result, cycle: Cycle) -> KernelInputs:

@@ -379,7 +379,7 @@ STUDY = Command(
             default="csv",
             offers="study_format_names",
         ),
-        Word("again", "Discard the results in the folder and begin anew.", ("--again",)),
+        Word("again", "Discard the results in the folder and start over.", ("--again",)),
         Word(
             "threads",
             "Threads of each process (0: as many as pay).",
@@ -465,7 +465,7 @@ BENCH = Command(
             metavar="FILE",
             repeated=True,
         ),
-        Word("quick", "Few rounds: takes seconds, and measures less well.", ("--quick",)),
+        Word("quick", "Fewer rounds: takes seconds, with less accurate times.", ("--quick",)),
         Word(
             "out",
             "Also write bench.json, bench.csv, bench.md, bench.svg.",
@@ -474,7 +474,7 @@ BENCH = Command(
             "DIR",
         ),
         JSON,
-        Word("stress", "Hard mechanisms of known rows instead of run times.", ("--stress",)),
+        Word("stress", "Run hard mechanisms with known rows instead.", ("--stress",)),
     ),
 )
 

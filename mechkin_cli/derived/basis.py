@@ -8,7 +8,7 @@ the leading input with the others held (`at_unit_rate`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from mechkin_cli.mechanism import FINITE_KINDS, INSTANT_KINDS, ORIENTATION_KINDS, Mechanism, Wanted
@@ -17,8 +17,6 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import numpy as np
     from numpy.typing import NDArray
 

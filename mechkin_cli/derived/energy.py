@@ -25,12 +25,7 @@ from mechkin_cli.derived.coefficients import (
     is_stored,
     load_powers,
 )
-from mechkin_cli.derived.quadrature import (
-    POINTS,
-    integrals,
-    interval_integrals,
-    running_integral,
-)
+from mechkin_cli.derived.quadrature import POINTS, integrals, interval_integrals, running_integral
 from mechkin_cli.tolerances import POWER_INTEGRAL
 from mechkin_cli.units import TIME
 

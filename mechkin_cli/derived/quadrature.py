@@ -194,10 +194,7 @@ ROUNDS = 48
 
 
 def integrals(
-    low: Floats,
-    high: Floats,
-    sample: Callable[[Floats], tuple[Floats, Floats]],
-    allowed: Floats,
+    low: Floats, high: Floats, sample: Callable[[Floats], tuple[Floats, Floats]], allowed: Floats
 ) -> tuple[Floats, Floats]:
     """Integrals from `low` to `high` (pieces,), rising and apart from each other, and how far each
     may be off (integrands, pieces).

@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from mechkin_cli.expressions import Quantity, Vector, exact_literal
+from mechkin_cli.expressions import Expression, NumberNode, Quantity, Vector, exact_literal
 from mechkin_cli.tape import DoubleDoubles, bounded, exactly
 from mechkin_cli.tolerances import NO_DOUBT
 
 if TYPE_CHECKING:
-    from mechkin_cli.expressions import Expression, NumberNode
     from mechkin_cli.tables import FloatArray
     from mechkin_cli.units import UnitSystem
 

@@ -24,19 +24,16 @@ from mechkin_cli import tolerances
 from mechkin_cli.errors.legendre import collocation, integrals_to, sum_of_products, values_at
 from mechkin_cli.errors.rows import NOT_RESOLVED, as_number, as_parts
 from mechkin_cli.kernel.functions import power
-from mechkin_cli.mechanism import Damper, Spring
-from mechkin_cli.plan import Demand
+from mechkin_cli.mechanism import Damper, Load, Spring
+from mechkin_cli.plan import Demand, Layout
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.response import with_loads
-from mechkin_cli.session import Ask, Chart, PreciseConstants, RowInputs
+from mechkin_cli.session import Ask, Chart, Precise, PreciseConstants, RowInputs, Session
 from mechkin_cli.tape import DoubleDoubles, eliminate, joined
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from mechkin_cli.mechanism import Load
-    from mechkin_cli.plan import Layout
-    from mechkin_cli.session import Precise, Session
     from mechkin_cli.show import Bools, Floats
 
 MOVING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES

@@ -34,7 +34,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import Ask, KernelInputs, PreciseConstants, RowInputs
 from mechkin_cli.tape import DoubleDoubles, TraceLost, exactly
-from mechkin_cli.units import TIME, UnitSystem
+from mechkin_cli.units import TIME
 from mechkin_cli.verdict import has_rates
 
 if TYPE_CHECKING:
@@ -110,12 +110,20 @@ class Repeated:
     Args:
         result: the run.
         wide: its rows in double-double.
+
+    Attributes:
+        session: the mechanism in the kernel.
+        problem: mechanism, motion and assembly.
+        units: of the file.
+        rows: number of rows.
     """
 
     shifts: tuple[int, ...] = ()
 
     def __init__(self, result: Result, wide: KernelRows) -> None:
         self.result, self.wide, self.row_states = result, wide, result.row_states
+        self.session, self.problem = result.session, result.problem
+        self.units, self.rows = result.units, result.rows
         self._columns: Wide = {}
         self._rests: Wide = {}
 
@@ -128,26 +136,6 @@ class Repeated:
     def lost_why(self) -> str:
         """Why rows are not repeated; "" where that is not known."""
         return ""
-
-    @property
-    def session(self) -> Session:
-        """The mechanism in the kernel."""
-        return self.result.session
-
-    @property
-    def problem(self) -> Problem:
-        """Mechanism, motion and assembly."""
-        return self.session.problem
-
-    @property
-    def units(self) -> UnitSystem:
-        """The file's units."""
-        return self.problem.units
-
-    @property
-    def rows(self) -> int:
-        """Number of rows."""
-        return self.result.rows
 
     @property
     def written(self) -> Mapping[str, DoubleDoubles]:

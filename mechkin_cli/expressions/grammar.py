@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import math
 import re
-from functools import lru_cache
 
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions.functions import FORMS, FUNCTIONS, INSTEAD
@@ -136,9 +135,8 @@ _CALLED = FUNCTIONS | FORMS
 _COMPONENTS = (".x", ".y", ".z")
 
 
-@lru_cache(maxsize=1024)
 def parse_nodes(text: str) -> tuple[Node, ...]:
-    """The nodes of an expression in postfix order; a file repeats many, 0 above all.
+    """The nodes of an expression in postfix order.
 
     Raises:
         ExpressionError: the text is not an expression, or exceeds a limit.

@@ -22,14 +22,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mobility.configurations import Closed, closed, damped_steps
+from mechkin_cli.mobility.configurations import Closed, LoopPart, closed, damped_steps
 from mechkin_cli.mobility.opened import Rank, rank_of
-from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.record import dataclass, replace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.mobility.configurations import LoopPart
     from mechkin_cli.show import Floats
     from mechkin_cli.structure import RandomStarts
 
@@ -138,12 +137,9 @@ class AssemblyComponent:
     places: tuple[Floats, ...] = ()
 
 
-class Move(NamedTuple):
-    """A move by its largest step (rad, parts of the size), and how far loops that are closed after
-    it may be open."""
-
-    step: float
-    limit: float
+Move = tuple[float, float]
+"""A move by its largest step (rad, parts of the size), and how far loops that are closed after it
+may be open."""
 
 
 class Unclear(Exception):
@@ -163,10 +159,10 @@ def component_at(
         if count == 0 or rank.stresses.shape[1] == 0:
             return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
         units = (motions @ _frame(random, count)).T
-        moves = move.step * _scaled(units)
+        moves = move[0] * _scaled(units)
         moves = np.concatenate([part_of * moves for part_of in tolerances.MOBILITY_CHORDS])
         ends = closed(part, part.moved(np.repeat(place[None], len(moves), axis=0), moves))
-        if not ends.good(move.limit).all():
+        if not ends.good(move[1]).all():
             raise Unclear("moves do not close again")
         ranks = [
             rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions.shape[1]
@@ -175,7 +171,7 @@ def component_at(
         if min(ranks) == count:
             dimension, tangents = _chords(part, place, ends, moves)
             if not dimension:
-                raise Unclear(f"{move.step:g} away nothing can move")
+                raise Unclear(f"{move[0]:g} away nothing can move")
             if not _is_smooth(part, place, tangents, move, _frame(random, dimension)):
                 raise Unclear("several motions meet wherever it goes")
             if dimension == count:
@@ -206,7 +202,7 @@ def _chords(part: LoopPart, place: Floats, ends: Closed, moves: Floats) -> tuple
 def _is_smooth(part: LoopPart, place: Floats, tangents: Floats, move: Move, frame: Floats) -> bool:
     """Whether moves along the `tangents` (columns, dimension), mixed by a `frame`, go where they
     are meant to: they would not where several components meet, whose chords count together."""
-    moves = move.step * tolerances.MOBILITY_CHORDS[0] * _scaled((tangents @ frame).T)
+    moves = move[0] * tolerances.MOBILITY_CHORDS[0] * _scaled((tangents @ frame).T)
     return bool(np.all(_closed_as_meant(part, place, moves, move)[1]))
 
 
@@ -218,7 +214,7 @@ def _closed_as_meant(
     ends = closed(part, part.moved(starts, moves))
     strayed = _lengths(part.steps(ends.states, starts) - moves)
     limit = tolerances.MOBILITY_STRAYED * _lengths(moves)
-    return ends, ends.good(move.limit) & (strayed < limit)
+    return ends, ends.good(move[1]) & (strayed < limit)
 
 
 def _lengths(steps: Floats) -> Floats:
@@ -254,16 +250,12 @@ class LocalFreedom:
         return tuple(component.dimension for component in self.components)
 
 
-MOVES = tuple(Move(*each) for each in tolerances.MOBILITY_MOVES)
-FAR_MOVE = Move(*tolerances.MOBILITY_FAR_MOVE)
-
-
 class _Nearly(Unclear):
     """Loops stay all but closed: the `least` that they are open by is small."""
 
     def __init__(self, least: float, move: Move) -> None:
-        open_by = f"{least:.2g} of the size (limit {move.limit:g})"
-        super().__init__(f"{move.step:g} away the loops are open by {open_by}")
+        open_by = f"{least:.2g} of the size (limit {move[1]:g})"
+        super().__init__(f"{move[0]:g} away the loops are open by {open_by}")
         self.least = least
 
 
@@ -296,8 +288,8 @@ def _regular(
     is but one; None else."""
     motions = first.motions
     heading = _scaled(_units(random, 1, motions.shape[1]) @ motions.T)
-    for move in MOVES:
-        moves = move.step * np.concatenate([heading, -heading])
+    for move in tolerances.MOBILITY_MOVES:
+        moves = move[0] * np.concatenate([heading, -heading])
         ends, as_meant = _closed_as_meant(part, state, moves, move)
         for place in ends.states[as_meant]:
             try:
@@ -322,23 +314,25 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
     ) -> tuple[AssemblyComponent, ...]:
         if not len(headings):
             return ()
-        moves = move.step * headings
+        step, limit = move
+        moves = step * headings
         starts = part.moved(np.repeat(state[None], len(moves), axis=0), moves)
         ends = closed(part, starts, (state, _lengths(moves)))
         open_by = float(ends.misses.min())
-        if move.limit <= open_by < nearly:
+        if limit <= open_by < nearly:
             raise _Nearly(open_by, move)
-        places = _onward(part, state, ends.states[ends.good(move.limit)], most, move)
-        doubt = Unclear("a second move does not close") if open_by < move.limit else None
+        places = _onward(part, state, ends.states[ends.good(limit)], most, limit)
+        doubt = Unclear("a second move does not close") if open_by < limit else None
         return _components(part, places, random, move, doubt)
 
     try:
         try:
-            meeting = components(MOVES[0])
+            meeting = components(tolerances.MOBILITY_MOVES[0])
         except _Nearly as near:
-            meeting = components(FAR_MOVE, tolerances.MOBILITY_GROWTH * near.least)
+            far = tolerances.MOBILITY_FAR_MOVE
+            meeting = components(far, tolerances.MOBILITY_GROWTH * near.least)
         except Unclear:
-            meeting = components(MOVES[1])
+            meeting = components(tolerances.MOBILITY_MOVES[1])
     except Unclear as unclear:
         return LocalFreedom(first, (), str(unclear))
     if len(meeting) > 1 and meeting[0].dimension == count:
@@ -371,7 +365,7 @@ def _components(
     )
 
 
-def _onward(part: LoopPart, state: Floats, places: Floats, most: int, move: Move) -> Floats:
+def _onward(part: LoopPart, state: Floats, places: Floats, most: int, limit: float) -> Floats:
     """Places (number, states) to which another move in the same heading leads, from `most` of
     some places, far from each other, to which a first move from a state led."""
     moves = part.steps(places, np.repeat(state[None], len(places), axis=0))
@@ -379,4 +373,4 @@ def _onward(part: LoopPart, state: Floats, places: Floats, most: int, move: Move
     places, moves = places[some], moves[some]
     ends = closed(part, part.moved(places, moves))
     far = _lengths(part.steps(ends.states, places)) > 0.5 * _lengths(moves)
-    return np.asarray(ends.states[ends.good(move.limit) & far])
+    return np.asarray(ends.states[ends.good(limit) & far])

@@ -16,12 +16,11 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import choose_start, probe_of
-from mechkin_cli.mechanism import is_unnamed
+from mechkin_cli.mechanism import LockedFreedom, is_unnamed
 from mechkin_cli.mobility.configurations import Body, Configuration, home, with_links_at
 from mechkin_cli.mobility.opened import Pose, Poses, quaternion_of, rank_of
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import LockedFreedom
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 

@@ -25,14 +25,13 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.session import Ask, RowInputs, Session
 from mechkin_cli.structure import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.plan import Layout
-    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
 

@@ -8,7 +8,6 @@ has the name `-`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,24 +25,18 @@ from mechkin_cli.assembly import (
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.plan import TrackEnd
-from mechkin_cli.proofs import prove_modes
+from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import Assemblies, all_assemblies, pose_number, with_assemblies
-from mechkin_cli.session import input_numbers, input_text, kernel_inputs
-from mechkin_cli.show import Listed, Listing
-
-if TYPE_CHECKING:
-    from mechkin_cli.proofs import ModeProofs
-    from mechkin_cli.session import Session
-    from mechkin_cli.show import Floats
-
+from mechkin_cli.session import Session, input_numbers, input_text, kernel_inputs
+from mechkin_cli.show import Floats, Listed, Listing
 
 UNNAMED = "-"
 """Name of a mode that no branch from the first row reaches."""
 
 
 class Mode(NamedTuple):
-    """One way of assembling; coordinates in the file's units, angles in (-180, 180] degrees but
+    """One assembly; coordinates in the file's units, angles in (-180, 180] degrees but
     for threads."""
 
     name: str
@@ -59,11 +52,11 @@ class Modes(Listed):
     `picked` is the name of the mode that the file's `assembly:` takes, None where it takes none or
     its branch does not come here. `closed` of `starts` random starts closed; that one more that
     closes finds another mode has a chance of at most `chance`, with confidence `confidence`;
-    `stopped` says that the search ended at its most starts before that chance was small. `complete`
-    says that these are all modes, proven: as many as such loops have at most (`bound`, if one is
-    known), or as the loops' equations have real roots; `is_cut` that there are more than are
-    listed. `turns` are the turns of threads searched to either side, None without threads. `proofs`
-    say which modes are proven to exist, in the order of `modes`, where that was asked for.
+    `stopped`: the search ended at its most starts before that chance was small. `complete`: these
+    are all modes, proven: as many as such loops have at most (`bound`, if one is known), or as the
+    loops' equations have real roots; `is_cut`: there are more than are listed. `turns` are the
+    turns of threads searched to either side, None without threads. `proofs` of the modes' existence
+    are in the order of `modes`, where they were requested.
     """
 
     modes: tuple[Mode, ...]
@@ -147,18 +140,18 @@ def find_modes(
         return _result(session, first, {}, named.found, names, letter, notes, certify)
     place = _inputs_at(session, at)
     ends, notes = _follow_all(session, first, place, named)
-    found = all_assemblies(session, place)
+    assemblies = all_assemblies(session, place)
     if ends:
         states = np.stack([*ends.values()], axis=1)
-        found = with_assemblies(layout, session.plan, place, found, states)
-    if found.number == 0:
-        notes = [nothing_found(session, found, "there")]
-    names = [UNNAMED] * found.number
+        assemblies = with_assemblies(layout, session.plan, place, assemblies, states)
+    if assemblies.number == 0:
+        notes = [nothing_found(session, assemblies, "there")]
+    names = [UNNAMED] * assemblies.number
     for name, end in ends.items():
-        number = pose_number(layout, found.states, end)
+        number = pose_number(layout, assemblies.states, end)
         if number is not None:
             names[number] = name
-    return _result(session, place, at, found, names, letter, notes, certify)
+    return _result(session, place, at, assemblies, names, letter, notes, certify)
 
 
 def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
@@ -204,27 +197,27 @@ def _result(
     session: Session,
     place: Floats,
     at: Mapping[str, float],
-    found: Assemblies,
+    assemblies: Assemblies,
     names: list[str],
     letter: str,
     notes: list[Diagnostic],
     certify: bool,
 ) -> Modes:
     problem = session.problem
-    notes = [*notes, *_search_notes(found)]
+    notes = [*notes, *_search_notes(assemblies)]
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
-    coordinates, _ = probe_of(session).read(place, found.states)
+    coordinates, _ = probe_of(session).read(place, assemblies.states)
     order = sorted(
-        range(found.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
+        range(assemblies.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )
     modes = tuple(
         Mode(
             names[i],
             {n: _shown(problem, inputs, n, float(v[i])) for n, v in coordinates.items()},
-            float(found.residual[i]),
-            float(found.condition[i]),
+            float(assemblies.residual[i]),
+            float(assemblies.condition[i]),
         )
         for i in order
     )
@@ -233,17 +226,17 @@ def _result(
         modes=modes,
         inputs=inputs,
         picked=letter if letter != UNNAMED and letter in names else None,
-        starts=found.starts,
-        closed=found.closed,
-        chance=found.chance,
+        starts=assemblies.starts,
+        closed=assemblies.closed,
+        chance=assemblies.chance,
         confidence=1.0 - tolerances.SEARCH_DOUBT,
-        stopped=found.stopped,
-        complete=bool(session.graph.blocks) and found.complete,
-        is_cut=found.cut,
-        bound=found.bound,
+        stopped=assemblies.stopped,
+        complete=bool(session.graph.blocks) and assemblies.complete,
+        is_cut=assemblies.cut,
+        bound=assemblies.bound,
         turns=problem.assembly.turns if threads else None,
         diagnostics=(*problem.diagnostics, *notes),
-        proofs=prove_modes(session, place, found.states[:, order]) if certify else None,
+        proofs=prove_modes(session, place, assemblies.states[:, order]) if certify else None,
     )
 
 
@@ -255,37 +248,37 @@ def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: floa
     return float(problem.units.from_si(turned, dimension_of(name.rpartition(".")[2])))
 
 
-def _search_notes(found: Assemblies) -> list[Diagnostic]:
+def _search_notes(assemblies: Assemblies) -> list[Diagnostic]:
     notes = []
-    if found.free and found.number:
+    if assemblies.free and assemblies.number:
         notes.append(
             Diagnostic(
                 "free-assembly",
                 "note",
                 "some starts ended where the loops still move with the inputs held, or in a "
                 "singular position; these are not listed",
-                measured=f"{found.free} of {found.starts} starts",
+                measured=f"{assemblies.free} of {assemblies.starts} starts",
             )
         )
-    if found.stopped and found.cut:
+    if assemblies.stopped and assemblies.cut:
         notes.append(
             Diagnostic(
                 "search-stopped",
                 "warning",
                 "the loops have more modes together than are listed",
-                measured=f"{found.number} listed, nearest to the drawing",
+                measured=f"{assemblies.number} listed, nearest to the drawing",
                 hint="ask for parts of the mechanism, or choose the assembly with assembly: near",
             )
         )
-    elif found.stopped:
+    elif assemblies.stopped:
         notes.append(
             Diagnostic(
                 "search-stopped",
                 "warning",
                 "the search ended at its most starts, or modes, before it could tell that few are "
                 "left",
-                measured=f"{found.starts} starts, a chance of at most {found.chance:.1g} that one "
-                "more finds a new mode",
+                measured=f"{assemblies.starts} starts, a chance of at most {assemblies.chance:.1g} "
+                "that one more finds a new mode",
                 limit=f"{tolerances.SEARCH_NEW_MODE_CHANCE:g}",
                 hint="more modes may exist; fewer turns under assembly: leave fewer for threads",
             )

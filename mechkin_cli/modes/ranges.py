@@ -23,14 +23,18 @@ from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, jo
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import pose_number
-from mechkin_cli.session import Ask, RowInputs, followers_of, input_number, input_path
-from mechkin_cli.show import Listed, Listing
+from mechkin_cli.session import (
+    Ask,
+    RowInputs,
+    Session,
+    followers_of,
+    input_number,
+    input_path,
+)
+from mechkin_cli.show import Floats, Listed, Listing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from mechkin_cli.session import Session
-    from mechkin_cli.show import Floats
 
 
 class Limit(NamedTuple):

@@ -15,17 +15,15 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand
+from mechkin_cli.plan import Demand, Layout
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import Ask, RowInputs, equations_that_follow
+from mechkin_cli.session import Ask, RowInputs, Session, equations_that_follow
 from mechkin_cli.tape import TraceLost
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.plan import Layout
-    from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
 
 

@@ -6,7 +6,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 
@@ -14,16 +14,14 @@ from mechkin_cli import tolerances
 from mechkin_cli.proofs.boxes import FULL_TURN, Boxes, Enclosed, Nodes, prove_boxes, prove_tubes
 from mechkin_cli.proofs.fold import Fold, prove_fold
 from mechkin_cli.record import dataclass
-from mechkin_cli.session import exchange
+from mechkin_cli.session import Ending, EndOfRows, Followed, Session, exchange
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from typing import Self
 
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.session import Ending, EndOfRows, Followed, Session
     from mechkin_cli.show import Floats
 
 

@@ -4,24 +4,20 @@ file's units (docs/numerics.md, Intervals).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import DERIVED_KINDS, LEDGER_KINDS, is_angle
+from mechkin_cli.mechanism import DERIVED_KINDS, LEDGER_KINDS, Problem, Wanted, is_angle
 from mechkin_cli.proofs.boxes import FULL_TURN, Enclosed, distance, enclosed_of, input_rounding
 from mechkin_cli.proofs.enclose import EnclosedInputs, Enclosure, Positions, enclose
-from mechkin_cli.session import input_unit
+from mechkin_cli.session import Session, input_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.proofs.dead_centre import DeadCentreProof
     from mechkin_cli.proofs.rows import SweepProofs
-    from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
 
 

@@ -15,20 +15,12 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.plan import Demand
-from mechkin_cli.proofs.boxes import (
-    Boxes,
-    Enclosed,
-    Nodes,
-    differences,
-    enclosed_of,
-    prove_boxes,
-)
+from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, differences, enclosed_of, prove_boxes
 from mechkin_cli.proofs.enclose import Positions, enclose_derivatives
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.session import Ask, Exchanged, RowInputs
 
 if TYPE_CHECKING:
-    from mechkin_cli.session import Exchanged
     from mechkin_cli.show import Floats
 
 

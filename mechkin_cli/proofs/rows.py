@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mechkin_cli.proofs.boxes import Enclosed, Nodes, enclosed_of, prove_boxes, prove_tubes
+from mechkin_cli.proofs.boxes import Boxes, Enclosed, Nodes, enclosed_of, prove_boxes, prove_tubes
 from mechkin_cli.proofs.dead_centre import DeadCentreProof, bridge, prove_dead_centre
 from mechkin_cli.record import dataclass, replace
 from mechkin_cli.verdict import Proof
@@ -15,7 +15,6 @@ from mechkin_cli.verdict import Proof
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.proofs.boxes import Boxes
     from mechkin_cli.session import EndOfRows, Session
     from mechkin_cli.show import Bools, Floats
 
@@ -24,13 +23,8 @@ Why = Literal["no position", "box", "branch"]
 its box is proven, but not that it lies on the branch of the rows before."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Gap:
-    """Rows next to each other (counted from 0, both included) of which nothing is proven."""
-
-    first: int
-    last: int
-    why: Why
+Gap = tuple[int, int, Why]
+"""The first and the last row (counted from 0) of a stretch of which nothing is proven, and why."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +81,7 @@ class SweepProofs:
         edges = np.flatnonzero(np.diff(reason, prepend=-1))
         ends = [*edges[1:], reason.size]
         return tuple(
-            Gap(int(first), int(end) - 1, words[reason[first] - 1])
+            (int(first), int(end) - 1, words[reason[first] - 1])
             for first, end in zip(edges, ends, strict=True)
             if reason[first]
         )

@@ -7,22 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.plan import Demand, kink_laws
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.response.integration import Fault, MotionEnd
-from mechkin_cli.session import Ask, RowInputs, input_numbers, input_text
+from mechkin_cli.response.integration import Fault, MotionEnd, MotionReport
+from mechkin_cli.session import Ask, RowInputs, Session, input_numbers, input_text
 from mechkin_cli.sweep import passed_straight_on
-from mechkin_cli.units import TIME
+from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.diagnostics import Place
     from mechkin_cli.mechanism import LoadLaw, ResponseProblem
-    from mechkin_cli.response.integration import MotionReport
-    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.units import UnitSystem
 
 
 class Reason(NamedTuple):

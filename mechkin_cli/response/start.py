@@ -14,12 +14,11 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import Ask, RowInputs
+from mechkin_cli.session import Ask, RowInputs, Session
 from mechkin_cli.sweep import lost_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import ResponseProblem
-    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
 

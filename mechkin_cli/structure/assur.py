@@ -10,14 +10,12 @@ What the screws as drawn leave undetermined is counted once more with all freedo
 drawing can be special, and the dimensions of an overconstrained loop decide later. If that is
 enough, all that hangs together is one group; what is undetermined even then is not driven.
 
-Where there are more equations than freedoms, all this only proposes groups: ranks decide
-(`rank.py`).
+Where there are more equations than freedoms, all this only proposes groups: ranks decide (`rank`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
 from mechkin_cli.record import NamedTuple
@@ -26,14 +24,12 @@ from mechkin_cli.structure.network import (
     Connection,
     GraphComponent,
     Region,
-    distances,
+    depths,
     find_regions,
     incidence,
     order_of,
 )
-
-if TYPE_CHECKING:
-    from mechkin_cli.structure.rank import DeterminedSets, Rates
+from mechkin_cli.structure.rank import Rates, determined_sets
 
 
 class AssurGroup(NamedTuple):
@@ -44,11 +40,8 @@ class AssurGroup(NamedTuple):
     connections: tuple[Connection, ...]
 
 
-class Undriven(NamedTuple):
-    """Connections whose freedoms are not all determined, and how many more inputs they need."""
-
-    connections: tuple[Connection, ...]
-    missing: int
+Undriven = tuple[tuple[Connection, ...], int]
+"""Connections whose freedoms are not all determined, and how many more inputs they need."""
 
 
 def assur_groups(
@@ -56,11 +49,16 @@ def assur_groups(
 ) -> tuple[list[AssurGroup], Undriven | None]:
     """The groups of a component in order, and what nothing drives.
 
-    `places` are asked for only where there are too many equations: the rates at places where the
+    `places` are read only where there are too many equations: the rates at places where the
     mechanism is assembled, of which the first that determines everything decides.
     """
     if component.loops < 2:
-        return _single(component)
+        # one loop, or one connection in no loop
+        unknown = sum(c.freedoms - c.driven for c in component.connections)
+        missing = unknown - component.space * component.loops
+        if missing > 0:
+            return [], (component.connections, missing)
+        return [AssurGroup(component.entry, component.links, component.connections)], None
     order = order_of(component.connections)
     system = _System(component, order, [])
     is_redundant = system.matching.is_redundant
@@ -72,7 +70,7 @@ def assur_groups(
     if rest is not None:
         loose = _System(rest, rest.space, []).undriven()
         if loose is not None:
-            return groups, Undriven(_own_names(component, loose.connections), loose.missing)
+            return groups, (_own_names(component, loose[0]), loose[1])
         groups += _pieces(component, rest)
     return _determined(component, groups, places) if is_redundant else groups, None
 
@@ -80,19 +78,17 @@ def assur_groups(
 def _determined(
     component: GraphComponent, proposed: Sequence[AssurGroup], places: Iterable[Rates]
 ) -> list[AssurGroup]:
-    """The groups as ranks say; what they leave open is solved together."""
-    from mechkin_cli.structure.rank import determined_sets
-
-    best: DeterminedSets | None = None
+    """The groups by ranks; what they leave open is solved together."""
+    best: tuple[list[tuple[str, ...]], tuple[str, ...]] | None = None
     for rates in places:
-        found = determined_sets(component, [group.links for group in proposed], rates)
-        if best is None or len(found.left) < len(best.left):
-            best = found
-        if not best.left:
+        sets, left = determined_sets(component, [group.links for group in proposed], rates)
+        if best is None or len(left) < len(best[1]):
+            best = sets, left
+        if not best[1]:
             break
     if best is None:
         return [AssurGroup(component.entry, component.links, component.connections)]
-    return _with_connections(component, [*best.sets, *([best.left] if best.left else [])])
+    return _with_connections(component, [*best[0], *([best[1]] if best[1] else [])])
 
 
 def _with_connections(
@@ -100,7 +96,7 @@ def _with_connections(
 ) -> list[AssurGroup]:
     """Sets of links as groups, each with the connections that its links are the last to reach;
     own slides of constraints come by themselves."""
-    found: list[AssurGroup] = []
+    groups: list[AssurGroup] = []
     inside = {component.entry}
     waiting = list(component.connections)
     for links in sets:
@@ -111,18 +107,9 @@ def _with_connections(
         members = tuple(c for c in reached if c not in slides)
         own = set(links)
         ordered = tuple(link for link in component.links if link in own)
-        found.append(AssurGroup(component.entry, ordered, members))
-        found += [AssurGroup(component.entry, (), (c,)) for c in slides]
-    return found
-
-
-def _single(component: GraphComponent) -> tuple[list[AssurGroup], Undriven | None]:
-    """One loop, or one connection in no loop, is one group."""
-    unknown = sum(c.freedoms - c.driven for c in component.connections)
-    missing = unknown - component.space * component.loops
-    if missing > 0:
-        return [], Undriven(component.connections, missing)
-    return [AssurGroup(component.entry, component.links, component.connections)], None
+        groups.append(AssurGroup(component.entry, ordered, members))
+        groups += [AssurGroup(component.entry, (), (c,)) for c in slides]
+    return groups
 
 
 def _rest(component: GraphComponent, placed: set[str]) -> GraphComponent | None:
@@ -140,7 +127,7 @@ def _rest(component: GraphComponent, placed: set[str]) -> GraphComponent | None:
 def _pieces(component: GraphComponent, rest: GraphComponent) -> list[AssurGroup]:
     """What hangs together without the entry, each as one group."""
     at = incidence(rest.connections)
-    found: list[AssurGroup] = []
+    pieces: list[AssurGroup] = []
     seen = {rest.entry}
     for start in rest.links:
         if start in seen:
@@ -154,8 +141,8 @@ def _pieces(component: GraphComponent, rest: GraphComponent) -> list[AssurGroup]
             seen.update(more)
             front += more
         own = _own_names(component, [rest.connections[k] for k in members])
-        found.append(AssurGroup(component.entry, tuple(front), own))
-    return found
+        pieces.append(AssurGroup(component.entry, tuple(front), own))
+    return pieces
 
 
 def _own_names(
@@ -170,9 +157,7 @@ class _System:
     """Nodes and rows of a component: links, frames of regions, own slides."""
 
     def __init__(self, component: GraphComponent, order: int, regions: Sequence[Region]) -> None:
-        self.component = component
-        self.order = order
-        self.regions = regions
+        self.component, self.order, self.regions = component, order, regions
         self.capacities: list[int] = []
         self.own: dict[str, tuple[int, ...]] = {component.entry: ()}
         self.home: dict[str, int] = {}
@@ -185,7 +170,15 @@ class _System:
         self.matching = Matching(self.capacities, self.rows)
         if self.matching.is_redundant:
             turns = self._turns()
-            self.rows = _sorted_nodes(self.rows, turns, len(self.capacities))
+            # nodes by the turns of all rows at each
+            at: list[list[int]] = [[] for _ in self.capacities]
+            for row, turn in sorted(zip(self.rows, turns, strict=True), key=lambda pair: pair[1]):
+                for node in row.nodes:
+                    at[node].append(turn)
+            self.rows = [
+                row._replace(nodes=tuple(sorted(row.nodes, key=at.__getitem__)))
+                for row in self.rows
+            ]
             self.matching = Matching(self.capacities, self.rows, turns)
 
     def _node(self, capacity: int) -> int:
@@ -284,23 +277,18 @@ class _System:
             ends = [k for link in (c.first, c.second) for k in self._pose(link)]
             if all(node in rank for node in (*nodes, *ends)):
                 members[max(rank[node] for node in (*nodes, *ends))].append(c)
-        drawn = [
-            AssurGroup(self.component.entry, tuple(some), tuple(by))
-            for some, by in zip(links, members, strict=True)
-        ]
-        return _attached(drawn)
+        entry = self.component.entry
+        groups = zip(links, members, strict=True)
+        return _attached([AssurGroup(entry, tuple(some), tuple(by)) for some, by in groups])
 
     def undriven(self) -> Undriven | None:
         """What the equations do not determine."""
         loose = self.matching.undetermined()
         if not loose:
             return None
-        touched = [
-            c
-            for number, c in enumerate(self.component.connections)
-            if loose & {*self.rows[number].nodes}
-        ]
-        return Undriven(tuple(touched), sum(self.matching.free))
+        pairs = zip(self.component.connections, self.rows, strict=False)
+        touched = tuple(c for c, row in pairs if loose & {*row.nodes})
+        return touched, sum(self.matching.free)
 
 
 def _attached(groups: Sequence[AssurGroup]) -> list[AssurGroup]:
@@ -308,18 +296,18 @@ def _attached(groups: Sequence[AssurGroup]) -> list[AssurGroup]:
 
     By number a stiff frame determines itself, wherever it is.
     """
-    found: list[AssurGroup] = []
+    attached: list[AssurGroup] = []
     placed: set[str] = set()
     waiting: AssurGroup | None = None
     for one in groups:
         group = one if waiting is None else _together(waiting, one)
         waiting = None if _hangs(group, placed) else group
         if waiting is None:
-            found.append(group)
+            attached.append(group)
             placed.update(group.links)
     if waiting is not None:
-        found.append(_together(found.pop(), waiting) if found else waiting)
-    return found
+        attached.append(_together(attached.pop(), waiting) if attached else waiting)
+    return attached
 
 
 def _together(one: AssurGroup, other: AssurGroup) -> AssurGroup:
@@ -344,25 +332,15 @@ def _hangs(group: AssurGroup, placed: set[str]) -> bool:
     return not waiting
 
 
-def _sorted_nodes(rows: Sequence[Row], turns: Sequence[int], nodes: int) -> list[Row]:
-    """The rows with their nodes by the turns of all rows at each."""
-    at: list[list[int]] = [[] for _ in range(nodes)]
-    for row, turn in zip(rows, turns, strict=True):
-        for node in row.nodes:
-            at[node].append(turn)
-    keys = [sorted(some) for some in at]
-    return [Row(row.equations, tuple(sorted(row.nodes, key=keys.__getitem__))) for row in rows]
-
-
 def _by_structure(component: GraphComponent, kinds: Sequence[tuple[object, ...]]) -> list[int]:
     """Connections by their distance from the entry, then by type and surroundings.
 
-    The order in which they are written decides only between what nothing else tells apart
-    (colour refinement; Weisfeiler, Leman 1968).
+    The order in which they are written decides only between connections that are otherwise
+    indistinguishable (colour refinement; Weisfeiler, Leman 1968).
     """
     connections = component.connections
     at = incidence(connections)
-    away = distances(connections, at, component.entry)
+    away = depths(connections, {component.entry: 0})
     color, count = dict(away), 0
     for _ in range(tolerances.REFINEMENT_ROUNDS):
         seen = {}

@@ -1,4 +1,14 @@
-"""From a mechanism and its inputs to its solver graph."""
+"""From a mechanism and its inputs to its solver graph.
+
+Blocks (`in_order`, `lay_blocks`) are groups with their cut joints, each after the groups that place
+the links it hangs on. The tree is laid from ground (`spanning_tree`), and each cut joint makes a
+loop with it (`TreePaths`).
+
+Cut joints (`closings_of`; docs/numerics.md, Closing joints): what is placed before a group counts
+as one vertex. The loops of a group are closed at the joints with most freedoms: least equations, a
+minimum spanning tree by freedoms (Kruskal 1956). Among equals the loops are split evenly at their
+cut joints; then the first joints as written close.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +16,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from heapq import heapify, heappop, heappush
 from itertools import combinations, groupby, product
 from math import comb, prod
-from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
 from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
-from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge, UnsolvableGraph
+from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
     Connection,
@@ -19,20 +28,15 @@ from mechkin_cli.structure.network import (
     biconnected,
     connections_of,
     cut_link,
-    distances,
+    depths,
     incidence,
     order_of,
     reduce,
 )
+from mechkin_cli.structure.rank import Rates, unit_of
 from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
 
-if TYPE_CHECKING:
-    from mechkin_cli.structure.rank import Rates
-
-# Blocks: groups with their closings, each after the groups that place the links it hangs on.
-
 Freedom = tuple[int, int]
-
 
 AssembledPlaces = Callable[[Mechanism, Callable[[], SolverGraph]], Iterator[Callable[[str], Frame]]]
 """Gives where the links' drawings stand, place by place."""
@@ -48,9 +52,7 @@ class NothingSolved(Exception):
     def __init__(
         self, connections: Sequence[Connection], loops: Sequence[Sequence[str]], equations: int
     ) -> None:
-        self.connections = tuple(connections)
-        self.loops = loops
-        self.equations = equations
+        self.connections, self.loops, self.equations = tuple(connections), loops, equations
         super().__init__()
 
 
@@ -87,15 +89,15 @@ def in_order(
     count = [len(some) for some in waits]
     ready = [key(p) for p in range(len(parts)) if not count[p]]
     heapify(ready)
-    found: list[list[AssurGroup]] = []
+    order: list[list[AssurGroup]] = []
     while ready:
         p = heappop(ready)[2]
-        found.append([groups[k] for k in parts[p]])
+        order.append([groups[k] for k in parts[p]])
         for other in behind[p]:
             count[other] -= 1
             if not count[other]:
                 heappush(ready, key(other))
-    return found
+    return order
 
 
 def lay_blocks(
@@ -137,9 +139,6 @@ def lay_blocks(
     return laid, blocks, solved
 
 
-# The spanning tree from ground and the loops that its closings make with it.
-
-
 def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | None:
     """Edges from ground outward, breadth first, own links of constraints last; None if no tree is
     left."""
@@ -166,8 +165,8 @@ def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | 
     return edges
 
 
-class Ways:
-    """Ways through a tree."""
+class TreePaths:
+    """Paths through a tree."""
 
     def __init__(self, edges: Sequence[TreeEdge]) -> None:
         self.edges = edges
@@ -183,7 +182,7 @@ class Ways:
         return CutJoint(constraint, (*self._loop(constraint.first, constraint.second), *slides))
 
     def _loop(self, one: str, other: str) -> tuple[tuple[int, int], ...]:
-        """Edges from where the ways part to the other link (+1), then to the one (-1)."""
+        """Edges from where the paths part to the other link (+1), then to the one (-1)."""
         first: list[tuple[int, int]] = []
         second: list[tuple[int, int]] = []
         while one != other:
@@ -194,14 +193,6 @@ class Ways:
                 second.append((self.carrier[other], 1))
                 other = self.edges[self.carrier[other]].parent
         return (*reversed(second), *reversed(first))
-
-
-# The joints at which the loops of a group are closed, and the tree that is left.
-#
-# What is placed before a group counts as one vertex. Joints with most freedoms close
-# (docs/numerics.md, Closing joints): least equations, a minimum spanning tree by freedoms (Kruskal
-# 1956). Among equals the loops are split evenly at their closing joints; then the first joints as
-# written close.
 
 
 class NothingCloses(Exception):
@@ -223,11 +214,12 @@ def closings_of(group: AssurGroup, depth: Mapping[str, int]) -> list[Connection]
     joints = [c for c in group.connections if c.has_coordinates]
     loops = len(joints) - len(group.links)
     if not loops:
-        _check_tree(group, joints)
+        _joined(group, joints)
         return []
     able = sorted((c for c in joints if not c.stays), key=lambda c: c.equations)
-    fixed = [c for c in joints if c.stays]
-    chosen = _first_choice(group, fixed, able)
+    sets = _joined(group, [c for c in joints if c.stays])
+    # the first in the order of `able` that leave a tree
+    chosen = [c for c in reversed(able) if not sets.join(c)][::-1]
     if sum(c.equations for c in chosen) > MOST_EQUATIONS:
         return chosen  # too large a block to be solved, however its loops are split
     return _most_even(group, joints, able, chosen, depth)
@@ -260,22 +252,13 @@ class _Sets:
         return link if link in top else ""
 
 
-def _check_tree(group: AssurGroup, joints: Sequence[Connection]) -> None:
+def _joined(group: AssurGroup, joints: Sequence[Connection]) -> _Sets:
+    """The links that joints join, none of which may close a loop."""
     sets = _Sets(group.links)
     for number, c in enumerate(joints):
         if not sets.join(c):
             raise NothingCloses(_loop(group, joints[:number], c))
-
-
-def _first_choice(
-    group: AssurGroup, fixed: Sequence[Connection], able: Sequence[Connection]
-) -> list[Connection]:
-    """The first in the order of `able` that leaves a tree."""
-    sets = _Sets(group.links)
-    for number, c in enumerate(fixed):
-        if not sets.join(c):
-            raise NothingCloses(_loop(group, fixed[:number], c))
-    return [c for c in reversed(able) if not sets.join(c)][::-1]
+    return sets
 
 
 def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> list[Connection]:
@@ -293,11 +276,11 @@ def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> 
                 if here == link and there not in came:
                     came[there] = c
                     front.append(there)
-    found, link = [last], of(last.second)
+    loop, link = [last], of(last.second)
     while (back := came.get(link)) is not None:
-        found.append(back)
+        loop.append(back)
         link = of(back.first) if of(back.second) == link else of(back.second)
-    return found
+    return loop
 
 
 def _most_even(
@@ -355,10 +338,10 @@ def _unevenness(
     depth: Mapping[str, int],
     most: float = float("inf"),
 ) -> float:
-    """How much longer one way is than the other, of all loops; infinite if no tree is left."""
+    """How much longer one path is than the other, of all loops; infinite if no tree is left."""
     names = {c.name for c in closings}
     tree = [c for c in joints if c.name not in names]
-    found = tree_depths(tree, depth)
+    found = depths(tree, depth)
     total = 0
     for c in (*closings, *others):
         first = found.get(c.first, depth.get(c.first))
@@ -370,23 +353,6 @@ def _unevenness(
             return float("inf")
     reached = all(c.first in found and c.second in found for c in tree)
     return total if reached else float("inf")
-
-
-def tree_depths(tree: Sequence[Connection], depth: Mapping[str, int]) -> dict[str, int]:
-    """Tree edges from ground to each link at some connections that are reached from those
-    placed before."""
-    ends: dict[str, list[str]] = {}
-    for c in tree:
-        ends.setdefault(c.first, []).append(c.second)
-        ends.setdefault(c.second, []).append(c.first)
-    found = {link: depth[link] for link in ends if link in depth}
-    front = list(found)
-    for link in front:
-        for other in ends[link]:
-            if other not in found:
-                found[other] = found[link] + 1
-                front.append(other)
-    return found
 
 
 def build_graph(
@@ -404,45 +370,28 @@ def build_graph(
         UnsolvableGraph: links not connected to ground, no joint to close a loop at, undriven or
             overconstrained loops.
     """
-    return _built(
-        mechanism, inputs, closed_at, _AssembledRates(mechanism, inputs, assembled_places)
-    )
 
-
-class _AssembledRates:
-    """The rates at places where a mechanism is assembled, each found when it is asked for."""
-
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        inputs: Sequence[tuple[str, str]],
-        assembled_places: AssembledPlaces,
-    ) -> None:
-        self._sought = self._seek(mechanism, inputs, assembled_places)
-        self._found: list[Rates] = []
-
-    def __iter__(self) -> Iterator[Rates]:
-        yield from self._found
-        for rates in self._sought:
-            self._found.append(rates)
-            yield rates
-
-    @staticmethod
-    def _seek(
-        mechanism: Mechanism,
-        inputs: Sequence[tuple[str, str]],
-        assembled_places: AssembledPlaces,
-    ) -> Iterator[Rates]:
-        from mechkin_cli.structure.rank import Rates, unit_of
-
-        def coarse() -> SolverGraph:
-            return _built(mechanism, inputs, None, ())
-
+    def assembled() -> Iterator[Rates]:
         joints = mechanism.joints
         driven = {(name, joints[name].freedom_number(c)) for name, c in inputs}
         unit = unit_of(mechanism)
-        for poses in assembled_places(mechanism, coarse):
+        for poses in assembled_places(mechanism, lambda: _built(mechanism, inputs, None, ())):
             yield Rates(poses, driven, unit)
+
+    return _built(mechanism, inputs, closed_at, _Remembered(assembled()))
+
+
+class _Remembered:
+    """Rates that are computed once, each when it is first needed."""
+
+    def __init__(self, rates: Iterator[Rates]) -> None:
+        self._ahead, self._known = rates, list[Rates]()
+
+    def __iter__(self) -> Iterator[Rates]:
+        yield from self._known
+        for rates in self._ahead:
+            self._known.append(rates)
+            yield rates
 
 
 def _built(
@@ -479,16 +428,16 @@ def _groups(
     reached = {link for component in components for link in component.links}
     if apart := [link for link in whole.links if link not in reached]:
         raise errors.disconnected(apart)
-    found: list[AssurGroup] = []
+    groups: list[AssurGroup] = []
     loose: list[Undriven] = []
     for component in components:
-        groups, undriven = assur_groups(component, places)
-        found += groups
+        own, undriven = assur_groups(component, places)
+        groups += own
         if undriven is not None:
             loose.append(undriven)
     if loose:
         raise errors.undriven(mechanism, inputs, loose)
-    return found
+    return groups
 
 
 def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
@@ -498,7 +447,7 @@ def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
     for group in groups:
         some = {c.name: c.equations for c in closings_of(group, depth)}
         tree = [c for c in group.connections if c.has_coordinates and c.name not in some]
-        depth.update(tree_depths(tree, depth))
+        depth.update(depths(tree, depth))
         chosen.update(some)
     written = [name for name in whole.joints if name in chosen]
     return sorted(written, key=chosen.__getitem__)
@@ -512,17 +461,17 @@ def _carried_loop(block: NothingSolved, connections: Sequence[Connection]) -> li
             none.
     """
     named = {c.name: c for c in connections}
-    found: list[Connection] = []
+    first: list[Connection] = []
     for names in block.loops:
         own, *around = loop = [named[name] for name in names]
         are_inputs = all(c.driven == c.freedoms for c in around)
         if are_inputs and order_of(loop) > order_of([own]):
             raise errors.driven_solid(block.connections, block.equations)
-        if not found and own.freedoms:
-            found = loop
-    if not found:
+        if not first and own.freedoms:
+            first = loop
+    if not first:
         raise errors.driven_solid(block.connections, block.equations)
-    return found
+    return first
 
 
 def _cut(
@@ -538,7 +487,7 @@ def _cut(
     inside = [link for link in whole.links if ends.count(link) == 2]
     if not inside:
         raise errors.no_closing_joint(mechanism.name, names)
-    away = distances(connections, incidence(connections), GROUND_NAME)
+    away = depths(connections, {GROUND_NAME: 0})
     return cut_link(whole, max(inside, key=away.__getitem__), names)
 
 
@@ -554,34 +503,25 @@ def _laid(
     edges = spanning_tree(whole, names)
     if edges is None:
         raise errors.no_closing_joint(mechanism.name, tuple(mechanism.joints))
-    ways = Ways(edges)
+    paths = TreePaths(edges)
     driven = []
     for name, coordinate in inputs:
-        if name not in ways.number:
+        if name not in paths.number:
             raise errors.input_closes(name)
-        k = ways.number[name]
+        k = paths.number[name]
         driven.append((k, edges[k].joint.freedom_number(coordinate)))
     constraints = [PairConstraint.of(whole.joints[name]) for name in names]
-    closings = {c.name: ways.closing(c) for c in (*constraints, *whole.constraints)}
+    closings = {c.name: paths.closing(c) for c in (*constraints, *whole.constraints)}
     place = {name: k for k, name in enumerate(closings)}
     order = in_order(groups, edges, place)
     laid, blocks, solved = lay_blocks(order, edges, closings, place, driven)
     everything = {(k, f) for k, e in enumerate(edges) for f in range(e.freedoms)}
     short = any(len(block.unknowns) > block.equations for block in blocks)
-    if short or everything - solved:
-        raise _left_over(mechanism, groups, inputs, edges, everything - solved)
+    unknown = everything - solved
+    if short or unknown:
+        # freedoms on no loop's path
+        on_none = {edges[k].joint.name for k, _ in unknown}
+        members = [c for group in groups for c in group.connections]
+        concerned = tuple(c for c in members if c.name in on_none) or tuple(members)
+        raise errors.undriven(mechanism, inputs, [(concerned, max(1, len(unknown)))])
     return SolverGraph(tuple(edges), tuple(laid), tuple(blocks), tuple(driven), tuple(inputs))
-
-
-def _left_over(
-    mechanism: Mechanism,
-    groups: Sequence[AssurGroup],
-    inputs: Sequence[tuple[str, str]],
-    edges: Sequence[TreeEdge],
-    unknown: set[tuple[int, int]],
-) -> UnsolvableGraph:
-    """Freedoms in no loop's way."""
-    names = {edges[k].joint.name for k, _ in unknown}
-    members = [c for group in groups for c in group.connections]
-    concerned = tuple(c for c in members if c.name in names) or tuple(members)
-    return errors.undriven(mechanism, inputs, [Undriven(concerned, max(1, len(unknown)))])

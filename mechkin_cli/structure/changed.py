@@ -1,8 +1,11 @@
-"""The solver graph of a free motion: what were its inputs is solved for, too.
+"""Changed solver graphs: of a free motion, with other inputs, of other dimensions.
 
-A chart's equations (kernel/core/rows/chart.hpp) take the place of the inputs, and all loops are one
-block: which of them hang on which coordinate changes along a motion, and no coordinate is to have
-a dead centre.
+Free motion (`charted`): a chart's equations (kernel/core/rows) take the place of the inputs,
+which are solved for, too, and all loops are one block: which of them depend on which coordinate
+changes along a motion, and no coordinate is to have a dead centre.
+
+Other inputs (`exchanged`): at a dead centre of an input its rate by an unknown is zero. There the
+input is no parameter of the branch, and the unknown is one.
 """
 
 from __future__ import annotations
@@ -22,22 +25,13 @@ def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph
     """The same tree and closing joints with the inputs `free` (joint, coordinate) undriven."""
     pairs = list(zip(graph.inputs, graph.driven, strict=True))
     freed = [at for at, name in pairs if name in free]
-    kept = [(at, name) for at, name in pairs if name not in free]
+    driven = [(at, name) for at, name in pairs if name not in free]
     closings = tuple(c for block in graph.blocks for c in block.closings)
     unknowns = (*freed, *(at for block in graph.blocks for at in block.unknowns))
     equations = sum(block.equations for block in graph.blocks) + len(freed)
     block = Block(closings, unknowns, equations, len(freed))
-    return graph._replace(
-        blocks=(block,),
-        inputs=tuple(at for at, _ in kept),
-        driven=tuple(name for _, name in kept),
-    )
-
-
-# The solver graph in which an unknown drives the mechanism in place of an input.
-#
-# At a dead centre of the input its rate by the unknown is zero: there the input is no parameter of
-# the branch, and the unknown is one.
+    inputs, names = tuple(at for at, _ in driven), tuple(name for _, name in driven)
+    return graph._replace(blocks=(block,), inputs=inputs, driven=names)
 
 
 def exchanged(
@@ -60,7 +54,7 @@ def exchanged(
     moved = [
         b
         for b, block in enumerate(graph.blocks[:last])
-        if any(edge == on_way for c in block.closings for on_way, _ in graph.closings[c].loop)
+        if any(edge == passed for c in block.closings for passed, _ in graph.closings[c].loop)
     ]
     first = min(moved, default=last)
     joined = graph.blocks[first : last + 1]
@@ -74,15 +68,6 @@ def exchanged(
         inputs=tuple(inputs),
         driven=tuple(driven),
     )
-
-
-# Whether something can move at assembled places while some coordinates rest.
-#
-# Where constraints are redundant, counting equations does not tell; the rank of the loops' screws
-# at places where they are closed does.
-
-
-# A solver graph carried over to a mechanism of the same structure and other dimensions.
 
 
 def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:

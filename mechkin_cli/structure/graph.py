@@ -1,4 +1,6 @@
-"""What a solver graph consists of: tree edges, closings, blocks; the error where there is none."""
+"""The solver graph as records: tree edges, cut joints, blocks; and the errors where there is none,
+which name the joints concerned.
+"""
 
 from __future__ import annotations
 
@@ -23,10 +25,8 @@ class UnsolvableGraph(MechkinError):
         missing: int = 0,
         candidates: tuple[str, ...] = (),
     ) -> None:
-        self.diagnostic = diagnostic
-        self.joints = joints
-        self.missing = missing
-        self.candidates = candidates
+        self.diagnostic, self.joints = diagnostic, joints
+        self.missing, self.candidates = missing, candidates
         super().__init__(str(diagnostic))
 
 
@@ -104,8 +104,6 @@ def is_redundant(graph: SolverGraph) -> bool:
     return any(block.equations > len(block.unknowns) for block in graph.blocks)
 
 
-# Why a mechanism has no solver graph, each as an error that names the joints concerned.
-
 MOST_NAMES = 20
 """Names in a message."""
 
@@ -119,36 +117,23 @@ def listed(names: Sequence[str]) -> str:
 
 def no_closing_joint(name: str, joints: Sequence[str]) -> UnsolvableGraph:
     """A loop has no joint that may close it."""
-    diagnostic = Diagnostic(
-        "no-closing-joint",
-        "error",
-        f"the loops of {name} cannot be closed: every loop needs a joint "
-        "other than H that is not an input and has no spring on its angle",
-        hint="drive another coordinate, or put the spring on another joint",
-    )
-    return UnsolvableGraph(diagnostic, tuple(joints))
+    text = f"the loops of {name} cannot be closed: every loop needs a joint "
+    text += "other than H that is not an input and has no spring on its angle"
+    hint = "drive another coordinate, or put the spring on another joint"
+    return UnsolvableGraph(Diagnostic("no-closing-joint", "error", text, hint=hint), tuple(joints))
 
 
 def input_closes(name: str) -> UnsolvableGraph:
-    """A loop shall be closed at an input."""
-    diagnostic = Diagnostic(
-        "input-closes",
-        "error",
-        f"{name} is driven, so no loop can be closed there",
-        hint="choose another closing joint",
-    )
-    return UnsolvableGraph(diagnostic, (name,))
+    """A loop was to be closed at an input."""
+    text, hint = f"{name} is driven, so no loop can be closed there", "choose another closing joint"
+    return UnsolvableGraph(Diagnostic("input-closes", "error", text, hint=hint), (name,))
 
 
 def disconnected(links: Sequence[str]) -> UnsolvableGraph:
     """Links that nothing joins to ground."""
-    diagnostic = Diagnostic(
-        "disconnected-link",
-        "error",
-        f"not joined to ground, nor to a link that is: {listed(links)}",
-        hint="add a joint, or remove the link",
-    )
-    return UnsolvableGraph(diagnostic)
+    text = f"not joined to ground, nor to a link that is: {listed(links)}"
+    hint = "add a joint, or remove the link"
+    return UnsolvableGraph(Diagnostic("disconnected-link", "error", text, hint=hint))
 
 
 def driven_solid(connections: Iterable[Connection], equations: int) -> UnsolvableGraph:
@@ -169,7 +154,9 @@ def undriven(
     mechanism: Mechanism, inputs: Sequence[tuple[str, str]], parts: Sequence[Undriven]
 ) -> UnsolvableGraph:
     """Freedoms that neither an input nor a loop determines."""
-    concerned = {name for part in parts for c in part.connections for name in c.constraint.joints}
+    concerned = {
+        name for connections, _ in parts for c in connections for name in c.constraint.joints
+    }
     joints = [joint for name, joint in mechanism.joints.items() if name in concerned]
     taken = set(inputs)
     names = [
@@ -181,7 +168,7 @@ def undriven(
         )
     ]
     names = names or [joint.name for joint in joints]
-    missing = sum(part.missing for part in parts)
+    missing = sum(number for _, number in parts)
     count = "one free coordinate is" if missing == 1 else f"{missing} free coordinates are"
     diagnostic = Diagnostic(
         "undriven-freedom",

@@ -66,8 +66,8 @@ class Matching:
                         heappush(ahead, (open_at[other], turns[other], other))
 
     def _take(self, number: int, most: int) -> tuple[int, int] | None:
-        """Matches some equations of a row, at most so many; how many, and the node that takes
-        them up in the end. None where none can be matched."""
+        """Matches some equations of a row, at most so many: how many, and the node that takes them
+        up in the end. None where none can be matched."""
         came: dict[int, tuple[int, int]] = {}
         front = [node for node in self.rows[number].nodes if not self._closed[node]]
         came.update((node, (-1, number)) for node in front)
@@ -79,13 +79,13 @@ class Matching:
                     if other not in came and not self._closed[other]:
                         came[other] = (node, row)
                         front.append(other)
-        # no way leads out of these nodes any more, whatever is matched later
+        # no path leads out of these nodes any more, whatever is matched later
         for node in front:
             self._closed[node] = True
         return None
 
     def _shift(self, node: int, came: dict[int, tuple[int, int]], most: int) -> int:
-        """Moves equations along the way to a node with free freedoms."""
+        """Moves equations along the path to a node with free freedoms."""
         step, at = min(most, self.free[node]), node
         while came[at][0] >= 0:
             at, row = came[at]
@@ -109,20 +109,20 @@ class Matching:
 
     def undetermined(self) -> set[int]:
         """Nodes with freedoms that no equation determines, or that depend on such."""
-        at: list[list[tuple[int, int]]] = [[] for _ in self.free]
+        at: list[list[int]] = [[] for _ in self.free]
         for node, taken in enumerate(self.taken):
             for row in taken:
                 for other in self.rows[row].nodes:
                     if other != node:
-                        at[other].append((node, row))
+                        at[other].append(node)
         front = [node for node, free in enumerate(self.free) if free]
-        found = set(front)
+        reached = set(front)
         for node in front:
-            for other, _ in at[node]:
-                if other not in found:
-                    found.add(other)
+            for other in at[node]:
+                if other not in reached:
+                    reached.add(other)
                     front.append(other)
-        return found
+        return reached
 
     def parts(self, left_out: set[int]) -> list[list[int]]:
         """The other nodes in smallest sets that are determined together, in order: by their
@@ -131,16 +131,16 @@ class Matching:
             sorted({other for row in taken for other in self.rows[row].nodes} - left_out)
             for taken in self.taken
         ]
-        found = strong_components(ahead, [n for n in range(len(ahead)) if n not in left_out])
+        parts = strong_components(ahead, [n for n in range(len(ahead)) if n not in left_out])
         level: dict[int, int] = {}
         keys = []
-        for k, part in enumerate(found):
+        for k, part in enumerate(parts):
             before = {other for node in part for other in ahead[node]}.difference(part)
             own = 1 + max((level[node] for node in before), default=0)
             level.update((node, own) for node in part)
             turns = sorted(self.turns[row] for node in part for row in self.taken[node])
             keys.append((own, turns, k))
-        return [found[k] for _, _, k in sorted(keys)]
+        return [parts[k] for _, _, k in sorted(keys)]
 
 
 def strong_components(ahead: Sequence[Sequence[int]], nodes: Sequence[int]) -> list[list[int]]:
@@ -149,7 +149,7 @@ def strong_components(ahead: Sequence[Sequence[int]], nodes: Sequence[int]) -> l
     low: dict[int, int] = {}
     stack: list[int] = []
     waiting: set[int] = set()
-    found: list[list[int]] = []
+    components: list[list[int]] = []
     for start in nodes:
         if start in number:
             continue
@@ -177,5 +177,5 @@ def strong_components(ahead: Sequence[Sequence[int]], nodes: Sequence[int]) -> l
                     while members[-1] != node:
                         members.append(stack.pop())
                     waiting.difference_update(members)
-                    found.append(sorted(members))
-    return found
+                    components.append(sorted(members))
+    return components

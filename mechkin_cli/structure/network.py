@@ -1,6 +1,22 @@
 """The mechanism as a network: links are vertices, every joint and constraint is a connection.
 
-Independent of any tree.
+Independent of any tree. A constraint without coordinates is an edge between the links
+that it joins.
+
+Components (`biconnected`) are the parts of the network whose loops share connections: loops of
+different components have none in common, so each component is solved by itself, against the link at
+which it hangs (Hopcroft, Tarjan 1973, Algorithm 447; linear).
+
+The order of a loop (`loop_order`) is the rank of all its joints' screws as drawn: six in general,
+three in a plane or about a point. Less the cut joint's freedoms it is the number of closing
+equations that determine something: a plane loop that is closed at an R has five equations, of which
+two determine unknowns; the other three hold by its dimensions.
+
+Regions (`find_regions`) are joints whose screws span less than those of their component. Links of a
+plane linkage in space have three freedoms against each other, not six, and each of its joints that
+many equations less; likewise about a point, without turning, in Bennett's loop. Where such a region
+is only a part of a component, its links share the pose of its frame (the plane), and have the
+freedoms of its order beside it.
 """
 
 from __future__ import annotations
@@ -20,7 +36,6 @@ from mechkin_cli.mechanism import (
     Mechanism,
     PairConstraint,
     Part,
-    Screw,
     Spring,
     Vector,
     add,
@@ -95,9 +110,11 @@ def cut_link(reduction: Reduction, link: str, loop: Sequence[str]) -> Reduction:
     half = link + HALF
     while half in joints:  # a link may be cut in several loops
         half += HALF
-    joints[own[-1].name] = _moved(own[-1], link, half)
+    last = own[-1]
+    on_half = last._replace(first=half) if last.first == link else last._replace(second=half)
+    joints[last.name] = on_half
     parts = (Part("W", GROUND, GROUND),)
-    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, parts, plane=own[-1].plane)
+    joints[half] = Joint(half, "W", link, half, GROUND, GROUND, parts, plane=last.plane)
     return reduction._replace(
         joints=joints, links=(*reduction.links, half), cut=reduction.cut.union(loop)
     )
@@ -108,12 +125,6 @@ def whole_link(link: str) -> str:
     while link.endswith(HALF):
         link = link.removesuffix(HALF)
     return link
-
-
-def _moved(joint: Joint, link: str, half: str) -> Joint:
-    if joint.first == link:
-        return joint._replace(first=half)
-    return joint._replace(second=half)
 
 
 def _reach(at: Mapping[str, list[str]], reached: set[str], start: str) -> None:
@@ -227,32 +238,28 @@ def connections_of(
 
 def incidence(connections: Sequence[Connection]) -> dict[str, list[int]]:
     """Numbers of the connections at each link, in their order."""
-    found: dict[str, list[int]] = {}
+    at: dict[str, list[int]] = {}
     for number, c in enumerate(connections):
-        found.setdefault(c.first, []).append(number)
-        found.setdefault(c.second, []).append(number)
-    return found
+        at.setdefault(c.first, []).append(number)
+        at.setdefault(c.second, []).append(number)
+    return at
 
 
-def distances(
-    connections: Sequence[Connection], at: dict[str, list[int]], root: str
-) -> dict[str, int]:
-    """Number of connections between each link and the root."""
-    found = {root: 0}
-    front = [root]
+def depths(connections: Sequence[Connection], known: Mapping[str, int]) -> dict[str, int]:
+    """Number of connections from ground to each link at some connections that is reached from
+    those whose number is known."""
+    ends: dict[str, list[str]] = {}
+    for c in connections:
+        ends.setdefault(c.first, []).append(c.second)
+        ends.setdefault(c.second, []).append(c.first)
+    depth = {link: known[link] for link in ends if link in known}
+    front = list(depth)
     for link in front:
-        for number in at.get(link, ()):
-            other = connections[number].other(link)
-            if other not in found:
-                found[other] = found[link] + 1
+        for other in ends[link]:
+            if other not in depth:
+                depth[other] = depth[link] + 1
                 front.append(other)
-    return found
-
-
-# Biconnected components: the parts of the network whose loops share connections.
-#
-# Loops of different components have no connection in common, so each component is solved by itself,
-# against the link at which it hangs (Hopcroft, Tarjan 1973, Algorithm 447; linear).
+    return depth
 
 
 class GraphComponent(NamedTuple):
@@ -286,7 +293,7 @@ def biconnected(
     low = {root: 0}
     walked: list[int] = []
     used: set[int] = set()
-    found: list[GraphComponent] = []
+    components: list[GraphComponent] = []
     path = [(root, iter(at.get(root, ())), 0)]
     while path:
         link, ahead, start = path[-1]
@@ -309,24 +316,21 @@ def biconnected(
                 low[parent] = min(low[parent], low[link])
                 if low[link] >= depth[parent]:
                     members = tuple(connections[k] for k in sorted(walked[start:]))
-                    found.append(GraphComponent(parent, members))
+                    components.append(GraphComponent(parent, members))
                     del walked[start:]
-    return found[::-1]
-
-
-# How many closing equations of a loop tell something new: its order, less the closing joint's
-# freedoms.
-#
-# The order of a loop is the rank of all its joints' screws as drawn: six in general, three in a
-# plane or about a point. A plane loop that is closed at an R has five equations, of which two
-# determine unknowns; the other three hold by its dimensions.
+    return components[::-1]
 
 
 @lru_cache(maxsize=1024)
 def loop_order(joints: tuple[Joint, ...]) -> int:
     """Rank of the screws of a loop's joints as drawn, moments in parts of the loop's size."""
     length = diagonal([f.o for joint in joints for f in (joint.on_first, joint.on_second)])
-    rows = [_scaled(screw, length) for joint in joints for screw in joint.screws]
+    rows: list[list[float]] = []
+    for joint in joints:
+        for angular, linear in joint.screws:
+            # the moment of a turn in parts of the size, a slide as it is
+            unit = 1.0 if angular == ZERO else length
+            rows.append([*angular, *(component / unit for component in linear)])
     order = 0
     for column in range(6):
         best = max(range(order, len(rows)), key=lambda i: abs(rows[i][column]), default=None)
@@ -341,20 +345,6 @@ def loop_order(joints: tuple[Joint, ...]) -> int:
         order += 1
     return order
 
-
-def _scaled(screw: Screw, length: float) -> list[float]:
-    """Angular part first; the moment of a turn in parts of `length`, a slide as it is."""
-    angular, linear = screw
-    unit = 1.0 if angular == ZERO else length
-    return [*angular, *(component / unit for component in linear)]
-
-
-# Regions of low order: joints whose screws span less than those of their component.
-#
-# Links of a plane linkage in space have three freedoms against each other, not six, and each of its
-# joints that many equations less; likewise about a point, without turning, in Bennett's loop. Where
-# such a region is only a part of a component, its links share the pose of its frame (the plane),
-# and have the freedoms of its order beside it. The order is that of the screws as drawn.
 
 SPACE = 6
 """Freedoms of a body in space."""
@@ -393,22 +383,22 @@ def find_regions(component: GraphComponent, order: int) -> list[Region]:
     if not seeds:
         return []
     merged = _merged(connections, sorted(seeds))
-    found = [_grown(connections, at, numbers, rank) for rank, numbers in merged]
-    return sorted(found, key=lambda region: (region.order, -len(region.connections)))
+    regions = [_grown(connections, at, numbers, rank) for rank, numbers in merged]
+    return sorted(regions, key=lambda region: (region.order, -len(region.connections)))
 
 
 def _neighbours(
     connections: Sequence[Connection], at: dict[str, list[int]]
 ) -> list[tuple[int, int]]:
     """Pairs of joints on a link, of each joint's two links that with fewer joints."""
-    found: set[tuple[int, int]] = set()
+    pairs: set[tuple[int, int]] = set()
     for number, c in enumerate(connections):
         fewest = min(len(at[c.first]), len(at[c.second]))
         for link in (c.first, c.second):
             if len(at[link]) == fewest:
-                found |= {(min(number, k), max(number, k)) for k in at[link] if k != number}
+                pairs |= {(min(number, k), max(number, k)) for k in at[link] if k != number}
     screws = [c.has_screws for c in connections]
-    return sorted(pair for pair in found if screws[pair[0]] and screws[pair[1]])
+    return sorted(pair for pair in pairs if screws[pair[0]] and screws[pair[1]])
 
 
 def _shortest(

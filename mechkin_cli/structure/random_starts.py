@@ -59,11 +59,5 @@ class RandomStarts:
         share, first, second = (self.fractions(count) for _ in range(3))
         near, far = np.sqrt(1.0 - share), np.sqrt(share)
         first, second = 2.0 * pi * first, 2.0 * pi * second
-        return np.stack(
-            [
-                near * functions.sin(first),
-                near * functions.cos(first),
-                far * functions.sin(second),
-                far * functions.cos(second),
-            ]
-        )
+        (s1, c1), (s2, c2) = ((functions.sin(a), functions.cos(a)) for a in (first, second))
+        return np.stack([near * s1, near * c1, far * s2, far * c2])

@@ -1,16 +1,29 @@
-"""What can move at one place of the mechanism while all inputs rest: the rank of loops as they are.
+"""What can move at one place while all inputs rest, by rank, and the sets of links that cannot.
 
 Counting equations says too much where loops hold by their dimensions: of the equations of an equal
 second rod none is new, of a plane loop closed in space two of five. The rates of a part's joints
 are the null space of its loops' screws and its other constraints' forces, taken at a place where
 all loops are closed (Hunt 1978; Davies 1981). Lengths are in parts of the mechanism's size, and a
 rank is decided by complete pivoting, far above rounding and far below what a regular place has.
+
+Sets (`determined_sets`): where there are more equations than freedoms a matching cannot decide
+which equations are new, and only proposes groups. A set of links is *determined* if none of them
+can move while the inputs and what is placed before rest. If a set is not, the links that cannot
+move all the same hold the largest determined set within it; two determined sets are one together.
+So whatever is proposed, a group is as soon as it is determined, and it is a smallest one if no
+determined set is left when any one of its links is taken away.
+
+Smallest sets that hold each other twice are solved together (`_solved_together`): two equal rods a
+quarter apart couple wheels that either of them lets go in line; a strut between two copies of a
+linkage has dead centres where the copies have none. Solved by one of them alone, a link is lost
+where the other still holds it. So where one of its own connections is taken out of a set, and later
+sets hold some of its links all the same, these sets are one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -67,18 +80,13 @@ class Rates:
     Args:
         poses: where the drawing's axes and origin (m) stand with each link.
         driven: freedoms (joint, number along its chain) that rest.
-        unit: lengths as rows are told in.
+        unit: of lengths in rows.
     """
 
     def __init__(
-        self,
-        poses: Callable[[str], Frame],
-        driven: Collection[tuple[str, int]],
-        unit: Scale,
+        self, poses: Callable[[str], Frame], driven: Collection[tuple[str, int]], unit: Scale
     ) -> None:
-        self.poses = poses
-        self.driven = driven
-        self.unit = unit
+        self.poses, self.driven, self.unit = poses, driven, unit
         self.work = 0
         self._screws: dict[str, Floats] = {}
         self._forces: dict[str, tuple[float, ...]] = {}
@@ -87,8 +95,7 @@ class Rates:
         self, links: Collection[str], connections: Sequence[Connection], placed: Collection[str]
     ) -> set[str]:
         """Which of some links cannot move against what is placed, by the connections between
-        them and those that lead to it; none is said to where that would take more than
-        `RANK_WORK`."""
+        them and those that lead to it; none where that would take more than `RANK_WORK`."""
         some = [c for c in connections if joins(c, links, placed)]
         tree, closing = _tree([c for c in some if c.has_coordinates], placed)
         if not tree:
@@ -118,52 +125,49 @@ class Rates:
 
     def _columns(self, joints: Sequence[Connection]) -> tuple[dict[str, slice], int]:
         """Which columns are each joint's rates, and how many there are."""
-        found, count = {}, 0
+        columns, count = {}, 0
         for c in joints:
             freedoms = self._of_joint(c).shape[1]
-            found[c.name] = slice(count, count + freedoms)
+            columns[c.name] = slice(count, count + freedoms)
             count += freedoms
-        return found, count
+        return columns, count
 
     def _twists(
         self, tree: Mapping[str, Connection], columns: Mapping[str, slice], count: int
     ) -> dict[str, Floats]:
         """Twists (6, rates) of the links of a tree, each after that before it."""
-        found: dict[str, Floats] = {}
+        twists: dict[str, Floats] = {}
         for link, c in tree.items():
-            twist = _of(found, c.other(link), count).copy()
+            twist = _of(twists, c.other(link), count).copy()
             sign = 1.0 if link == c.second else -1.0
             twist[:, columns[c.name]] += sign * self._of_joint(c)
-            found[link] = twist
-        return found
+            twists[link] = twist
+        return twists
 
     def _of_joint(self, c: Connection) -> Floats:
         """Screws (6, freedoms that do not rest) of a joint's second link against its first."""
         if c.name not in self._screws:
-            found = [
-                screw
-                for number, screw in enumerate(self._chain(c.joint))
-                if (c.name, number) not in self.driven
-            ]
-            self._screws[c.name] = np.array(found, dtype=np.float64).reshape(-1, 6).T
+            chain = enumerate(self._chain(c.joint))
+            screws = [screw for number, screw in chain if (c.name, number) not in self.driven]
+            self._screws[c.name] = np.array(screws, dtype=np.float64).reshape(-1, 6).T
         return self._screws[c.name]
 
     def _chain(self, joint: Joint) -> list[list[float]]:
         """The screws of all freedoms: turns go through the joint's point."""
         at = self.unit.place(self._point(joint.point))
         pitch = joint.pitch / self.unit.length
-        found: list[list[float]] = []
+        screws: list[list[float]] = []
         parts = iter(joint.parts)
         for step in joint.type.steps:
             part = next(parts)
             if ELEMENTARY[step.letter].is_ball and not part.type.is_ball:
-                turns = self._told_turns(joint, (part, next(parts), next(parts)))
-                found += [[*turn, *cross(at, turn)] for turn in turns]
+                turns = self._three_turns(joint, (part, next(parts), next(parts)))
+                screws += [[*turn, *cross(at, turn)] for turn in turns]
                 continue
             for freedom in part.type.freedoms:
                 direction: Vector
                 if step.between:
-                    direction = self._square_turn(joint, found[-1][:3])
+                    direction = self._square_turn(joint, screws[-1][:3])
                 elif freedom.motion == "ball":
                     direction = getattr(GROUND, freedom.axis)
                 elif step.along is None:
@@ -172,11 +176,11 @@ class Rates:
                 else:
                     direction = self._direction(joint.drawn(step.along))
                 if freedom.is_slide:
-                    found.append([*ZERO, *direction])
+                    screws.append([*ZERO, *direction])
                     continue
                 along = pitch if freedom.motion == "thread" else 0.0
-                found.append([*direction, *add(cross(at, direction), scale(along, direction))])
-        return found
+                screws.append([*direction, *add(cross(at, direction), scale(along, direction))])
+        return screws
 
     def _square_turn(self, joint: Joint, before: Sequence[float]) -> Vector:
         """The axis of a turn between two others: that before it, and x of the second link."""
@@ -187,8 +191,8 @@ class Rates:
             return scale(1.0 / length, across)
         return self._direction(joint.drawn(DrawnDirection(SECOND, "y")))
 
-    def _told_turns(self, joint: Joint, parts: tuple[Part, Part, Part]) -> list[Vector]:
-        """The axes of a ball that is told as three turns: on its links, and square to both."""
+    def _three_turns(self, joint: Joint, parts: tuple[Part, Part, Part]) -> list[Vector]:
+        """The axes of a ball that is made of three turns: on its links, and square to both."""
         first = self._direction(Attached(joint.first, parts[0].before.z))
         last = self._direction(Attached(joint.second, parts[2].after.z))
         across = cross(last, first)
@@ -204,9 +208,7 @@ class Rates:
         return self._forces[c.name]
 
     def _direction(self, at: Attached) -> Vector:
-        pose = self.poses(at.link)
-        x, y, z = at.vector
-        return add(add(scale(x, pose.x), scale(y, pose.y)), scale(z, pose.z))
+        return self.poses(at.link).vector(at.vector)
 
     def _point(self, at: Attached) -> Vector:
         return add(self.poses(at.link).o, self._direction(at))
@@ -251,10 +253,10 @@ def _of(twists: Mapping[str, Floats], link: str, count: int) -> Floats:
 
 def _along(force: Sequence[float], twist: Floats) -> Floats:
     """Power (rates,) of a force and moment on twists (6, rates)."""
-    found = np.zeros(twist.shape[1])
+    power = np.zeros(twist.shape[1])
     for component, row in zip(force, twist, strict=True):
-        found += component * row
-    return found
+        power += component * row
+    return power
 
 
 def _reduced(equations: Floats, below: Floats) -> Floats:
@@ -276,29 +278,34 @@ def _reduced(equations: Floats, below: Floats) -> Floats:
     return table[rows:, rank:]
 
 
-# Determined sets of links that hold each other twice, which are solved together.
-#
-# Two equal rods a quarter apart couple wheels that either of them lets go in line; a strut between
-# two copies of a linkage has dead centres where the copies have none. Solved by one of them alone,
-# a link is lost where the other still holds it. So where one of its own connections is taken out of
-# a set, and later sets hold some of its links all the same, these sets are one.
-
 Links = tuple[str, ...]
 
 
-class Search(Protocol):
-    """What is determined among some links."""
+def determined_sets(
+    component: GraphComponent, proposed: Sequence[Collection[str]], rates: Rates
+) -> tuple[list[Links], Links]:
+    """The determined sets of a component in their order, from proposals in theirs; and the links
+    that are in none.
 
-    def core(self, links: Sequence[str], placed: Collection[str], without: str = "") -> list[str]:
-        """The largest determined set, `without` a connection."""
-        ...
+    A small component is looked at as a whole, so that no proposal decides between sets.
+    """
+    search = _DeterminedSearch(component.connections, rates)
+    placed = {component.entry}
+    sets: list[Links] = []
+    waiting: list[str] = []
+    ordered = [link for links in proposed for link in links]
+    whole = len(ordered) <= MOST_SPLIT_LINKS
+    for links in [ordered] if whole else proposed:
+        waiting += links
+        some = search.core(waiting, placed)
+        waiting = [link for link in waiting if link not in some]
+        for part in search.split(some, placed):
+            sets.append(tuple(part))
+            placed.update(part)
+    return _solved_together(sets, search, component.entry), tuple(waiting)
 
-    def around(self, links: Sequence[str]) -> list[Connection]:
-        """The connections at some links."""
-        ...
 
-
-def solved_together(sets: Sequence[Links], search: Search, entry: str) -> list[Links]:
+def _solved_together(sets: Sequence[Links], search: _DeterminedSearch, entry: str) -> list[Links]:
     """The sets, each after those that it needs, as they are to be solved."""
     owner = {link: k for k, links in enumerate(sets) for link in links}
     ahead = []
@@ -313,7 +320,7 @@ def solved_together(sets: Sequence[Links], search: Search, entry: str) -> list[L
 
 
 def _holding(
-    number: int, sets: Sequence[Links], search: Search, placed: Collection[str]
+    number: int, sets: Sequence[Links], search: _DeterminedSearch, placed: Collection[str]
 ) -> set[int]:
     """The later sets that hold a link of one where one of its connections is missing."""
     own = sets[number]
@@ -335,50 +342,9 @@ def _holding(
     return set()
 
 
-# Groups as the rank of their loops says, where there are more equations than freedoms.
-#
-# Then a matching cannot tell which equations are new, and proposes groups only. A set of links is
-# *determined* if none of them can move while the inputs and what is placed before rest. If a set is
-# not, the links that cannot move all the same hold the largest determined set within it; two
-# determined sets are one together. So whatever is proposed, a group is as soon as it is determined,
-# and it is a smallest one if no determined set is left when any one of its links is taken away.
-# Smallest sets that hold each other twice are one in the end (`held_twice`).
-
-
-class DeterminedSets(NamedTuple):
-    """Sets of links in the order in which they are determined, and those that are not."""
-
-    sets: list[tuple[str, ...]]
-    left: tuple[str, ...]
-
-
-def determined_sets(
-    component: GraphComponent, proposed: Sequence[Collection[str]], rates: Rates
-) -> DeterminedSets:
-    """The determined sets of a component, from proposals in their order.
-
-    A small component is looked at as a whole, so that no proposal decides between sets.
-    """
-    search = _DeterminedSearch(component.connections, rates)
-    placed = {component.entry}
-    found: list[tuple[str, ...]] = []
-    waiting: list[str] = []
-    ordered = [link for links in proposed for link in links]
-    whole = len(ordered) <= MOST_SPLIT_LINKS
-    for links in [ordered] if whole else proposed:
-        waiting += links
-        some = search.core(waiting, placed)
-        waiting = [link for link in waiting if link not in some]
-        for part in search.split(some, placed):
-            found.append(tuple(part))
-            placed.update(part)
-    return DeterminedSets(solved_together(found, search, component.entry), tuple(waiting))
-
-
 class _DeterminedSearch:
     def __init__(self, connections: Sequence[Connection], rates: Rates) -> None:
-        self.connections = connections
-        self.rates = rates
+        self.connections, self.rates = connections, rates
         self.at = incidence(connections)
         self._failed: dict[tuple[str, ...], int] = {}
 
@@ -428,10 +394,10 @@ class _DeterminedSearch:
         most = SPACE * (len(joints) - len(links)) + len(inside) - len(joints)
         if freedoms > most or self._failed.get(tuple(links)) == len(inside):
             return False
-        found = len(self.rates.still(links, inside, placed)) == len(links)
-        if not found:
-            self._failed[tuple(links)] = len(inside)
-        return found
+        if len(self.rates.still(links, inside, placed)) == len(links):
+            return True
+        self._failed[tuple(links)] = len(inside)
+        return False
 
     def _least(self, links: Sequence[str], placed: Collection[str]) -> list[str]:
         """The smallest determined set that is left when one link is taken away; all links where

@@ -21,6 +21,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Context, Decimal
+from functools import cached_property
 from itertools import groupby
 from pathlib import Path
 
@@ -166,7 +167,7 @@ _WIDE = Context(prec=700)
 """Holds any difference of a double and a printed number exactly."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class PrintedCell:
     """One printed number beside the computed one.
 
@@ -189,12 +190,12 @@ class PrintedCell:
         """Printed less computed, in the unit of the column."""
         return _WIDE.subtract(self.printed, self.computed)
 
-    @property
+    @cached_property
     def units(self) -> Decimal:
         """Printed less computed, in units of the last printed digit."""
         return _WIDE.divide(self.difference, self.unit)
 
-    @property
+    @cached_property
     def agrees(self) -> bool:
         """Whether the printed number is the computed one, rounded to the printed digits."""
         return abs(self.units) <= HALF
@@ -205,7 +206,7 @@ class PrintedCell:
         return HALF < abs(self.units) <= ONE_OFF
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class TableAgreement:
     """All printed cells of a table but those that find its rows, `rows_by` a label or the count.
 
@@ -219,22 +220,22 @@ class TableAgreement:
     other_labels: tuple[str, ...] = ()
     rows_by: str = ""
 
-    @property
+    @cached_property
     def off(self) -> tuple[PrintedCell, ...]:
         """The cells that do not agree."""
         return tuple(cell for cell in self.cells if not cell.agrees)
 
-    @property
+    @cached_property
     def agreeing(self) -> int:
         """Number of cells that agree."""
         return sum(cell.agrees for cell in self.cells)
 
-    @property
+    @cached_property
     def one_off(self) -> int:
         """Number of cells that are one off in the last digit."""
         return sum(cell.one_off for cell in self.cells)
 
-    @property
+    @cached_property
     def differing(self) -> int:
         """Number of cells that differ by more."""
         return len(self.cells) - self.agreeing - self.one_off

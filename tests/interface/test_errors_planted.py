@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.errors import rows as wide
+from mechkin_cli.errors import response as repeated_runs
 from mechkin_cli.expressions.quantity import Quantity
 from mechkin_cli.tape.double_double import DoubleDoubles, exactly
 
@@ -69,7 +69,7 @@ def planted(monkeypatch):
             made.append(Planted(result, {name.replace("_", "."): n for name, n in numbers.items()}))
             return made[-1]
 
-        monkeypatch.setattr(wide, "wide_run", wide_run)
+        monkeypatch.setattr(repeated_runs, "wide_run", wide_run)
         return made
 
     return plant

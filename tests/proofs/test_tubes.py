@@ -82,7 +82,7 @@ def test_a_jump_is_never_proven(gap: float) -> None:
         one.row_states.states[:] = states
         assert not found.on_branch[row:].any()
         assert found.on_branch[: row - 1].all()
-        assert found.gaps[-1].why == "branch"
+        assert found.gaps[-1][2] == "branch"
         assert not found.is_complete
 
 

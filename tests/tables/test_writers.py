@@ -4,14 +4,16 @@ import pytest
 
 from mechkin_cli.cli import analyze
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import evaluate, writers
+from mechkin_cli.tables import writers
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.results import Results
+from mechkin_cli.tables.table import evaluate
 
 
 @pytest.fixture
 def results(source, layout):
-    return writers.Results("RCSR", (evaluate(layout({"s2": "O2.s"}), source),), source)
+    return Results("RCSR", (evaluate(layout({"s2": "O2.s"}), source),), source)
 
 
 def test_each_format_writes_its_files(results):

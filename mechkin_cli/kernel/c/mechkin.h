@@ -5,7 +5,7 @@
  * states and inputs in parts of the plan's length unit. Arrays of rows are (columns x rows), a column contiguous:
  * [column * rows + row]. Every row has the bits that Python's session gives it.
  *
- * One thread at a time may change a plan; any number may run it meanwhile nobody does. */
+ * Any number of threads may run a plan at once, as long as none changes it. */
 #ifndef MECHKIN_H
 #define MECHKIN_H
 

@@ -26,7 +26,7 @@ class [[nodiscard]] Result {
   Refusal refusal_;
 };
 
-// An object that its constructor has taken everything for, and that goes by it where that fits together.
+// An object whose constructor takes what is given, and whose `prepare` refuses what does not fit together.
 template <class T, class... Given>
 Result<T> make(Given&&... given) {
   T made(std::forward<Given>(given)...);
@@ -36,11 +36,11 @@ Result<T> make(Given&&... given) {
 
 // In a function that gives a Refusal or a Result: goes no farther where something is not as it must be, or where another
 // call refuses.
-#define REQUIRE(condition, sentence) \
-  do {                               \
+#define REQUIRE(condition, sentence)            \
+  do {                                          \
     if (!(condition)) return Refusal(sentence); \
   } while (0)
-#define CHECK(call)                                  \
-  do {                                               \
-    if (Refusal refused = (call)) return refused;    \
+#define CHECK(call)                               \
+  do {                                            \
+    if (Refusal refused = (call)) return refused; \
   } while (0)

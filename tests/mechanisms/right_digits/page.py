@@ -15,15 +15,15 @@ PAGE = ROOT / "docs" / "errors.md"
 HEAD = """# Right digits
 
 How many digits of the tables kept here are right? For every cell of every table of [the
-mechanisms](../mechanisms/README.md) the true value is computed, by repeating the rows in
-double-double arithmetic from the converged ones, and by integrating responses once more from
-their start, with all numbers exactly as the files write them. This is what `mechkin analyze
---errors` does; [numerics](numerics.md#true-errors) says how.
+mechanisms](../mechanisms/README.md) the true value is computed: rows are repeated in
+double-double arithmetic from the converged ones, and responses are integrated once more from
+their start, with all numbers exactly as written in the files. This is what `mechkin analyze
+--errors` does; [numerics](numerics.md#true-errors) explains how.
 
 *Digits* is the number of digits to which every cell of a table is right, relative to the largest
 value of its column. *Worst* is the largest such error, with its column and row. *Not repeated*
-names what cannot be measured so. The page is made by `python -P tests/mechanisms/right_digits`,
-and a test compares it.
+names what cannot be measured in this way. The page is made by `python -P
+tests/mechanisms/right_digits`, and a test compares it.
 
 | mechanism | table | cells | digits | worst | column | row | not repeated |
 |---|---|---|---|---|---|---|---|
