@@ -102,7 +102,11 @@ def validate(data: object) -> AnyFile:
     """The mechanism file that plain data describes, with `plane:` one in a plane; raises
     `InvalidDataError`."""
     errors = name_errors(data)
-    form = _form(data)
+    form: type[AnyFile] = MechanismFile
+    if isinstance(data, dict) and "plane" in data:
+        from mechkin_cli.schema.plane import PlaneFile
+
+        form = PlaneFile
     try:
         file = validated(form, data)
     except ValueError as failure:
@@ -129,14 +133,6 @@ def _records(failure: ValueError, data: object, form: type[Section]) -> list[dic
         raise failure
     errors = failure.errors(include_url=False, include_input=False)
     return [_completed(dict(error), data, form) for error in errors]
-
-
-def _form(data: object) -> type[AnyFile]:
-    if isinstance(data, dict) and "plane" in data:
-        from mechkin_cli.schema.plane import PlaneFile
-
-        return PlaneFile
-    return MechanismFile
 
 
 def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
