@@ -11,15 +11,20 @@ if TYPE_CHECKING:
 
 
 def lazy_names(
-    room: str, chapters: Mapping[str, Sequence[str]]
+    room: str, chapters: Mapping[str, str | Sequence[str]]
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """Gives a room's `__getattr__` and `__dir__`.
 
     Args:
         room: the dotted name of the room's package.
-        chapters: the names that each module of the room offers to other rooms.
+        chapters: the names that each module of the room offers to other rooms, as a list or as a
+            text with spaces between them.
     """
-    homes = {name: chapter for chapter, names in chapters.items() for name in names}
+    homes = {
+        name: chapter
+        for chapter, names in chapters.items()
+        for name in (names.split() if isinstance(names, str) else names)
+    }
 
     def load(name: str) -> Any:
         chapter = homes.get(name)

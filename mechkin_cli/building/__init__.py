@@ -1,7 +1,7 @@
 """From a checked file to the mechanism and its problem, in SI units.
 
-Everything that needs names, dimensions or geometry is checked here; every error points at the line
-and says what was found, the limit and the remedy.
+All that needs names, dimensions or geometry is checked here; every error points at its line, with
+the value found, the limit and the remedy.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "builder": ["Built", "build"],
-        "fields": ["is_tiny_length"],
-        "motion": ["by_count", "by_step"],
-        "recording": ["precise", "precise_response", "record", "shifting"],
-        "source": ["BadTable", "open_data", "open_file", "open_text", "table_path", "table_text"],
-        "tables": ["used_quantities"],
-        "view": ["Kind", "ShapeSetting", "ViewSettings"],
+        "builder": "Built build",
+        "fields": "is_tiny_length",
+        "motion": "by_count by_step",
+        "recording": "precise precise_response record shifting",
+        "source": "BadTable open_data open_file open_text table_path table_text",
+        "tables": "used_quantities",
+        "view": "Kind ShapeSetting ViewSettings",
     },
 )

@@ -1,13 +1,15 @@
-"""Which assembly the first row has, and which loops are followed, as the file says."""
+"""`assembly:` and `follow:` - the assembly of the first row, and the loops that are followed; and
+the idle freedoms of a built problem.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from mechkin_cli import idle, mobility
 from mechkin_cli.building.fields import Fields, Path, dimension_of, is_coordinate
 from mechkin_cli.diagnostics import nearest_hint
-from mechkin_cli.idle import held_freedoms
 from mechkin_cli.mechanism import Assembly, Joint, Problem
 from mechkin_cli.schema import AssemblySection
 
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
 def build_assembly(
     fields: Fields, section: AssemblySection | None, joints: Mapping[str, Joint]
 ) -> Assembly:
-    """The assembly that the section means, with its coordinates in SI."""
+    """The assembly that the section chooses, with its coordinates in SI."""
     if section is None:
         return Assembly()
     near = near_values(fields, ("assembly", "near"), section.near, joints)
@@ -41,7 +43,7 @@ def near_values(
 def build_follow(
     fields: Fields, names: tuple[str, ...] | None, joints: Mapping[str, Joint]
 ) -> tuple[str, ...] | None:
-    """The joints that `follow:` lists, each of which must be there; None without it."""
+    """The joints that `follow:` lists, each of which must exist; None without it."""
     for i, name in enumerate(names or ()):
         if name not in joints and not fields.is_refused(name):
             hint = nearest_hint(name, list(joints))
@@ -50,32 +52,22 @@ def build_follow(
 
 
 def held_of(problem: Problem) -> tuple[LockedFreedom, ...]:
-    """What holds the idle freedoms."""
-    held, as_drawn = held_freedoms(problem.mechanism, problem.motion.driven)
-    if not as_drawn:
-        return held
-    from mechkin_cli.mobility import held_along
-
-    return held_along(problem, held)
+    """The locks of the idle freedoms."""
+    held, as_drawn = idle.held_freedoms(problem.mechanism, problem.motion.driven)
+    return mobility.held_along(problem, held) if as_drawn else held
 
 
 def note_spins(fields: Fields, problem: Problem, *, free: bool = False) -> None:
-    """Notes what would drive the idle freedoms: kinematics alone does not know how they move, and a
-    `free` motion where its start does not name them."""
+    """Notes causes that would drive the idle freedoms: kinematics alone does not determine how they
+    move, nor does a `free` motion whose start does not name them."""
     if not problem.has_idle:
         return
-    from mechkin_cli.idle import spin_errors
-
-    for link, diagnostic in spin_errors(problem, free=free):
-        found = diagnostic._replace(place=fields.document.place(("links", link)))
-        if found not in fields.diagnostics:
-            fields.diagnostics.append(found)
+    for link, diagnostic in idle.spin_errors(problem, free=free):
+        placed = diagnostic._replace(place=fields.document.place(("links", link)))
+        if placed not in fields.diagnostics:
+            fields.diagnostics.append(placed)
 
 
 def settled(problem: Problem) -> Problem:
     """The problem without the moments of inertia that nothing turns."""
-    if not problem.held:
-        return problem
-    from mechkin_cli.idle import without_spin
-
-    return without_spin(problem)
+    return idle.without_spin(problem) if problem.held else problem

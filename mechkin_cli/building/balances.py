@@ -1,4 +1,4 @@
-"""`balances:` to what is summed up over which cycle; what the file alone decides is refused."""
+"""`balances:` - sums over a cycle of the sweep: works, harmonics and flywheels."""
 
 from __future__ import annotations
 
@@ -31,12 +31,10 @@ TIME = "time"
 def build_balances(
     fields: Fields, sections: Sequence[written.AnyBalance], problem: Problem
 ) -> tuple[AnyBalance, ...]:
-    """The balances of a file; what is wrong is noted in `fields`."""
-    if not sections:
-        return ()
+    """The balances of a file; errors are noted in `fields`."""
     builder = _BalanceBuilder(fields, problem)
-    found = [builder.balance(("balances", i), section) for i, section in enumerate(sections)]
-    return tuple(balance for balance in found if balance is not None)
+    balances = [builder.balance(("balances", i), section) for i, section in enumerate(sections)]
+    return tuple(balance for balance in balances if balance is not None)
 
 
 class _BalanceBuilder:
@@ -62,17 +60,15 @@ class _BalanceBuilder:
             return Flywheel(section.name, title, place, cycle, unevenness, rate)
         return None if cycle is None else LoadWork(section.name, title, place, cycle)
 
-    # --- the cycle ------------------------------------------------------------------------
-
     def _cycle(self, path: Path, section: written.AnyBalance) -> Cycle | None:
         motion = self.problem.motion
         at: Path = path if section.cycle is None else (*path, "cycle")
-        name = section.cycle or self._usual(section)
+        name = section.cycle or self._default_cycle(section)
         if name == TIME:
             return self._cycle_in_time(at)
         inputs = {item.name: number for number, item in enumerate(motion.inputs)}
         if name is None or name not in inputs:
-            text = "nothing moves in the sweep" if name is None else f"{name} is no input"
+            text = "nothing moves in the sweep" if name is None else f"{name} is not an input"
             hint = f"inputs are {', '.join(inputs)}" if inputs else "add motion: inputs:"
             self.fields.error("not-driven", at, text, hint)
             return None
@@ -80,7 +76,7 @@ class _BalanceBuilder:
         turn = turn_of(self.problem, item)
         if turn is None:
             hint = "name an input that turns, or with time: and laws that come back, cycle: time"
-            self.fields.error("no-cycle", at, f"{name} is no angle that goes round", hint)
+            self.fields.error("no-cycle", at, f"{name} is not an angle that goes round", hint)
             return None
         if not self._are_equal(at, name, item.written):
             return None
@@ -92,7 +88,7 @@ class _BalanceBuilder:
         step = float(item.values[-1] - item.values[0]) / (item.values.size - 1)
         return Cycle(name, inputs[name], count, step, float(item.values[0]))
 
-    def _usual(self, section: written.AnyBalance) -> str | None:
+    def _default_cycle(self, section: written.AnyBalance) -> str | None:
         motion = self.problem.motion
         if motion.time is not None and not isinstance(section, written.FlywheelBalance):
             return TIME
@@ -115,9 +111,9 @@ class _BalanceBuilder:
                     gap -= round(gap / float(turn)) * float(turn)
                 if abs(gap) > EQUAL_STEPS * max(float(np.max(np.abs(values))), 1.0):
                     unit = self.problem.units.label(self.known[name].dimension)
-                    text = f"{name} is not back at the last row: {gap:.6g} {unit} are missing"
+                    text = f"{name} is not back at the last row: {gap:.6g} {unit} is missing"
                     hint = "let time: go over a whole period of the laws"
-                    self.fields.error("cycle-not-closed", at, text.replace(" are", " is"), hint)
+                    self.fields.error("cycle-not-closed", at, text, hint)
                     return None
         moments = motion.time.values
         step = float(moments[-1] - moments[0]) / (moments.size - 1)
@@ -127,9 +123,8 @@ class _BalanceBuilder:
         steps = np.diff(values)
         if steps.size < LEAST_ROWS:
             text = f"{values.size} row{'s' * (values.size != 1)} are too few for a cycle"
-            self.fields.error(
-                "too-few-rows", at, text, f"give at least {LEAST_ROWS + 1}, the last as the first"
-            )
+            hint = f"give at least {LEAST_ROWS + 1}, the last as the first"
+            self.fields.error("too-few-rows", at, text, hint)
             return False
         mean = float(values[-1] - values[0]) / steps.size
         off = np.abs(steps - mean)
@@ -151,45 +146,36 @@ class _BalanceBuilder:
         whole = np.ceil(abs(last - first) / turn) * turn
         end = first + float(np.copysign(whole, last - first))
         missing = abs(end - last)
-        text = (
-            f"{item.name} goes from {first:.12g} to {last:.12g} {unit}: {missing:.6g} {unit} are "
-            "missing to a full turn"
-        )
+        text = f"{item.name} goes from {first:.12g} to {last:.12g} {unit}: {missing:.6g} {unit} "
+        text += "are missing to a full turn"
         step = abs(last - first) / (item.written.size - 1)
-        repeat = (
-            "the last row repeats the first: " if abs(missing - step) < EQUAL_STEPS * step else ""
-        )
+        is_next = abs(missing - step) < EQUAL_STEPS * step
+        repeat = "the last row repeats the first: " if is_next else ""
         self.fields.error("cycle-not-closed", at, text, f"{repeat}write to: {end:.12g}")
 
-    # --- harmonics ------------------------------------------------------------------------
-
     def _expressions(self, path: Path, texts: Sequence[str]) -> tuple[tuple[str, Expression], ...]:
-        found: list[tuple[str, Expression]] = []
+        named: list[tuple[str, Expression]] = []
         dimension: Dimension | None = None
+        parse = self.fields.definitions.parse
         for i, text in enumerate(texts):
             try:
-                expression = self.fields.definitions.parse(text)
+                expression = parse(text)
                 quantity = expression.evaluate(ColumnSample(self.fields, self.known, SWEEP))
                 if dimension is not None and not quantity.dimension.compatible(dimension):
-                    raise ExpressionError(
-                        f"one table holds one dimension; this is {quantity.dimension.phrase}, "
-                        f"the first {dimension.phrase}",
-                        0,
-                        "make it a balance of its own",
-                    )
+                    phrases = f"this is {quantity.dimension.phrase}, the first {dimension.phrase}"
+                    message = f"one table holds one dimension; {phrases}"
+                    raise ExpressionError(message, 0, "make it a balance of its own")
                 dimension = dimension or quantity.dimension
+                stem = text.strip()
                 if isinstance(quantity.value, Vector):
-                    own = text.strip()
-                    bare = own.replace(".", "").replace("_", "").isalnum()
-                    stem = own if bare else f"({own})"
-                    found += [
-                        (f"{stem}.{a}", self.fields.definitions.parse(f"{stem}.{a}")) for a in "xyz"
-                    ]
+                    if not stem.replace(".", "").replace("_", "").isalnum():
+                        stem = f"({stem})"
+                    named += [(f"{stem}.{axis}", parse(f"{stem}.{axis}")) for axis in "xyz"]
                 else:
-                    found.append((text.strip(), expression))
+                    named.append((stem, expression))
             except ExpressionError as error:
                 self.fields.expression_error((*path, i), error)
-        return tuple(found)
+        return tuple(named)
 
     def _orders(self, path: Path, texts: Sequence[str], cycle: Cycle | None) -> tuple[float, ...]:
         orders = []
@@ -202,18 +188,16 @@ class _BalanceBuilder:
             at: Path = (*path, i) if self.fields.document.node((*path, i)) else path[:-1]
             if order < 0.0 or abs(whole - round(whole)) > EQUAL_STEPS * max(whole, 1.0):
                 steps = "1" if cycle.turns == 1 else f"1/{cycle.turns}"
-                text = f"{order:g} is no order of a cycle of {cycle.turns} turns"
+                text = f"{order:g} is not an order of a cycle of {cycle.turns} turns"
                 self.fields.error("no-order", at, text, f"orders are multiples of {steps}")
             elif 2 * round(whole) >= rows:
                 most = (rows - 1) // 2 / cycle.turns
-                text = f"order {order:g} cannot be told from {rows} rows a cycle"
-                hint = f"give more rows; these tell orders up to {most:g}"
+                text = f"order {order:g} cannot be computed from {rows} rows a cycle"
+                hint = f"give more rows; these suffice for orders up to {most:g}"
                 self.fields.error("no-order", at, text, hint)
             else:
                 orders.append(order)
         return tuple(orders)
-
-    # --- flywheels ------------------------------------------------------------------------
 
     def _unevenness(self, path: Path, text: str) -> float:
         value = self.fields.number(path, text, DIMENSIONLESS)

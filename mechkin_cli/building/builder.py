@@ -1,5 +1,5 @@
-"""A checked file to its problem: units, parameters, links, joints, points, motion, loads,
-tables.
+"""A checked file to its problem: units, parameters, links, joints, points, motion, loads, tables;
+limits on well-formed files; named expressions; unused parameters.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mechkin_cli.building.fields import (
 )
 from mechkin_cli.building.links import build_linkage
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.motion import build_motion, point_guides, row_limit
+from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
 from mechkin_cli.building.source import MechanismSource
 from mechkin_cli.building.tables import (
     ColumnSample,
@@ -49,12 +49,12 @@ from mechkin_cli.mechanism import (
     Mechanism,
     MotionInputs,
     Problem,
-    RigidLink,
     Wanted,
+    differentiation,
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import in_order
-from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import MechanismFile
 from mechkin_cli.session import solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
@@ -63,26 +63,15 @@ from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from mechkin_cli.building.responses import Graphs
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
 
 
-# `assembly:` and `follow:`: which assembly is meant, and which loops are followed.
-
-
-# Idle freedoms of a built problem: what holds them, and what must not drive them.
-
-
-# Limits on a well-formed file: equations of one block, and how small a mechanism may be.
-#
-# A file within all limits of the reader can still ask for more than a machine has: the work grows
-# with the cube of the equations that must be solved together. And it can be drawn so small that
-# what is divided by its size squared, such as inertias, is no number any more.
-
-
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
-    """Whether every block is small enough; if not, the first that is not is noted."""
+    """Whether every block is small enough, since the work grows with the cube of the equations to
+    solve together; the first that is not is noted."""
     for block in graph.blocks:
         if block.equations <= MOST_EQUATIONS:
             continue
@@ -105,7 +94,8 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
 
 
 def check_size(fields: Fields, mechanism: Mechanism) -> bool:
-    """Whether the mechanism as drawn is large enough to compute with; if not, that is noted."""
+    """Whether the mechanism as drawn is large enough for quotients by its size squared, such as
+    inertias; if not, that is noted."""
     size = mechanism.box_diagonal()
     if SMALLEST_SIZE <= size < inf:
         return True
@@ -122,12 +112,6 @@ def check_size(fields: Fields, mechanism: Mechanism) -> bool:
     return False
 
 
-# Notes parameters that nothing in the file uses: one that is misspelt where it was meant, or a
-# remainder.
-#
-# Names are looked for in all texts of the file but those for people, so that no form of a section
-# has to be known here: a name that stands anywhere an expression might stand counts as used.
-
 _NAME: Final = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
 _FOR_PEOPLE: Final = ("name", "title", "source", "label", "text")
 _OF_NAMES: Final = ("parameters", "quantities")
@@ -135,8 +119,12 @@ _OF_NAMES: Final = ("parameters", "quantities")
 
 
 def note_unused(fields: Fields) -> None:
-    """A note at every parameter that no expression uses, and at those that only such ones use."""
-    # as written: a value from outside that names nothing makes nothing superfluous
+    """A note at every parameter that no expression uses, and at those that only such ones use.
+
+    Names are looked up in all texts of the file except those for people, so that this is
+    independent of the forms of sections: a name anywhere in a possible expression counts as used.
+    """
+    # as written: values from outside do not count
     document = fields.document
     data = (replace(document, overrides={}) if document.overrides else document).data
     section = data.get("parameters")
@@ -158,15 +146,11 @@ def note_unused(fields: Fields) -> None:
         front = {name for name in unused if not unused.issuperset(users[name])}
     for name in section:
         if name in unused:
-            _note(fields, name, users[name])
-
-
-def _note(fields: Fields, name: str, users: list[str]) -> None:
-    but = f" but {', '.join(users)}, which nothing uses" if users else ""
-    place = fields.document.key_place(("parameters", name))
-    text = f"nothing uses the parameter {name}{but}"
-    hint = "remove it, or use it where it was meant"
-    fields.note(Diagnostic("unused-parameter", "note", text, place, hint=hint))
+            but = f" but {', '.join(users[name])}, which nothing uses" if users[name] else ""
+            place = fields.document.key_place(("parameters", name))
+            text = f"nothing uses the parameter {name}{but}"
+            hint = "remove it, or use it where it was meant"
+            fields.note(Diagnostic("unused-parameter", "note", text, place, hint=hint))
 
 
 def _texts(data: Any, key: str = "") -> Iterator[str]:
@@ -189,8 +173,8 @@ _NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, the source it names, what was read, its runs by name, the solver graphs at the starts of
-    its responses, and how it wants to be shown."""
+    tables, the source it names, the file as read, its runs by name, the solver graphs at the starts
+    of its responses, coefficients, balances, and the settings of its view."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
@@ -210,7 +194,7 @@ class Built(NamedTuple):
 
 
 def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> Built:
-    """Builds everything that a file describes; `given` are values instead of some parameters'.
+    """Builds everything that a file describes; `given` values replace those of some parameters.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
@@ -229,15 +213,14 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
         note_force_unit(fields)
     if forces:
         note_own_motors(fields, file.motion, file.actuators)
-    follow = build_follow(fields, file.follow, problem.mechanism.joints)
-    problem = replace(problem, follow=follow)
+    problem = replace(problem, follow=build_follow(fields, file.follow, problem.mechanism.joints))
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
         check_spins(fields, problem, own)
         problem = settled(problem)
-    graphs: dict[str, SolverGraph | Diagnostic] = {}
+    graphs: Graphs = {}
     if problem.responses and graph is not None:
         from mechkin_cli.building.responses import with_graphs
 
@@ -257,9 +240,6 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
     """The problem with the file's named expressions, in which derivatives are known now."""
 
     def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
-        # loaded only where a derivative is written
-        from mechkin_cli.mechanism import differentiation
-
         return differentiation(problem)(nodes, by, offset)
 
     fields.definitions = replace(fields.definitions, differentiate=differentiate)
@@ -289,9 +269,9 @@ def read_fields(
     source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING, moved: Move | None = None
 ) -> Fields:
     """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
-    what is wrong is noted."""
-    units, wrong_units = read_units(source.document, source.file.units)
-    fields = Fields(source.document, units, diagnostics=wrong_units, plane=source.file.in_plane)
+    errors are noted."""
+    units, errors = read_units(source.document, source.file.units)
+    fields = Fields(source.document, units, diagnostics=errors, plane=source.file.in_plane)
     read_parameters(fields, source.file.parameters, given, moved)
     if source.file.quantities:
         read_quantities(fields, source.file.quantities)
@@ -307,15 +287,19 @@ def build_problem(
     moving: Mapping[str, ResponseProblem] | None = None,
 ) -> Problem:
     """The mechanism with its loads, its motion and assembly, and the file's `responses`; a `motion`
-    that is given is not built anew, nor is what `moving` responses do in time."""
+    is not built again, nor are the motions in time of `moving` responses."""
     points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
-    directions = _directions(fields, file, links)
-    guides = point_guides(fields, file.motion, points)
-    links, joints = links | guides.links, joints | guides.joints
-    limit = row_limit(file, joints)
+    directions = {
+        name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
+        for name, d in file.directions.items()
+        if is_link(fields, ("directions", name, "link"), d.link, links)
+    }
+    guide_links, guide_joints = point_guides(fields, file.motion, points)
+    links, joints = links | guide_links, joints | guide_joints
+    per_row = numbers_per_row(file, joints)
     if motion is None:
-        motion = build_motion(fields, file.motion, joints, limit)
+        motion = build_motion(fields, file.motion, joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
@@ -323,7 +307,11 @@ def build_problem(
         name, links, joints, points, directions, drives=drives, plane=fields.plane
     )
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
-    loads = LoadBuilder(fields, links, joints, points, _quantities_of_runs(file, problem))
+    # rows of responses have a time
+    swept = problem.quantities()
+    timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
+    quantities = {name: swept if name == SWEEP else timed for name in runs_of(file)}
+    loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
     acting = loads.of_run(SWEEP)
     problem = replace(problem, mechanism=acting.on(mechanism), load_laws=acting.laws)
@@ -331,29 +319,12 @@ def build_problem(
         return problem
     from mechkin_cli.building.responses import build_responses
 
-    found = build_responses(fields, file.responses, problem, loads, limit, moving)
-    return replace(problem, responses=found)
-
-
-def _quantities_of_runs(file: MechanismFile, problem: Problem) -> dict[str, Mapping[str, Wanted]]:
-    """What loads may read in each run, by its name: rows of responses have a time."""
-    swept = problem.quantities()
-    timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
-    return {name: swept if name == SWEEP else timed for name in runs_of(file)}
-
-
-def _directions(
-    fields: Fields, file: MechanismFile, links: Mapping[str, RigidLink]
-) -> dict[str, Attached]:
-    return {
-        name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
-        for name, d in file.directions.items()
-        if is_link(fields, ("directions", name, "link"), d.link, links)
-    }
+    args = (fields, file.responses, problem, loads, per_row, moving)
+    return replace(problem, responses=build_responses(*args))
 
 
 def check_spins(fields: Fields, problem: Problem, tables: Sequence[TableLayout]) -> None:
-    """Where forces or energies are wanted, what spins freely must have no cause to spin."""
+    """Notes links that spin freely and have a cause to spin, where forces or energies are read."""
     if needs_all_links(problem.mechanism, _used(problem, tables)):
         note_spins(fields, problem)
 
@@ -364,40 +335,32 @@ def needs_forces(problem: Problem, tables: Sequence[TableLayout]) -> bool:
 
 
 def _used(problem: Problem, tables: Sequence[TableLayout]) -> list[Wanted]:
-    """The quantities that some tables read."""
     quantities = problem.quantities()
     return [quantities[name] for name in used_quantities(tables, quantities)]
-
-
-def _place_of(file: MechanismFile, joints: Sequence[str]) -> Path:
-    """Where the first of some joints is written."""
-    for i, row in enumerate(file.chain):
-        if row.joint in joints[:1]:
-            return ("chain", i, "joint")
-    return ("joints", *joints[:1])
 
 
 def _graph(
     fields: Fields, file: MechanismFile, problem: Problem
 ) -> SolverGraph | Diagnostic | None:
-    """The solver graph; only asked for when the parts are sound, to avoid follow-up errors."""
+    """The solver graph; None where there are errors already, to avoid others that follow."""
     if fields.error_count or not check_size(fields, problem.mechanism):
         return None
     try:
         graph = solver_graph(problem.solved_mechanism, problem.driven)
     except UnsolvableGraph as error:
-        driven = problem.motion.inputs
-        path = ("motion", "inputs") if driven else _place_of(file, error.joints)
+        path: Path = ("joints", *error.joints[:1])
+        if problem.motion.inputs:
+            path = ("motion", "inputs")
+        for i, row in enumerate(file.chain):
+            if row.joint in error.joints[:1] and not problem.motion.inputs:
+                path = ("chain", i, "joint")
         return error.diagnostic._replace(place=fields.document.place(path))
     return graph if check_blocks(fields, graph) else None
 
 
-# `quantities:` to named expressions; each is checked where it is written.
-
-
 def read_quantities(fields: Fields, texts: Mapping[str, str]) -> None:
     """Puts the named expressions into `fields.definitions`; those that depend on themselves or are
-    no expressions are refused, with a message."""
+    not expressions are refused, with a message."""
     expressions: dict[str, Expression] = {}
     for name, text in texts.items():
         try:
@@ -410,82 +373,68 @@ def read_quantities(fields: Fields, texts: Mapping[str, str]) -> None:
     }
     errors: list[ExpressionError] = []
     for name in expressions_in_order(expressions, needs, errors, "quantities"):
-        if any(need not in fields.definitions.named for need in needs[name]):
-            continue
-        try:
-            found = fields.definitions.expanded(expressions[name])
-        except ExpressionError as error:
-            fields.expression_error(("quantities", name), error)
-            continue
-        fields.definitions = fields.definitions.adding(name, found)
+        if all(need in fields.definitions.named for need in needs[name]):
+            _define(fields, name, expressions[name])
     for circle in errors:
         fields.expression_error(("quantities", circle.name or ""), circle)
     fields.refused |= texts.keys() - fields.definitions.named.keys()
 
 
 def take_derivatives(fields: Fields) -> None:
-    """Writes out the derivatives in the named expressions; one that is not known is refused, with a
+    """Expands the derivatives in the named expressions; one that is not known is refused, with a
     message."""
     named = fields.definitions.named
     fields.definitions = replace(fields.definitions, named={})
     for name, expression in named.items():
-        try:
-            found = fields.definitions.expanded(expression)
-        except ExpressionError as error:
-            fields.expression_error(("quantities", name), error)
-            fields.refused.add(name)
-            continue
-        fields.definitions = fields.definitions.adding(name, found)
+        _define(fields, name, expression)
+    fields.refused |= named.keys() - fields.definitions.named.keys()
+
+
+def _define(fields: Fields, name: str, expression: Expression) -> None:
+    """Adds an expression to the definitions, in which those so far are known."""
+    try:
+        expanded = fields.definitions.expanded(expression)
+    except ExpressionError as error:
+        fields.expression_error(("quantities", name), error)
+    else:
+        fields.definitions = fields.definitions.adding(name, expanded)
 
 
 def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> None:
-    """Notes what is wrong with a quantity in every run of the file, at its place; what uses it gets
-    no message of its own."""
-    runs = runs_of(file)
-    samples = [
-        _NamedValues(ColumnSample(fields, quantities_of(problem, run), run), {}) for run in runs
-    ]
+    """Notes the error of a quantity that has one in every run of the file, at its place;
+    expressions that use it get no message of their own."""
+    samples = [ColumnSample(fields, quantities_of(problem, run), run) for run in runs_of(file)]
+    values: list[dict[str, Quantity]] = [{} for _ in samples]
     for name in fields.definitions.named:
         expression = parse(file.quantities[name])
-        if _uses(expression) & fields.refused:
+        uses = {node.text.partition(".")[0] for node in expression.nodes if isinstance(node, Name)}
+        if uses & fields.refused:
             fields.refused.add(name)
             continue
-        wrong = [_error_of(fields, name, expression, sample) for sample in samples]
-        if all(error is not None for error in wrong) and wrong[0] is not None:
-            fields.expression_error(("quantities", name), wrong[0])
+        pairs = zip(samples, values, strict=True)
+        errors = [_error_of(fields, name, expression, *pair) for pair in pairs]
+        if all(error is not None for error in errors) and errors[0] is not None:
+            fields.expression_error(("quantities", name), errors[0])
             fields.refused.add(name)
-
-
-def _uses(expression: Expression) -> set[str]:
-    names = (node.text for node in expression.nodes if isinstance(node, Name))
-    return {name.partition(".")[0] for name in names}
-
-
-@dataclass(frozen=True)
-class _NamedValues:
-    """A run's sample with the values of named expressions, so that each is evaluated once."""
-
-    sample: ColumnSample
-    known: dict[str, Quantity]
-
-    def __call__(self, name: str) -> Quantity:
-        return self.known[name] if name in self.known else self.sample(name)
 
 
 def _error_of(
-    fields: Fields, name: str, expression: Expression, sample: _NamedValues
+    fields: Fields,
+    name: str,
+    expression: Expression,
+    sample: ColumnSample,
+    values: dict[str, Quantity],
 ) -> ExpressionError | None:
-    """What is wrong with a named expression whose names are known; else keeps its value."""
+    """The error of a named expression in a run; without one its value joins those of the others, so
+    that each is evaluated once."""
     try:
-        if any(map(_is_derivative, expression.nodes)):
+        if any(isinstance(n, OperationNode) and n.symbol == "derivative" for n in expression.nodes):
             whole = fields.definitions.expanded(expression)
-            sample.known[name] = whole.evaluate(sample.sample, fields.units)
+            values[name] = whole.evaluate(sample, fields.units)
         else:
-            sample.known[name] = expression.evaluate(sample, fields.units)
+            values[name] = expression.evaluate(
+                lambda used: values[used] if used in values else sample(used), fields.units
+            )
     except ExpressionError as error:
         return error
     return None
-
-
-def _is_derivative(node: Node) -> bool:
-    return isinstance(node, OperationNode) and node.symbol == "derivative"

@@ -1,13 +1,14 @@
-"""The course of the inputs between the rows, recorded from their laws.
+"""The course of the inputs between the rows, recorded from their laws; and the inputs that follow
+others: `with:` an expression of their coordinates.
 
-The parameter is the time where there is one, else the one input that the others follow, else the
-number of the row. Laws and expressions are written down on a tape as they stand in the file; where
-they bend, jump or rest is found on that tape (`solver.cells`).
+The parameter of the course is the time where there is one, else the one input that the others
+follow, else the number of the row. Laws and expressions are recorded on a tape as they stand in the
+file; that tape shows where they bend, jump or rest (`session.cells`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,7 +28,6 @@ from mechkin_cli.expressions import (
     scalar,
 )
 from mechkin_cli.mechanism import Course, DrivenInput, Moments, Parameter
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import FollowingInput, HeldCoordinate, HeldInput, ListedInput, SweptInput
 from mechkin_cli.session import Formula, cells_of, places_of
 from mechkin_cli.show import Floats
@@ -50,7 +50,7 @@ def build_course(
     """The course of inputs without errors; None where they only run straight from row to row.
 
     Args:
-        fields: knows units and parameters.
+        fields: of the file, with units and parameters.
         written: the inputs as written, and the moments of the rows.
         inputs: with their values in all rows, in the order of the file.
         expressions: of the inputs that follow, in an order in which they can be evaluated.
@@ -66,18 +66,11 @@ def build_course(
     sources = _sources(fields, written, inputs, expressions)
     if sources is None:
         return None
-    formula = _recorded(fields, inputs, expressions, sources)
-    cells = cells_of(formula, sources.at)
+    parameter, at, _ = sources
+    formula = _recorded(fields, inputs, expressions, *sources)
+    cells = cells_of(formula, at)
     values = np.stack([item.values for item in inputs])
-    return places_of(formula, cells, sources.parameter, sources.at, values)
-
-
-class _Sources(NamedTuple):
-    """The parameter, its values in the rows, and the inputs that are functions of it alone."""
-
-    parameter: Parameter
-    at: Floats
-    pieces: Mapping[str, LawPieces]
+    return places_of(formula, cells, parameter, at, values)
 
 
 def _sources(
@@ -85,7 +78,8 @@ def _sources(
     written: Written,
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
-) -> _Sources | None:
+) -> tuple[Parameter, Floats, Mapping[str, LawPieces]] | None:
+    """The parameter, its values in the rows, and the inputs that are functions of it alone."""
     time, clock = written.time, written.clock
     if time is not None and clock is not None:
         laws = {
@@ -93,22 +87,21 @@ def _sources(
             for name, item in written.inputs.items()
             if not isinstance(item, _NO_LAWS)
         }
-        return _Sources(Parameter("time", TIME), time.written, laws)
+        return Parameter("time", TIME), time.written, laws
     moving = [i for i in inputs if i.name not in expressions and (i.written != i.written[0]).any()]
-    if not moving or not any(
-        (i.values != i.values[0]).any() for i in inputs if i.name in expressions
-    ):
+    follow = [i for i in inputs if i.name in expressions and (i.values != i.values[0]).any()]
+    if not moving or not follow:
         return None
     if len(moving) == 1:
         name = moving[0].name
         itself = LawPieces([], lambda _: [], lambda value, _: value)
         dimension = dimension_of(moving[0].coordinate)
-        return _Sources(Parameter(name, dimension), moving[0].written, {name: itself})
+        return Parameter(name, dimension), moving[0].written, {name: itself}
     numbers = np.arange(moving[0].written.size, dtype=np.float64)
     chords = {
         i.name: _chords(i.written, isinstance(written.inputs[i.name], SweptInput)) for i in moving
     }
-    return _Sources(Parameter("row"), numbers, chords)
+    return Parameter("row"), numbers, chords
 
 
 def _chords(written: Floats, even: bool) -> LawPieces:
@@ -128,31 +121,32 @@ def _recorded(
     fields: Fields,
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
-    sources: _Sources,
+    parameter: Parameter,
+    at: Floats,
+    laws: Mapping[str, LawPieces],
 ) -> Formula:
     """The tape from the parameter and the constants of all pieces to the inputs in SI."""
-    first = float(sources.at[0])
-    counts = {name: len(pieces.constants(first)) for name, pieces in sources.pieces.items()}
-    given = [first, *(c for pieces in sources.pieces.values() for c in pieces.constants(first))]
-    recorder = Recorder([f"c{k}" for k in range(len(given))], given)
-    registers = [Traced(recorder, number) for number in range(len(given))]
+
+    def constants(place: float) -> list[float]:
+        return [c for pieces in laws.values() for c in pieces.constants(place)]
+
+    first = float(at[0])
+    values = [first, *constants(first)]
+    recorder = Recorder([f"c{k}" for k in range(len(values))], values)
+    registers = [Traced(recorder, number) for number in range(len(values))]
     known: dict[str, Quantity] = {}
-    if sources.parameter.name == "time":
+    if parameter.name == "time":
         moment: Any = registers[0]
         known["time"] = Quantity(fields.units.to_si(moment, TIME), TIME)
     used = 1
-    for name, pieces in sources.pieces.items():
+    for name, pieces in laws.items():
         dimension = dimension_of(name.rpartition(".")[2])
-        written: Any = pieces.value(registers[0], registers[used : used + counts[name]])
+        count = len(pieces.constants(first))
+        written: Any = pieces.value(registers[0], registers[used : used + count])
         known[name] = Quantity(fields.units.to_si(written, dimension), dimension)
-        used += counts[name]
+        used += count
     tape = _tape(fields, inputs, expressions, known, recorder)
-
-    def constants(parameter: float) -> list[float]:
-        return [c for pieces in sources.pieces.values() for c in pieces.constants(parameter)]
-
-    edges = [edge for pieces in sources.pieces.values() for edge in pieces.edges]
-    return Formula(tape, edges, constants)
+    return Formula(tape, [edge for pieces in laws.values() for edge in pieces.edges], constants)
 
 
 def build_paths(
@@ -166,30 +160,25 @@ def build_paths(
     The further inputs of a tape are those that follow none, in the order of the file, and the time
     where there is one.
     """
-    own = [item for item in inputs if item.name not in expressions]
-    values = [float(item.values[0]) for item in own]
-    moment = [] if time is None else [float(time.values[0])]
+    free = [item for item in inputs if item.name not in expressions]
+    leaders = {name for expression in expressions.values() for name in expression.names}
+    others = [float(item.values[0]) for item in free]
+    others += [] if time is None else [float(time.values[0])]
     paths = []
-    for leader in own:
-        if leader.name not in _leaders(expressions):
+    for leader in free:
+        if leader.name not in leaders:
             continue
-        given = [float(leader.values[0]), *values, *moment]
-        recorder = Recorder([f"c{k}" for k in range(len(given))], given)
-        registers: list[Any] = [Traced(recorder, number) for number in range(len(given))]
-        known = {
-            item.name: Quantity(
-                registers[0 if item is leader else k], dimension_of(item.coordinate)
-            )
-            for k, item in enumerate(own, start=1)
-        }
+        values = [float(leader.values[0]), *others]
+        recorder = Recorder([f"c{k}" for k in range(len(values))], values)
+        registers: list[Any] = [Traced(recorder, number) for number in range(len(values))]
+        known = {}
+        for k, item in enumerate(free, start=1):
+            register = registers[0 if item is leader else k]
+            known[item.name] = Quantity(register, dimension_of(item.coordinate))
         if time is not None:
             known["time"] = Quantity(registers[-1], TIME)
         paths.append((leader.name, _tape(fields, inputs, expressions, known, recorder)))
     return tuple(paths)
-
-
-def _leaders(expressions: Mapping[str, Expression]) -> set[str]:
-    return {name for expression in expressions.values() for name in expression.names}
 
 
 def _tape(
@@ -200,32 +189,25 @@ def _tape(
     recorder: Recorder,
 ) -> Tape:
     """The tape to all inputs in SI, from those `known`; evaluates the others."""
+
+    def find(name: str) -> Quantity:
+        return known[name] if name in known else fields.resolve(name)
+
     for item in inputs:
         if item.name not in known and item.name not in expressions:
             known[item.name] = Quantity(float(item.values[0]), dimension_of(item.coordinate))
     for name, expression in expressions.items():
         dimension = dimension_of(name.rpartition(".")[2])
-        value = scalar(expression, dimension, fields.units, _lookup(fields, known))
-        known[name] = Quantity(value, dimension)
+        known[name] = Quantity(scalar(expression, dimension, fields.units, find), dimension)
     outputs = [register(recorder, known[item.name].value) for item in inputs]
     return recorder.tape(outputs, guarded=False)
 
 
-def _lookup(fields: Fields, known: Mapping[str, Quantity]) -> Callable[[str], Quantity]:
-    def find(name: str) -> Quantity:
-        return known[name] if name in known else fields.resolve(name)
-
-    return find
-
-
-# Inputs that follow others: `with:` an expression of their coordinates.
-#
-# Rates, accelerations and jerks follow by the chain rule from those of the inputs in the
-# expression; inputs may follow inputs that follow, in any order.
-
-
 class Following:
-    """Evaluates the inputs that follow, one after another.
+    """Evaluates the inputs that follow others, one after another.
+
+    Rates, accelerations and jerks follow by the chain rule from those of the inputs in the
+    expression; inputs may follow inputs that follow, in any order.
 
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
     that are known, by name, and `path` leads to their section; `expressions` gets those of inputs
@@ -234,12 +216,7 @@ class Following:
     """
 
     def __init__(
-        self,
-        fields: Fields,
-        orders: dict[str, Floats],
-        rows: int,
-        time: Moments | None,
-        path: Path,
+        self, fields: Fields, orders: dict[str, Floats], rows: int, time: Moments | None, path: Path
     ) -> None:
         self.fields = fields
         self.orders = orders
@@ -274,24 +251,22 @@ class Following:
                 self._follow(name, waiting.pop(name))
 
     def constraint_rates(self) -> dict[tuple[str, str], Floats]:
-        """Rates (rows,) in SI of each constrained input by each free one that it follows,
-        through others or not; what follows none is noted in `fields`."""
-        found: dict[str, dict[str, Floats]] = {}
+        """Rates (rows,) in SI of each constrained input by each free one that it follows, through
+        others or not; a constrained input that follows none is noted in `fields`."""
+        rates: dict[str, dict[str, Floats]] = {}
         for name, expression in self.expressions.items():
             if name not in self.constrained:
                 continue
-            own = found[name] = {}
+            own = rates[name] = {}
             for used in sorted(expression.names & self.orders.keys()):
                 rate = self._partial(expression, used)
-                leaders = found.get(used) or {used: np.ones(self.rows)}
+                leaders = rates.get(used) or {used: np.ones(self.rows)}
                 for leader, through in leaders.items():
                     own[leader] = own.get(leader, np.zeros(self.rows)) + rate * through
-        for name in sorted(self.constrained - {name for name, own in found.items() if own}):
-            text = f"{name} follows no input whose motor could move it"
-            self.fields.error(
-                "tied-to-nothing", (*self.path, name, "drive"), text, "remove drive: tie"
-            )
-        return {(name, leader): r for name, own in found.items() for leader, r in own.items()}
+        for name in sorted(self.constrained - {name for name, own in rates.items() if own}):
+            text, path = f"{name} follows no input whose motor could move it", (*self.path, name)
+            self.fields.error("tied-to-nothing", (*path, "drive"), text, "remove drive: tie")
+        return {(name, leader): r for name, own in rates.items() for leader, r in own.items()}
 
     def _partial(self, expression: Expression, name: str) -> Floats:
         """Rate (rows,) of an expression by one of its inputs, in SI."""
@@ -301,8 +276,8 @@ class Following:
             jet[0] = self._jet(used)[0]
             jet[1] = 1.0 if used == name else 0.0
             jets[used] = jet
-        found: Floats = np.broadcast_to(derivatives(expression, jets), (4, self.rows))[1].copy()
-        return found
+        orders: Floats = np.broadcast_to(derivatives(expression, jets), (4, self.rows))[1].copy()
+        return orders
 
     def _hold(self, name: str, text: str) -> None:
         value = self.fields.written(self._path(name), text, dimension_of(name.rpartition(".")[2]))
@@ -321,7 +296,7 @@ class Following:
             if used == name:
                 message, hint = f"{name} follows itself", "name the inputs that it follows"
             elif used in coordinates - self.orders.keys() - sections.keys():
-                message, hint = f"{used} is no input", f"inputs are {', '.join(self.orders)}"
+                message, hint = f"{used} is not an input", f"inputs are {', '.join(self.orders)}"
             else:
                 continue
             if not self.fields.is_refused(used):
@@ -387,9 +362,6 @@ class Following:
         in_file = self.fields.units.from_si(float(value), quantity.dimension)
         return f"{name} = {in_file:.12g} {self.fields.units.label(quantity.dimension)}".rstrip()
 
-    def _rows_of(self, name: str) -> Floats:
-        return np.broadcast_to(self.orders[name], (4, self.rows))
-
     def _jet(self, name: str) -> Jet:
         """A name's own value and derivatives over time, in SI."""
         if name in self.fields.parameters:
@@ -398,7 +370,7 @@ class Following:
             t = self.time.values
             return np.stack([t, np.ones_like(t), np.zeros_like(t), np.zeros_like(t)])
         to_si, coordinate = self.fields.units.to_si, name.rpartition(".")[2]
-        orders = self._rows_of(name)
+        orders = np.broadcast_to(self.orders[name], (4, self.rows))
         return np.stack([to_si(orders[k], dimension_of(coordinate, k)) for k in range(4)])
 
     def _quantity(self, name: str) -> Quantity:

@@ -1,13 +1,13 @@
-"""The motion of a file over its rows as its text says it, on a recording of exact numbers.
+"""The motion of a file over its rows, on a recording of the exact numbers of its text.
 
-The formulas are those of `building.spacing`, `building.laws` and `building.following`. Which rows
-there are, on which side of a rise and in which piece of a table they lie, is what the doubles
-found.
+The formulas are those of `building.motion`, `building.laws` and `building.course`. Which rows there
+are, and on which side of a rise and in which piece of a table they lie, is decided by the doubles.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from math import pi, prod
 from typing import TYPE_CHECKING, Any
 
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     from mechkin_cli.units import Dimension
 
 
-# The numbers of a law of motion as its text says them, in the file's units.
-
 PowerLaw = ConstantRate | ConstantAcceleration | Polynomial
 """x = c0 + c1 t + c2 t^2 + ..., with t from the first moment of `time`."""
 
@@ -55,7 +53,7 @@ PowerLaw = ConstantRate | ConstantAcceleration | Polynomial
 def coefficients(fields: Fields, path: Path, law: PowerLaw, coordinate: str) -> list[float]:
     """c0, c1, ..., where c_k is in the file's unit of the coordinate's derivative of order k.
 
-    Errors are noted in `fields`; zeros stand in.
+    Errors are noted in `fields`; zeros replace their values.
     """
     written: list[tuple[Path, str]]
     if isinstance(law, Polynomial):
@@ -64,13 +62,13 @@ def coefficients(fields: Fields, path: Path, law: PowerLaw, coordinate: str) -> 
         written = [(("at",), law.at), (("rate",), law.rate)]
     if isinstance(law, ConstantAcceleration):
         written.append((("acceleration",), law.acceleration))
-    found = [
+    numbers = [
         fields.written((*path, *key), text, dimension_of(coordinate, k))
         for k, (key, text) in enumerate(written)
     ]
     if isinstance(law, ConstantAcceleration):
-        found[2] /= 2.0
-    return found
+        numbers[2] /= 2.0
+    return numbers
 
 
 def span(
@@ -78,7 +76,7 @@ def span(
 ) -> tuple[float, float]:
     """Start and duration of a rise in the file's unit of time.
 
-    Errors are noted in `fields`; a duration of one stands in.
+    Errors are noted in `fields`; a duration of one replaces a wrong one.
     """
     errors = fields.error_count
     start = clock.first
@@ -92,13 +90,9 @@ def span(
     if duration > 0.0:
         return start, duration
     if fields.error_count == errors:
-        fields.error(
-            "no-duration",
-            place,
-            "a rise takes a positive time",
-            "give start and duration so that there is time for it",
-            measured=f"{duration:g} {fields.units.label(TIME)}",
-        )
+        hint = "give start and duration so that there is time for it"
+        measured = f"{duration:g} {fields.units.label(TIME)}"
+        fields.error("no-duration", place, "a rise takes a positive time", hint, measured=measured)
     return start, 1.0
 
 
@@ -158,7 +152,7 @@ def exact_moments(
 
 
 def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecorder) -> ExactMotion:
-    """The first moment of a response, as `mechanism.response.first_motion` has it in doubles.
+    """The first moment of a response, as that of `mechanism.response.first_motion` in doubles.
 
     Args:
         fields: units and parameters, recorded.
@@ -167,16 +161,17 @@ def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecor
     """
     in_si: dict[str, Any] = {"time": float(response.moments.values[0])}
     written: dict[str, Any] = {"time": float(response.moments.written[0])}
-    for one in response.start:
-        if one.value is None:
-            continue
-        orders = (one.value, 0.0 if one.rate is None else one.rate, 0.0, 0.0)
-        in_si[one.name] = orders
-        written[one.name] = tuple(
-            fields.units.from_si(order, dimension_of(one.coordinate, k))
-            for k, order in enumerate(orders)
-        )
+    for item in response.start:
+        if item.value is not None:
+            orders = (item.value, 0.0 if item.rate is None else item.rate, 0.0, 0.0)
+            in_si[item.name] = orders
+            written[item.name] = _in_file_units(fields.units, item.coordinate, orders)
     return ExactMotion(ExactRows(recorder, 1), in_si, written)
+
+
+def _in_file_units(units: UnitSystem, coordinate: str, orders: Orders) -> Orders:
+    a, b, c, d = (units.from_si(x, dimension_of(coordinate, k)) for k, x in enumerate(orders))
+    return a, b, c, d
 
 
 @dataclass
@@ -203,7 +198,7 @@ class _Reading:
         self.clock = Clock(self.motion.time.written, first, last)
 
     def add(self, name: str, item: WithRates | Law) -> None:
-        """An input that follows none."""
+        """An input that does not follow others."""
         path: Path = ("motion", "inputs", name)
         coordinate = name.rpartition(".")[2]
         dimension = dimension_of(coordinate)
@@ -212,19 +207,17 @@ class _Reading:
             if isinstance(item, HeldInput):
                 value = self.fields.written((*path, "at"), item.at, dimension)
             elif isinstance(item, ListedInput):
-                places = ((*path, "values", i) for i in range(len(item.values)))
-                pairs = zip(places, item.values, strict=True)
-                listed = [self.fields.written(place, text, dimension) for place, text in pairs]
+                texts = enumerate(item.values)
+                listed = [
+                    self.fields.written((*path, "values", i), text, dimension) for i, text in texts
+                ]
                 which = np.arange(self.rows.rows) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
                 value = self.rows.given(Picked(listed, np.resize(which, self.rows.rows)))
             else:
                 value = _spaced(self.fields, self.rows, path, item, dimension)
-            texts = (item.rate, item.acceleration, item.jerk)
             rates = [
-                self.fields.written((*path, key), text, dimension_of(coordinate, k))
-                for k, (key, text) in enumerate(
-                    zip(("rate", "acceleration", "jerk"), texts, strict=True), start=1
-                )
+                self.fields.written((*path, key), getattr(item, key), dimension_of(coordinate, k))
+                for k, key in enumerate(("rate", "acceleration", "jerk"), start=1)
             ]
             self._put(name, (value, *rates))
         elif isinstance(item, Harmonic | Cycloidal):
@@ -251,15 +244,12 @@ class _Reading:
             coordinate = name.rpartition(".")[2]
             orders = self._followed(expression, coordinate, self._quantity)
             self.in_si[name] = orders
-            self.written[name] = tuple(
-                self.fields.units.from_si(order, dimension_of(coordinate, k))
-                for k, order in enumerate(orders)
-            )
+            self.written[name] = _in_file_units(self.fields.units, coordinate, orders)
 
     def constraint_rates(self, motion: MotionInputs) -> tuple[Any, ...]:
         """The rates of constrained inputs by those of their leaders, in the motion's order."""
         names = [item.name for item in motion.inputs]
-        found = []
+        rates = []
         for number, leader in motion.constraints:
             seeds: dict[str, Any] = {
                 name: (self.in_si[name][0], float(name == names[leader]), 0.0, 0.0)
@@ -268,14 +258,10 @@ class _Reading:
             for name, expression in self.expressions.items():
                 if name == names[leader]:
                     continue
-                known = dict(seeds)
-                seeds[name] = self._followed(
-                    expression,
-                    name.rpartition(".")[2],
-                    lambda used, known=known: self._quantity(used, known),
-                )
-            found.append(seeds[names[number]][1])
-        return tuple(found)
+                resolve = partial(self._quantity, seeds=dict(seeds))
+                seeds[name] = self._followed(expression, name.rpartition(".")[2], resolve)
+            rates.append(seeds[names[number]][1])
+        return tuple(rates)
 
     def _followed(self, expression: Expression, coordinate: str, resolve: Any) -> Orders:
         value = scalar(expression, dimension_of(coordinate), self.fields.units, resolve)
@@ -338,8 +324,8 @@ class _Reading:
         table = read_rows(self.fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
         assert table is not None
         assert self.clock is not None
-        curve = joined_curve(table.x, table.y, joining_of(law))
-        knots = np.array([as_recorded(x) for x in table.x])
+        curve = joined_curve(*table, joining_of(law))
+        knots = np.array([as_recorded(x) for x in table[0]])
         piece = np.searchsorted(knots, self.clock.moments, side="right") - 1
         piece = np.clip(piece, 0, knots.size - 1)
 
@@ -347,19 +333,17 @@ class _Reading:
             return self.rows.given(Picked(list(numbers), piece))
 
         y, b, c, d = (picked(row) for row in curve.coefficients)
-        u = self.moment - picked(table.x)
-        found = (
-            y + u * (b + u * (c + u * d)),
-            b + u * (2.0 * c + u * (3.0 * d)),
-            2.0 * c + u * (6.0 * d),
-            6.0 * d,
+        u = self.moment - picked(table[0])
+        value = y + u * (b + u * (c + u * d))
+        rates = b + u * (2.0 * c + u * (3.0 * d)), 2.0 * c + u * (6.0 * d), 6.0 * d
+        first, second, third, fourth = (
+            over_time(self.fields.units, coordinate, 0, k).apply(order)
+            for k, order in enumerate((value, *rates))
         )
-        conversions = (over_time(self.fields.units, coordinate, 0, k) for k in range(4))
-        one, two, three, four = (c.apply(f) for c, f in zip(conversions, found, strict=True))
-        return one, two, three, four
+        return first, second, third, fourth
 
     def _where(self, rows: Any) -> Any:
-        """A condition that holds in some rows, as doubles found."""
+        """A condition that holds in some rows, as decided by doubles."""
         chosen: Floats = rows.astype(np.float64)
         return self.rows.given(chosen) == 1.0
 

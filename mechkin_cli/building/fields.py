@@ -1,19 +1,14 @@
-"""Texts of the file to numbers in SI, collecting what is wrong with its place."""
+"""Texts of the file to numbers in SI, with errors at their places: parameters, coordinates, points,
+units.
+
+A point's name stands for the place where the point is drawn. A place that is fixed in a link, such
+as a mass centre or the point of a force, moves with that link, so it can only be named by a point
+of that link; the halves of a joint may meet at any place of the drawing.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
-
-from mechkin_cli.mechanism import Moments
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema import HeldCoordinate, InputMotion
-from mechkin_cli.show import Floats
-
-if TYPE_CHECKING:
-    pass
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
 from mechkin_cli.expressions import (
@@ -30,10 +25,20 @@ from mechkin_cli.expressions import (
     number_of,
     parse,
 )
-from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, pairs as joint_table
+from mechkin_cli.mechanism import (
+    GROUND_NAME,
+    ZERO,
+    Attached,
+    Joint,
+    Moments,
+    Vector,
+    pairs as joint_table,
+    unit,
+)
 from mechkin_cli.reading import CORRECT_FIRST, MOST_DIAGNOSTICS, Document, in_order
-from mechkin_cli.record import dataclass, field, replace
-from mechkin_cli.schema import MechanismFile, UnitsSection
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
+from mechkin_cli.schema import HeldCoordinate, InputMotion, MechanismFile, UnitsSection
+from mechkin_cli.show import Floats
 from mechkin_cli.tape import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import (
@@ -52,9 +57,9 @@ Path = tuple[str | int, ...]
 
 
 def is_tiny_length(in_si: object, dimension: Dimension) -> bool:
-    """Whether a value is a length (m) that is not zero, but too small to be divided by.
+    """Whether a value is a length (m) that is not zero, but too small to divide by.
 
-    Recorded numbers never are: the values that they come from have been judged.
+    Recorded numbers never are: their values have been judged as doubles.
     """
     if dimension != LENGTH or not isinstance(in_si, float):
         return False
@@ -62,20 +67,20 @@ def is_tiny_length(in_si: object, dimension: Dimension) -> bool:
 
 
 class AlreadyRefused(ExpressionError):
-    """A name that is refused where it is defined: the expression that uses it gets no message.
+    """A name whose definition has an error: an expression that uses it gets no message.
 
-    It arrives as the cause of the error that the expression raises.
+    It is the cause of the error that the expression raises.
     """
 
 
 @dataclass
 class Fields:
-    """Evaluates fields of one document; errors are collected in `diagnostics` and stand in as
-    zeros.
+    """Evaluates fields of one document; errors are collected in `diagnostics`, with zeros as
+    values.
 
-    `refused` holds names whose definitions have errors: what uses them is not reported again.
-    `points` are the file's named points as drawn, `definitions` its named expressions. `plane`: of
-    a file in a plane, whose z the user never sees.
+    `refused` holds names whose definitions have errors: their uses are not reported again. `points`
+    are the file's named points as drawn, `definitions` its named expressions. `plane`: of a file in
+    a plane, whose z the user never sees.
     """
 
     document: Document
@@ -88,10 +93,10 @@ class Fields:
     plane: bool = False
 
     def note(self, diagnostic: Diagnostic) -> None:
-        """Notes something.
+        """Adds a diagnostic.
 
         Raises:
-            InvalidFile: the errors are too many to go on; they and what was noted so far.
+            InvalidFile: there are too many errors to go on.
         """
         self.diagnostics.append(diagnostic)
         if len(self.diagnostics) > MOST_DIAGNOSTICS and self.error_count > MOST_DIAGNOSTICS:
@@ -106,7 +111,7 @@ class Fields:
         return sum(diagnostic.severity == "error" for diagnostic in self.diagnostics)
 
     def is_refused(self, name: str) -> bool:
-        """Whether a dotted name, or what it belongs to, is refused where it is defined."""
+        """Whether the definition of a dotted name, or of its owner, has an error."""
         return name in self.refused or name.partition(".")[0] in self.refused
 
     def resolve(self, name: str) -> Quantity:
@@ -167,7 +172,7 @@ class Fields:
 
     def _blames_parameters(self, text: str, dimension: Dimension) -> bool:
         """Whether a text is wrong only because parameters in it were written without their unit:
-        each is refused once, where it is written, and what else uses it gets no message."""
+        each is refused once, where it is written, and its other uses get no message."""
         try:
             names = sorted(parse(text).names & self.parameters.keys())
         except ExpressionError:
@@ -179,21 +184,17 @@ class Fields:
             return False
 
         def with_unit(name: str) -> Quantity:
-            found = self.resolve(name)
-            return replace(found, dimension=dimension) if name in bare else found
+            quantity = self.resolve(name)
+            return replace(quantity, dimension=dimension) if name in bare else quantity
 
         try:
             constant(text, dimension, self.units, with_unit)
         except ExpressionError:
             return False
-        unit = self.units.label(dimension)
         for name in bare:
-            self.error(
-                "parameter-unit",
-                ("parameters", name),
-                f"{name} is used as {dimension.phrase} and has no unit",
-                f"write {str(texts[name]).strip()} {unit}",
-            )
+            message = f"{name} is used as {dimension.phrase} and has no unit"
+            hint = f"write {str(texts[name]).strip()} {self.units.label(dimension)}"
+            self.error("parameter-unit", ("parameters", name), message, hint)
             self.refused.add(name)
         return True
 
@@ -212,15 +213,15 @@ class Fields:
         return 0.0
 
     def _refuse_size(self, path: Path, code: str, what: str, value: float, limit: float) -> None:
-        unit = "m" if limit == SMALLEST_SIZE else ""
+        metre = "m" if limit == SMALLEST_SIZE else ""
         self.error(
             code,
             path,
             f"{what} to compute with",
             "check its exponent and unit",
-            measured=f"{value:.4g} {unit}".rstrip(),
-            limit=f"{limit:g} {unit}".rstrip(),
-            numbers=(Number("value", value, unit, limit=limit),),
+            measured=f"{value:.4g} {metre}".rstrip(),
+            limit=f"{limit:g} {metre}".rstrip(),
+            numbers=(Number("value", value, metre, limit=limit),),
         )
 
     def vector(self, path: Path, texts: Sequence[str], dimension: Dimension) -> Vector:
@@ -231,8 +232,6 @@ class Fields:
     def direction(self, path: Path, texts: Sequence[str]) -> Vector:
         """A direction: three components of one dimension, not all zero; returned as a unit
         vector."""
-        from mechkin_cli.mechanism import unit
-
         values: list[float] = []
         dimensions: list[Dimension] = []
         for i, text in enumerate(texts):
@@ -246,9 +245,8 @@ class Fields:
             return (1.0, 0.0, 0.0)
         vector = (values[0], values[1], values[2])
         if vector == ZERO:
-            self.error(
-                "zero-direction", path, "this direction is zero", "give a vector with a direction"
-            )
+            hint = "give a vector with a direction"
+            self.error("zero-direction", path, "this direction is zero", hint)
             return (1.0, 0.0, 0.0)
         return unit(vector)
 
@@ -295,56 +293,42 @@ def _check_overrides(fields: Fields, texts: Mapping[str, str]) -> None:
         original, new = originals.get(name), fields.parameters.get(name)
         if original is None or new is None or new.dimension.compatible(original.dimension):
             continue
-        unit = fields.units.label(original.dimension)
-        fields.error(
-            "dimension",
-            ("parameters", name),
-            f"{name} is {original.dimension.phrase} in the file, this is {new.dimension.phrase}",
-            f"write a value such as {texts[name] if literal(texts[name]) else 1} {unit}".rstrip(),
-        )
+        phrases = f"{original.dimension.phrase} in the file, this is {new.dimension.phrase}"
+        example = f"{texts[name] if literal(texts[name]) else 1}"
+        hint = f"write a value such as {example} {fields.units.label(original.dimension)}"
+        fields.error("dimension", ("parameters", name), f"{name} is {phrases}", hint.rstrip())
         del fields.parameters[name]
 
-
-# Joint coordinates that a file names: what they measure, whether they exist, and what to say where
-# they do not.
 
 CODE = "unknown-coordinate"
 
 
 def dimension_of(coordinate: str, order: int = 0) -> Dimension:
-    """What a coordinate, or its derivative of some order over time, measures."""
+    """The dimension of a coordinate, or of its derivative of some order over time."""
     return joint_table.dimension_of(coordinate) / TIME**order
 
 
-def is_coordinate(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
-    """Whether the key at `path` names a coordinate, such as `O2.theta`; if not, that is noted."""
-    wrong = _wrong(fields, name, joints)
-    if wrong:
-        fields.key_error(CODE, path, *wrong)
-    return wrong is None
-
-
-def is_coordinate_at(fields: Fields, path: Path, name: str, joints: Mapping[str, Joint]) -> bool:
-    """The same of the value at `path`."""
-    wrong = _wrong(fields, name, joints)
-    if wrong:
-        fields.error(CODE, path, *wrong)
-    return wrong is None
-
-
-def _wrong(
-    fields: Fields, name: str, joints: Mapping[str, Joint]
-) -> tuple[str, str | None] | tuple[()] | None:
-    """Message and hint where a name is no coordinate; none where that is said elsewhere."""
+def is_coordinate(
+    fields: Fields, path: Path, name: str, joints: Mapping[str, Joint], *, at_key: bool = True
+) -> bool:
+    """Whether the key (or else the value) at `path` names a coordinate, such as `O2.theta`; if not,
+    that is noted."""
     joint, _, coordinate = name.rpartition(".")
+    note = fields.key_error if at_key else fields.error
     if joint in joints:
         if coordinate in joints[joint].type.coordinates:
-            return None
-        return without(joints[joint], coordinate)
-    if fields.is_refused(joint):
-        return ()
-    known = [c for joint in joints.values() for c in joint.coordinates]
-    return f"{name} is no coordinate", nearest_hint(name, known)
+            return True
+        note(CODE, path, *without(joints[joint], coordinate))
+    elif not fields.is_refused(joint):
+        known = [c for joint in joints.values() for c in joint.coordinates]
+        note(CODE, path, f"{name} is not a coordinate", nearest_hint(name, known))
+    return False
+
+
+def refuse_efforts(fields: Fields, joints: Mapping[str, Joint]) -> None:
+    """Refuses the efforts of all joints, which follow from definitions with errors."""
+    for joint in joints.values():
+        fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
 
 
 def without(joint: Joint, coordinate: str) -> tuple[str, str]:
@@ -354,15 +338,8 @@ def without(joint: Joint, coordinate: str) -> tuple[str, str]:
     return message, f"its coordinates: {have}"
 
 
-# Places in the home drawing, as coordinates or as the names of points; and the named points.
-#
-# A name stands for the place where its point is drawn. What is fixed in a link, a mass centre or
-# the point of a force, moves with that link, so the point that it is named by has to be one of that
-# link; the halves of a joint may meet at any place of the drawing.
-
-
 def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
-    """The named points of the file, which `fields` knows from here on; what is wrong is noted."""
+    """The named points of the file, which are put into `fields`; errors are noted."""
     links = dict.fromkeys([*file.links, *(row.link for row in file.chain)])
     links.pop(GROUND_NAME, None)
     drawn = {
@@ -379,25 +356,25 @@ def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
 
 
 def place_at(
-    fields: Fields, path: Path, given: str | tuple[str, ...], link: str | None = None
+    fields: Fields, path: Path, place: str | tuple[str, ...], link: str | None = None
 ) -> Vector:
-    """A place in the drawing, in m; where it is fixed in a `link`, a name has to be of a point of
-    that link. What is wrong is noted, and zero stands in."""
-    if not isinstance(given, str):
-        return fields.vector(path, given, LENGTH)
-    if given not in fields.points:
-        _refuse_unknown(fields, path, given)
+    """A place in the drawing, in m; if it is fixed in a `link`, a name must be that of a point of
+    the link. Errors are noted, with zero as value."""
+    if not isinstance(place, str):
+        return fields.vector(path, place, LENGTH)
+    if place not in fields.points:
+        _refuse_unknown(fields, path, place)
         return ZERO
-    point = fields.points[given]
+    point = fields.points[place]
     if link is not None and point.link != link:
-        text = f"{given} is a point of {point.link}, and this place moves with {link}"
-        hint = f"name one of {link}, such as {given}_of_{link}: {{link: {link}, at: {given}}}"
+        text = f"{place} is a point of {point.link}, and this place moves with {link}"
+        hint = f"name one of {link}, such as {place}_of_{link}: {{link: {link}, at: {place}}}"
         fields.error("point-of-another-link", path, text, hint)
     return point.vector
 
 
 def is_link(fields: Fields, path: tuple[str, ...], name: str, links: Iterable[str]) -> bool:
-    """Whether a link is there; if not, that is noted once, at the path of its name."""
+    """Whether a link exists; if not, that is noted once, at the path of its name."""
     if name == GROUND_NAME or name in links:
         return True
     fields.refused.add(path[1])
@@ -407,45 +384,38 @@ def is_link(fields: Fields, path: tuple[str, ...], name: str, links: Iterable[st
 
 
 def _follow(fields: Fields, file: MechanismFile, name: str, drawn: dict[str, Vector]) -> None:
-    """Puts a point, and those on the way, at the place of the point that its `at` leads to."""
-    way: list[str] = []
+    """Puts a point, and those it passes, at the place of the point that its `at` leads to."""
+    passed: list[str] = []
     while name not in drawn and name in file.points and name not in fields.refused:
-        if name in way:
-            circle = " -> ".join([*way[way.index(name) :], name])
+        if name in passed:
+            circle = " -> ".join([*passed[passed.index(name) :], name])
             text = f"the place of {name} leads back to itself: {circle}"
             fields.error("circular-place", ("points", name, "at"), text, "write coordinates here")
-            fields.refused.update(way)
+            fields.refused.update(passed)
             return
-        way.append(name)
+        passed.append(name)
         at = file.points[name].at
         assert isinstance(at, str)
         name = at
     if name in drawn:
-        drawn.update(dict.fromkeys(way, drawn[name]))
-        return
-    if way:
-        _refuse_unknown(fields, ("points", way[-1], "at"), name)
-        fields.refused.update(way)
+        drawn.update(dict.fromkeys(passed, drawn[name]))
+    elif passed:
+        _refuse_unknown(fields, ("points", passed[-1], "at"), name)
+        fields.refused.update(passed)
 
 
 def _refuse_unknown(fields: Fields, path: Path, name: str) -> None:
     if fields.is_refused(name):
         return
-    data = fields.document.data
-    section = data.get("points")
-    known = list(section) if isinstance(section, dict) else []
-    joints = data.get("joints")
-    is_joint = isinstance(joints, dict) and name in joints
-    hint = f"{name} is a joint: name its point under points" if is_joint else None
-    hint = hint or nearest_hint(name, known) or "name it under points"
+    sections = (fields.document.data.get(key) for key in ("points", "joints"))
+    points, joints = (section if isinstance(section, dict) else {} for section in sections)
+    hint = f"{name} is a joint: name its point under points" if name in joints else None
+    hint = hint or nearest_hint(name, list(points)) or "name it under points"
     fields.error("unknown-point", path, f"there is no point {name}", hint)
 
 
-# The units section to the file's unit system, and what is to be said of it.
-
-
 def read_units(document: Document, section: UnitsSection) -> tuple[UnitSystem, list[Diagnostic]]:
-    """The file's unit system, and what is wrong with it."""
+    """The file's unit system, and its errors."""
     try:
         return UnitSystem.from_mapping({name: getattr(section, name) for name in FIELDS}), []
     except UnitError as error:
@@ -455,8 +425,8 @@ def read_units(document: Document, section: UnitsSection) -> tuple[UnitSystem, l
 
 
 def note_force_unit(fields: Fields) -> None:
-    """Says in which unit forces are, where the file leaves it out and its mass, length and time
-    would make another."""
+    """Notes the unit of forces, where the file has none and its mass, length and time would make
+    another."""
     document, units = fields.document, fields.units
     named = document.node(("units", "force")) is not None
     if fields.error_count or named or document.node(("units",)) is None:
@@ -465,25 +435,10 @@ def note_force_unit(fields: Fields) -> None:
     if coherent.factor == units.force.factor:
         return
     forces, moments = units.label(FORCE), units.label(MOMENT)
-    fields.note(
-        Diagnostic(
-            "force-unit",
-            "note",
-            f"units: names no force, so forces are in {forces} and moments in {moments}",
-            document.key_place(("units",)),
-            hint=f"write force: {forces} to say so, or another, such as force: {coherent}",
-        )
-    )
-
-
-class Written(NamedTuple):
-    """Driven coordinates as some section writes them, its place, and the moments of their laws with
-    the clock that these laws go by."""
-
-    inputs: Mapping[str, InputMotion | HeldCoordinate]
-    path: Path
-    time: Moments | None = None
-    clock: Clock | None = None
+    text = f"units: names no force, so forces are in {forces} and moments in {moments}"
+    hint = f"write force: {forces} to say so, or another, such as force: {coherent}"
+    place = document.key_place(("units",))
+    fields.note(Diagnostic("force-unit", "note", text, place, hint=hint))
 
 
 class Clock(NamedTuple):
@@ -492,3 +447,13 @@ class Clock(NamedTuple):
     moments: Floats
     first: float
     last: float
+
+
+class Written(NamedTuple):
+    """Driven coordinates as written in a section, its path, and the moments and clock of their
+    laws."""
+
+    inputs: Mapping[str, InputMotion | HeldCoordinate]
+    path: Path
+    time: Moments | None = None
+    clock: Clock | None = None

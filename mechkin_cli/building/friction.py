@@ -1,4 +1,4 @@
-"""Friction of the file to the friction of a joint: its law's keys, coefficients and lengths."""
+"""Friction of a joint: the keys of its law, coefficients, lengths and directions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from mechkin_cli.mechanism import (
     subtract,
     unit,
 )
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import FallingCoefficient
 from mechkin_cli.tolerances import LARGEST_FLANK, PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, VELOCITY
@@ -31,12 +30,6 @@ if TYPE_CHECKING:
 CODE = "friction"
 LENGTHS = ("radius", "length", "collar", "width")
 KEYS = (*LENGTHS, "across", "flank")
-
-
-class _Coefficients(NamedTuple):
-    at_rest: float
-    sliding: float
-    speed: float | None
 
 
 def build_friction(
@@ -52,13 +45,13 @@ def build_friction(
         return None
     errors = fields.error_count
     _check_keys(fields, path, section, joint, law)
-    given = _coefficients(fields, path, section)
+    coefficients = _coefficients(fields, path, section)
     radius, length, collar, width = (_length(fields, path, section, key) for key in LENGTHS)
     flank, across = _flank(fields, path, section), _across(fields, path, section, joint)
     if fields.error_count > errors:
         return None
     place = fields.document.place(path)
-    return Rubbing(joint.name, *given, radius, length, collar, width, flank, across, place)
+    return Rubbing(joint.name, *coefficients, radius, length, collar, width, flank, across, place)
 
 
 def _check_keys(
@@ -67,11 +60,11 @@ def _check_keys(
     known = (*law.needs, *law.may)
     takes = f"it takes {', '.join(('coefficient', *known))}"
     for key in KEYS:
-        given = getattr(section, key) is not None
-        if given and key not in known:
+        is_written = getattr(section, key) is not None
+        if is_written and key not in known:
             text = f"friction of {joint.name}, a joint of type {joint.letter}, has no {key}"
             fields.key_error(CODE, (*path, key), text, takes)
-        elif key in law.needs and not given:
+        elif key in law.needs and not is_written:
             text = f"friction of {joint.name}, a joint of type {joint.letter}, needs a {key}"
             fields.error(CODE, path, text, takes)
     if section.across is not None and section.width is None and "across" in known:
@@ -79,27 +72,30 @@ def _check_keys(
         fields.key_error(CODE, (*path, "across"), text, "give width, too, or leave out across")
 
 
-def _coefficients(fields: Fields, path: Path, section: FrictionAtJoint) -> _Coefficients:
-    given = section.coefficient
+def _coefficients(
+    fields: Fields, path: Path, section: FrictionAtJoint
+) -> tuple[float, float, float | None]:
+    """At rest, sliding, and the speed over which it falls from one to the other."""
+    coefficient = section.coefficient
     path = (*path, "coefficient")
-    if not isinstance(given, FallingCoefficient):
-        number = _coefficient(fields, path, given)
-        return _Coefficients(number, number, None)
-    at_rest = _coefficient(fields, (*path, "static"), given.static)
-    sliding = _coefficient(fields, (*path, "sliding"), given.sliding)
+    if not isinstance(coefficient, FallingCoefficient):
+        number = _coefficient(fields, path, coefficient)
+        return number, number, None
+    at_rest = _coefficient(fields, (*path, "static"), coefficient.static)
+    sliding = _coefficient(fields, (*path, "sliding"), coefficient.sliding)
     if at_rest < sliding:
         text = "the static coefficient is smaller than that of sliding"
         hint = "surfaces hold at least as well as they drag: exchange the two"
         fields.error(CODE, (*path, "static"), text, hint)
-    if given.speed is None:
-        return _Coefficients(at_rest, sliding, None)
+    if coefficient.speed is None:
+        return at_rest, sliding, None
     errors = fields.error_count
-    speed = fields.number((*path, "speed"), given.speed, VELOCITY)
+    speed = fields.number((*path, "speed"), coefficient.speed, VELOCITY)
     if fields.error_count == errors and not speed > 0.0:
         text = "the speed from static to sliding friction must be positive"
         hint = "leave it out where the coefficient falls at once"
         fields.error(CODE, (*path, "speed"), text, hint)
-    return _Coefficients(at_rest, sliding, speed)
+    return at_rest, sliding, speed
 
 
 def _coefficient(fields: Fields, path: Path, text: str) -> float:
@@ -126,12 +122,8 @@ def _flank(fields: Fields, path: Path, section: FrictionAtJoint) -> float | None
     angle = fields.number((*path, "flank"), section.flank, ANGLE)
     if abs(angle) <= LARGEST_FLANK:
         return angle
-    fields.error(
-        CODE,
-        (*path, "flank"),
-        "such a flank stands nearly along the axis",
-        "give half the angle of the thread: 15 deg for trapezoidal, 30 deg for metric threads",
-    )
+    hint = "give half the angle of the thread: 15 deg for trapezoidal, 30 deg for metric threads"
+    fields.error(CODE, (*path, "flank"), "such a flank stands nearly along the axis", hint)
     return None
 
 
@@ -140,12 +132,12 @@ def _across(fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint) 
     if section.across is None:
         return None
     errors = fields.error_count
-    given, axis = fields.direction((*path, "across"), section.across), joint.axis
+    across, axis = fields.direction((*path, "across"), section.across), joint.axis
     if fields.error_count > errors:
         return None
-    if norm(cross(given, axis.vector)) <= PARALLEL:
+    if norm(cross(across, axis.vector)) <= PARALLEL:
         text = f"the width of {joint.name} cannot run along its axis"
         fields.error(CODE, (*path, "across"), text, "give a direction square to the axis")
         return None
-    along = scale(dot(given, axis.vector), axis.vector)
-    return Attached(axis.link, unit(subtract(given, along)))
+    along = scale(dot(across, axis.vector), axis.vector)
+    return Attached(axis.link, unit(subtract(across, along)))

@@ -1,8 +1,15 @@
-"""Joints of the file to joints of the mechanism: links checked, frames drawn on both links."""
+"""Joints of the file to joints of the mechanism: links checked, frames drawn on both links.
+
+A vector may be given for either link; one vector stands for both. Pairs with two turns turn about a
+direction of the first link, then about one of the second: both frames have x square to the two
+directions as drawn (the first cross the second) and z along their own; slides come before the turns
+or after them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from mechkin_cli.building.fields import Fields, Path, place_at
@@ -42,19 +49,15 @@ from mechkin_cli.schema import (
     SphereCylinderJoint,
     SphereGrooveJoint,
     SpherePlaneJoint,
-    TwoTurnJoint,
     UniversalJoint,
-    WeldJoint,
 )
 from mechkin_cli.tape import by_rounding, either, is_settled
 from mechkin_cli.tolerances import AXES_SQUARE, PARALLEL
 from mechkin_cli.units import LENGTH
 
-# A pair as drawn on its two links.
-
 
 class Halves(NamedTuple):
-    """The pair's frames on either link.
+    """A pair's frames as drawn on its two links.
 
     `meeting`: frames, one on either drawing, that coincide where the coordinates are zero, of the
     part that leads from one drawing to the other; `own`: a frame beside them.
@@ -78,18 +81,9 @@ class Halves(NamedTuple):
         return frame_about(scale(-1.0, along) if direction.reverse else along, across, frame.o)
 
 
-# Vectors of a joint that may be given for either link: one vector stands for both.
-
-Texts = tuple[str, ...]
-"""The three components of a vector, as written."""
-
-
 def points_of(fields: Fields, path: Path, section: PointJoint) -> tuple[Vector, Vector]:
     """The joint's point on either link, in m."""
-
-    def read(where: Path, given: str | Texts) -> Vector:
-        return place_at(fields, where, given)
-
+    read = partial(place_at, fields)
     return _per_link(read, (*path, "point"), section.point, section.links)
 
 
@@ -101,16 +95,13 @@ def directions_of(
 
 
 def place_of(path: Path, section: PointJoint, key: str, side: int) -> Path:
-    """Where the vector for the first (0) or second (1) link stands in the file."""
-    given = getattr(section, key)
-    return (*path, key, section.links[side]) if isinstance(given, Mapping) else (*path, key)
+    """The path in the file of the vector for the first (0) or second (1) link."""
+    value = getattr(section, key)
+    return (*path, key, section.links[side]) if isinstance(value, Mapping) else (*path, key)
 
 
 def _per_link(
-    read: Callable[[Path, Any], Vector],
-    path: Path,
-    value: Any,
-    links: Sequence[str],
+    read: Callable[[Path, Any], Vector], path: Path, value: Any, links: Sequence[str]
 ) -> tuple[Vector, Vector]:
     if isinstance(value, Mapping):
         return read((*path, links[0]), value[links[0]]), read((*path, links[1]), value[links[1]])
@@ -121,34 +112,27 @@ def _per_link(
 def build_joints(
     fields: Fields, sections: Mapping[str, AnyJoint], links: Mapping[str, object]
 ) -> dict[str, Joint]:
-    """All joints that can be built; the rest is noted in `fields`."""
+    """All joints whose links exist; errors are noted in `fields`."""
     joints = {}
     for name, section in sections.items():
-        known = _links_known(fields, ("joints", name), section, links)
+        unknown = [link for link in section.links if link not in (GROUND_NAME, *links)]
+        for i, link in enumerate(section.links):
+            if link in unknown:
+                hint = nearest_hint(link, [GROUND_NAME, *links])
+                path = ("joints", name, "links", i)
+                fields.error("unknown-link", path, f"there is no link {link}", hint)
         joint = _build(fields, name, section)
-        if known:
-            joints[name] = joint
-        else:
+        if unknown:
             fields.refused.add(name)
+        else:
+            joints[name] = joint
     return joints
-
-
-def _links_known(
-    fields: Fields, path: Path, section: AnyJoint, links: Mapping[str, object]
-) -> bool:
-    known = True
-    for i, link in enumerate(section.links):
-        if link != GROUND_NAME and link not in links:
-            hint = nearest_hint(link, [GROUND_NAME, *links])
-            fields.error("unknown-link", (*path, "links", i), f"there is no link {link}", hint)
-            known = False
-    return known
 
 
 def _build(fields: Fields, name: str, section: AnyJoint) -> Joint:
     path: Path = ("joints", name)
     kind = joint_type(section.type, fields.plane)
-    halves = _DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
+    halves = DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
     first, second = section.links
     lead = 0.0
     if isinstance(section, HelicalJoint):
@@ -223,28 +207,6 @@ def _plane(fields: Fields, path: Path, section: PlanarJoint, drawing: Drawing) -
     return Halves(on_first, on_second, (on_first, on_second))
 
 
-def _two_turns(fields: Fields, path: Path, section: TwoTurnJoint, drawing: Drawing) -> Halves:
-
-    return DRAWINGS[drawing.kind](fields, path, section, drawing)
-
-
-def _weld(_: Fields, path: Path, section: WeldJoint, drawing: Drawing) -> Halves:
-    """One body."""
-    return Halves(GROUND, GROUND, (GROUND, GROUND))
-
-
-_DRAWINGS: dict[str, Callable[..., Halves]] = {
-    "axis": _axis,
-    "ball": _ball,
-    "ball on": _ball_on,
-    "plane": _plane,
-    "two axes": _two_turns,
-    "square axes": _two_turns,
-    "slotted": _two_turns,
-    "weld": _weld,
-}
-
-
 def _zero_directions(
     fields: Fields, path: Path, section: AxisJoint, axes: tuple[Vector, Vector], errors: int
 ) -> tuple[Vector, Vector]:
@@ -271,26 +233,16 @@ def _zero_directions(
 def _square(
     fields: Fields, path: Path, axis: Vector, vector: Vector, what: str, line: str, errors: int
 ) -> Vector:
-    """A reference direction, refused where it is parallel to the axis it should stand square to.
+    """A reference direction, refused where it is parallel to the axis it should be square to.
 
-    `errors` counts those before the two were read: what stands in for a wrong one says nothing.
+    `errors` counts those before the two were read: one that replaces a wrong one is not checked.
     """
     if norm(cross(axis, vector)) > PARALLEL:
         return vector
     if fields.error_count == errors:
-        fields.error(
-            "zero-parallel",
-            path,
-            f"{what} is parallel to the joint's {line}",
-            "give one that is square to it, or nearly so",
-        )
+        text = f"{what} is parallel to the joint's {line}"
+        fields.error("zero-parallel", path, text, "give one that is square to it, or nearly so")
     return perpendicular(axis)
-
-
-# Pairs with two turns: about a direction of the first link, then about one of the second.
-#
-# Both frames have x square to the two directions as drawn (the first cross the second) and z along
-# their own; slides come before the turns or after them.
 
 
 def _oblique(fields: Fields, path: Path, section: UniversalJoint, drawing: Drawing) -> Halves:
@@ -301,12 +253,9 @@ def _oblique(fields: Fields, path: Path, section: UniversalJoint, drawing: Drawi
     one, two = (fields.direction((*path, key), getattr(section, key)) for key in keys)
     if norm(cross(one, two)) <= PARALLEL:
         if fields.error_count == errors:
-            fields.error(
-                "parallel-axes",
-                (*path, keys[1]),
-                "the two axes of a universal joint are parallel",
-                "turn one of them, or use type R",
-            )
+            text = "the two axes of a universal joint are parallel"
+            hint = "turn one of them, or use type R"
+            fields.error("parallel-axes", (*path, keys[1]), text, hint)
         one = perpendicular(two)
     return _turns((one, one), (two, two), at)
 
@@ -331,13 +280,10 @@ def _slotted(fields: Fields, path: Path, section: SphereCylinderJoint, drawing: 
         normal = cross(pin, axis)
         if norm(normal) <= PARALLEL:
             if fields.error_count == errors:
-                fields.error(
-                    "pin-parallel",
-                    place_of(path, section, pin_key, side),
-                    "the pin is parallel to the cylinder's axis: the two do not tell the slot's "
-                    "plane",
-                    "draw the pin where it comes out of the slot",
-                )
+                text = "the pin is parallel to the cylinder's axis: they define no plane of a slot"
+                hint = "draw the pin where it comes out of the slot"
+                place = place_of(path, section, pin_key, side)
+                fields.error("pin-parallel", place, text, hint)
             normal = perpendicular(pin)
         normals.append(unit(normal))
     own = frame_about(axes[0], normals[0], at[0])
@@ -384,8 +330,13 @@ def _square_pairs(
 
 
 DRAWINGS: dict[str, Callable[..., Halves]] = {
+    "axis": _axis,
+    "ball": _ball,
+    "ball on": _ball_on,
+    "plane": _plane,
     "two axes": _oblique,
     "square axes": _two_turns_square,
     "slotted": _slotted,
+    "weld": lambda *_: Halves(GROUND, GROUND, (GROUND, GROUND)),
 }
 """Frames on both links, by the kind of drawing."""

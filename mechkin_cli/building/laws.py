@@ -1,7 +1,7 @@
 """Laws of motion to values, rates, accelerations and jerks at the moments of the rows.
 
-All is computed in the file's units, so that numbers come out as they were written. With t from the
-first moment of `time` and u = (moment - start)/duration:
+Numbers are computed in the file's units, so that they come out as they were written. With t from
+the first moment of `time` and u = (moment - start)/duration:
 
 - constant rate, constant acceleration, polynomial: x = c0 + c1 t + c2 t^2 + ...; bare
   coefficients must be in the file's angle (length) and time throughout
@@ -9,6 +9,9 @@ first moment of `time` and u = (moment - start)/duration:
 - cycloidal: x = from + (to - from) (u - sin(2 pi u)/(2 pi)); both rest before and after, and the
   first and the last moment of the rise belong to it
 - table: the curve through the rows of a CSV file.
+
+`law_pieces` gives a law between the rows, for any moment: one formula of the moment whose constants
+change from piece to piece, so that a tape of it holds for all of them.
 """
 
 from __future__ import annotations
@@ -21,14 +24,14 @@ import numpy as np
 
 from mechkin_cli.building.exact_motion import PowerLaw, coefficients, over_time, span
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
-from mechkin_cli.building.load_laws import joining_of, read_rows
+from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.expressions import literal
 from mechkin_cli.mechanism import joined_curve
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import Cycloidal, Harmonic, Law, Polynomial, TableLaw
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import cos, sin
-from mechkin_cli.units import TIME, UnitSystem
+from mechkin_cli.units import TIME
 
 
 def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clock) -> Floats:
@@ -40,15 +43,22 @@ def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
 
 
 def _of_powers(fields: Fields, path: Path, law: PowerLaw, coordinate: str, clock: Clock) -> Floats:
-    found = coefficients(fields, path, law, coordinate)
+    numbers = coefficients(fields, path, law, coordinate)
     if isinstance(law, Polynomial):
         _check_units(fields, (*path, "coefficients"), law, coordinate)
-    return _power_series(fields.units, coordinate, found, clock)
+    t = clock.moments - clock.first
+    orders = np.zeros((4, t.size))
+    for order in range(4):
+        for k in range(len(numbers) - 1, order - 1, -1):
+            factor = float(prod(range(k - order + 1, k + 1)))
+            term = over_time(fields.units, coordinate, k, order).apply(numbers[k] * factor)
+            orders[order] = orders[order] * t + term
+    return orders
 
 
 def _check_units(fields: Fields, path: Path, law: Polynomial, coordinate: str) -> None:
-    """Refuses bare coefficients that two readings make different numbers of: in a row of
-    coefficients of an angle in deg, the next may be meant in deg/s or in the file's rad/s."""
+    """Refuses bare coefficients with two meanings: in a row of coefficients of an angle in deg, the
+    next may be meant in deg/s or in the file's rad/s."""
     for k, text in enumerate(law.coefficients):
         if k == 0 or not literal(text):
             continue
@@ -62,20 +72,6 @@ def _check_units(fields: Fields, path: Path, law: Polynomial, coordinate: str) -
                 f"{text.strip()} may be meant in {alike} or in {own}",
                 f"write the unit behind the number, such as {text.strip()} {alike}",
             )
-
-
-def _power_series(
-    units: UnitSystem, coordinate: str, coefficients: Sequence[float], clock: Clock
-) -> Floats:
-    """c0 + c1 t + c2 t^2 + ... and its derivatives; c_k in the file's unit of order k."""
-    t = clock.moments - clock.first
-    orders = np.zeros((4, t.size))
-    for order in range(4):
-        for k in range(len(coefficients) - 1, order - 1, -1):
-            factor = float(prod(range(k - order + 1, k + 1)))
-            term = over_time(units, coordinate, k, order).apply(coefficients[k] * factor)
-            orders[order] = orders[order] * t + term
-    return orders
 
 
 def _harmonic(fields: Fields, path: Path, law: Harmonic, coordinate: str, clock: Clock) -> Floats:
@@ -99,8 +95,6 @@ def _cycloidal(fields: Fields, path: Path, law: Cycloidal, coordinate: str, cloc
 
 def _half_turn(u: Floats) -> tuple[Floats, Floats]:
     """Sine and cosine of pi*u for u in [0, 1]; exact at 0, 1/2 and 1."""
-    from mechkin_cli.kernel.functions import sin
-
     from_end = np.minimum(u, 1.0 - u)
     cosine = sin(pi * (0.5 - from_end))
     return sin(pi * from_end), np.where(u > 0.5, -cosine, cosine)
@@ -131,13 +125,10 @@ def _rise(
 
 
 def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Clock) -> Floats:
-    from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
-
     orders = np.zeros((4, clock.moments.size))
     place = (*path, "file")
     rows = read_rows(fields, place, law.file, TIME, dimension_of(coordinate))
-    joining = joining_of(law)
-    curve = None if rows is None else join(fields, place, rows.x, rows.y, joining)
+    curve = None if rows is None else join(fields, place, *rows, joining_of(law))
     if curve is None:
         return orders
     note_overshoot(fields, place, curve, None)
@@ -153,9 +144,9 @@ def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Cl
                 limit=f"{curve.first:g} to {curve.last:g} {unit}",
             )
             return orders
-    found = curve.evaluate(clock.moments)
+    values = curve.evaluate(clock.moments)
     for order in range(4):
-        orders[order] = over_time(fields.units, coordinate, 0, order).apply(found[order])
+        orders[order] = over_time(fields.units, coordinate, 0, order).apply(values[order])
     return orders
 
 
@@ -167,12 +158,6 @@ _LAWS: dict[str, Callable[..., Floats]] = {
     "cycloidal": _cycloidal,
     "table": _table,
 }
-
-
-# Laws of motion between the rows: pieces of elementary functions, for any moment.
-#
-# Each law is one formula of the moment whose constants change from piece to piece, so that a tape
-# of it holds for all of them; the formulas are those of `building.laws`.
 
 
 class LawPieces(NamedTuple):
@@ -192,19 +177,11 @@ class LawPieces(NamedTuple):
 def law_pieces(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clock) -> LawPieces:
     """The pieces of a law whose fields are known to be right."""
     if isinstance(law, Harmonic | Cycloidal):
-        return _law_pieces_rise(fields, path, law, coordinate, clock)
+        return _pieces_of_rise(fields, path, law, coordinate, clock)
     if isinstance(law, TableLaw):
-        return _law_pieces_table(fields, path, law, coordinate)
-    return _law_pieces_power_series(fields, path, law, coordinate, clock)
-
-
-def _law_pieces_power_series(
-    fields: Fields, path: Path, law: PowerLaw, coordinate: str, clock: Clock
-) -> LawPieces:
-    written = coefficients(fields, path, law, coordinate)
-    terms = [
-        over_time(fields.units, coordinate, k, 0).apply(number) for k, number in enumerate(written)
-    ]
+        return _pieces_of_table(fields, path, law, coordinate)
+    numbers = enumerate(coefficients(fields, path, law, coordinate))
+    terms = [over_time(fields.units, coordinate, k, 0).apply(number) for k, number in numbers]
 
     def value(moment: Any, _: Sequence[Any]) -> Any:
         t = moment - clock.first
@@ -216,7 +193,7 @@ def _law_pieces_power_series(
     return LawPieces([], lambda _: [], value)
 
 
-def _law_pieces_rise(
+def _pieces_of_rise(
     fields: Fields, path: Path, law: Harmonic | Cycloidal, coordinate: str, clock: Clock
 ) -> LawPieces:
     """u = a t + b, where a = 0 before and after the rise."""
@@ -239,10 +216,10 @@ def _law_pieces_rise(
     return LawPieces([start, end], constants, value)
 
 
-def _law_pieces_table(fields: Fields, path: Path, law: TableLaw, coordinate: str) -> LawPieces:
+def _pieces_of_table(fields: Fields, path: Path, law: TableLaw, coordinate: str) -> LawPieces:
     rows = read_rows(fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
     assert rows is not None  # it was read before
-    curve = joined_curve(rows.x, rows.y, joining_of(law))
+    curve = joined_curve(*rows, joining_of(law))
     last = curve.x.size - 1
 
     def constants(moment: float) -> list[float]:

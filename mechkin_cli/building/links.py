@@ -1,11 +1,22 @@
-"""Links of the file to rigid bodies: mass, mass centre, inertia in ground axes of the home
-drawing.
+"""Links and what joins them: bodies, the joints of `joints:` and `chain:`, the way to ground.
+
+Rows (theta, s, alpha, a) of a chain become joints and links of the mechanism. With Z(theta, s) a
+screw about and along z, and X(alpha, a) one about and along x, the frame behind row i is F_i =
+F_(i-1) Z(theta_i, s_i) X(alpha_i, a_i), from F_0, the ground axes, on; a loop closes with F_n =
+F_0. Joint i lies on z of F_(i-1); its point is the foot of the common normal behind it, which is
+the origin of F_(i-1) Z(theta_i, s_i). That is the drawing, where all coordinates are zero: the
+angle from x to x about the axis is theta_i plus the joint's coordinate. Row n is drawn twice,
+behind the rows before it and in front of the ground axes, X(alpha_n, a_n)^-1: where the two differ,
+the drawing is not assembled. Source: J. Denavit, R. S. Hartenberg, A kinematic notation for
+lower-pair mechanisms, 1955.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
+
+import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
@@ -29,9 +40,8 @@ from mechkin_cli.mechanism import (
     subtract,
     unit,
 )
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import ChainRow, MechanismFile, links_joints as written
-from mechkin_cli.tape import Recorded, advice, cos, largest, sin
+from mechkin_cli.tape import Recorded, TraceLost, advice, cos, largest, sin
 from mechkin_cli.units import ANGLE, INERTIA, LENGTH, MASS
 
 NO_INERTIA: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -53,7 +63,8 @@ def build_links(
         if section.inertia is not None:
             tensor = _tensor(fields, (*path, "inertia"), section.inertia)
             if fields.plane:
-                tensor = _about_normal(tensor)
+                # a plane only knows the moment about its normal: that of a ball
+                tensor = (tensor[2], tensor[2], tensor[2], 0.0, 0.0, 0.0)
             if not accepted:
                 _check_physical(fields, (*path, "inertia"), name, tensor)
         links[name] = RigidLink(name, mass, centre, tensor)
@@ -61,19 +72,13 @@ def build_links(
 
 
 def _tensor(fields: Fields, path: Path, section: written.LinkInertia) -> Tensor:
-    def entry(name: str, text: str) -> float:
-        return fields.number((*path, name), text, INERTIA)
-
-    entries = (
-        entry("xx", section.xx),
-        entry("yy", section.yy),
-        entry("zz", section.zz),
-        entry("xy", section.xy),
-        entry("xz", section.xz),
-        entry("yz", section.yz),
+    names = ("xx", "yy", "zz", "xy", "xz", "yz")
+    texts = [getattr(section, name) for name in names]
+    xx, yy, zz, xy, xz, yz = (
+        fields.number((*path, name), text, INERTIA) for name, text in zip(names, texts, strict=True)
     )
     if section.axes is None:
-        return entries
+        return xx, yy, zz, xy, xz, yz
     x = fields.direction((*path, "axes", "x"), section.axes.x)
     y = fields.direction((*path, "axes", "y"), section.axes.y)
     cosine = dot(x, y)
@@ -87,15 +92,11 @@ def _tensor(fields: Fields, path: Path, section: written.LinkInertia) -> Tensor:
             limit=f"{tolerances.AXES_SQUARE:g}",
             numbers=(Number("cosine", abs(cosine), limit=tolerances.AXES_SQUARE),),
         )
-    return _in_ground_axes(entries, (x, y, cross(x, y)))
-
-
-def _in_ground_axes(entries: tuple[float, ...], axes: tuple[Vector, Vector, Vector]) -> Tensor:
-    """Sum of I_ij a_i a_j^T over the axes a_i."""
-    xx, yy, zz, xy, xz, yz = entries
+    axes = (x, y, cross(x, y))
     matrix = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 
     def entry(p: int, q: int) -> float:
+        """Of the sum of I_ij a_i a_j^T over the axes a_i."""
         total = 0.0
         for i in range(3):
             for j in range(3):
@@ -105,15 +106,9 @@ def _in_ground_axes(entries: tuple[float, ...], axes: tuple[Vector, Vector, Vect
     return (entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(0, 2), entry(1, 2))
 
 
-def _about_normal(tensor: Tensor) -> Tensor:
-    """The tensor of a ball with its moment about the normal: a plane asks for no other."""
-    normal = tensor[2]
-    return (normal, normal, normal, 0.0, 0.0, 0.0)
-
-
 def _is_surely_physical(tensor: tuple[float, ...]) -> bool:
     """Whether the second moments of mass tr(I)/2 - I are those of a body, judged by the pivots of
-    their elimination: as `_check_physical` with half its slack, and no eigenvalues."""
+    their elimination: as `_check_physical` with half its slack, without eigenvalues."""
     xx, yy, zz, xy, xz, yz = tensor
     slack = 0.5 * tolerances.UNPHYSICAL_INERTIA * largest(abs(xx), abs(yy), abs(zz))
     a, b, c = (
@@ -132,12 +127,8 @@ def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, 
     recorded = [entry for entry in tensor if isinstance(entry, Recorded)]
     if recorded:
         if not all(entry.is_settled for entry in recorded) and not _is_surely_physical(tensor):
-            from mechkin_cli.tape import TraceLost
-
             raise TraceLost(f"the inertia of {name} belongs to no real body")
         return
-    import numpy as np
-
     xx, yy, zz, xy, xz, yz = tensor
     moments = np.linalg.eigvalsh(np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
     slack = tolerances.UNPHYSICAL_INERTIA * float(np.abs(moments).max())
@@ -159,45 +150,28 @@ def _check_physical(fields: Fields, path: Path, name: str, tensor: tuple[float, 
     )
 
 
-# Links and what joins them: the joints of `joints:` and `chain:`, and that they reach ground.
-
-
 def build_linkage(
     fields: Fields, file: MechanismFile
 ) -> tuple[dict[str, RigidLink], dict[str, Joint]]:
-    """Links and joints by name; a link that only `chain:` names has no mass."""
+    """Links and joints by name; a link that only `chain:` names has no mass. Every link must be
+    joined to ground."""
     links = build_links(fields, file.links, "unphysical-inertia" in file.accept)
-    pairs = _chain_pairs(file)
+    # each row's joint lies behind the link before
+    chain = list(pairwise([GROUND_NAME, *(row.link for row in file.chain)]))
     links |= {
-        name: RigidLink(name) for _, name in pairs if name != GROUND_NAME and name not in links
+        name: RigidLink(name) for _, name in chain if name != GROUND_NAME and name not in links
     }
-    return links, _joints(fields, file, links, pairs)
-
-
-def _joints(
-    fields: Fields,
-    file: MechanismFile,
-    links: Mapping[str, RigidLink],
-    chain_pairs: Sequence[tuple[str, str]],
-) -> dict[str, Joint]:
-    """The joints of `joints:` and of `chain:`; every link must be joined to ground by them."""
     joints = build_joints(fields, file.joints, links)
-    if chain_pairs:
-        joints |= build_chain(fields, file.chain, chain_pairs)
+    if chain:
+        joints |= build_chain(fields, file.chain, chain)
     pairs = [(joint.links[0], joint.links[1]) for joint in file.joints.values()]
-    _check_connected(fields, links, [*pairs, *chain_pairs])
-    return joints
-
-
-def _chain_pairs(file: MechanismFile) -> list[tuple[str, str]]:
-    """The two links of every joint of the chain: each row's joint lies behind the link before."""
-    return list(pairwise([GROUND_NAME, *(row.link for row in file.chain)]))
+    _check_connected(fields, links, [*pairs, *chain])
+    return links, joints
 
 
 def _check_connected(
     fields: Fields, links: Mapping[str, object], pairs: Sequence[tuple[str, str]]
 ) -> None:
-    """Every link must be joined, by way of others, to ground."""
     if any(name not in links and name != GROUND_NAME for pair in pairs for name in pair):
         return  # a misspelt link, reported at its joint
     joined: dict[str, list[str]] = {}
@@ -219,43 +193,25 @@ def _check_connected(
             )
 
 
-# Rows (theta, s, alpha, a) of a chain to joints and links of the mechanism.
-#
-# With Z(theta, s) a screw about and along z, and X(alpha, a) one about and along x, the frame
-# behind row i is F_i = F_(i-1) Z(theta_i, s_i) X(alpha_i, a_i), from F_0, the ground axes, on; a
-# loop closes with F_n = F_0. Joint i lies on z of F_(i-1); its point is the foot of the common
-# normal behind it, which is the origin of F_(i-1) Z(theta_i, s_i). That is the drawing, where all
-# coordinates are zero: the angle from x to x about the axis is theta_i plus the joint's coordinate.
-# Row n is drawn twice, behind the rows before it and in front of the ground axes, X(alpha_n,
-# a_n)^-1: where the two differ, the drawing is not assembled. Source: J. Denavit, R. S. Hartenberg,
-# A kinematic notation for lower-pair mechanisms, 1955.
-
-
-class _Row(NamedTuple):
-    """Angles in rad, distances in m."""
-
-    theta: float
-    s: float
-    alpha: float
-    a: float
-
-
 def build_chain(
     fields: Fields, rows: Sequence[ChainRow], pairs: Sequence[tuple[str, str]]
 ) -> dict[str, Joint]:
-    """The joints of a chain, `pairs` their two links; what is wrong is noted in `fields`."""
+    """The joints of a chain between the links of `pairs`; errors are noted in `fields`."""
     if not _closes_at_ground(fields, rows):
         fields.refused |= {row.joint for row in rows} | {link for _, link in pairs}
         return {}
     joints = {}
     here = GROUND
     for i, (row, (first, second)) in enumerate(zip(rows, pairs, strict=True)):
-        numbers = _numbers(fields, i, row)
-        at_joint = _along_z(here, numbers.theta, numbers.s)
-        here = _along_x(at_joint, numbers.alpha, numbers.a)
+        theta = fields.number(("chain", i, "theta"), row.theta, ANGLE)
+        s = fields.number(("chain", i, "s"), row.s, LENGTH)
+        alpha = fields.number(("chain", i, "alpha"), row.alpha, ANGLE)
+        a = fields.number(("chain", i, "a"), row.a, LENGTH)
+        at_joint = _along_z(here, theta, s)
+        here = _along_x(at_joint, alpha, a)
         behind = at_joint
         if second == GROUND_NAME:
-            behind = _along_x(GROUND, -numbers.alpha, -numbers.a)
+            behind = _along_x(GROUND, -alpha, -a)
         parts = (Part(row.type, at_joint, behind),)
         lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.lead is not None else 0.0
         joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)
@@ -284,15 +240,6 @@ def _closes_at_ground(fields: Fields, rows: Sequence[ChainRow]) -> bool:
         text = "a chain of one row joins ground to itself"
         fields.error("short-chain", ("chain", 0), text, "a loop has two rows or more")
     return fields.error_count == errors
-
-
-def _numbers(fields: Fields, i: int, row: ChainRow) -> _Row:
-    return _Row(
-        fields.number(("chain", i, "theta"), row.theta, ANGLE),
-        fields.number(("chain", i, "s"), row.s, LENGTH),
-        fields.number(("chain", i, "alpha"), row.alpha, ANGLE),
-        fields.number(("chain", i, "a"), row.a, LENGTH),
-    )
 
 
 def _along_z(frame: Frame, angle: float, distance: float) -> Frame:

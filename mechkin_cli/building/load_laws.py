@@ -1,7 +1,11 @@
 """Values of loads that vary: expressions of quantities known without forces, and tables.
 
-An expression is checked once on a stand-in of one row; its quantities are positions and rates, so
+An expression is checked once on a sample of one row; its quantities are positions and rates, so
 that it can be evaluated before any force is.
+
+A table is a CSV file of two columns, which a smooth curve joins: a header line and then one row
+`x,y` per line, x strictly increasing; numbers are bare and in the units of the mechanism file.
+Errors name the line and column of the CSV file.
 """
 
 from __future__ import annotations
@@ -10,13 +14,7 @@ from collections.abc import Collection, Mapping, Set
 
 import numpy as np
 
-from mechkin_cli.building.fields import (
-    AlreadyRefused,
-    Fields,
-    Path,
-    Path as KeyPath,
-    is_tiny_length,
-)
+from mechkin_cli.building.fields import AlreadyRefused, Fields, Path, is_tiny_length
 from mechkin_cli.building.source import BadTable, table_path, table_text
 from mechkin_cli.diagnostics import Diagnostic, Place
 from mechkin_cli.expressions import (
@@ -32,7 +30,7 @@ from mechkin_cli.expressions import (
     scalar,
 )
 from mechkin_cli.mechanism import Curve, Joining, LoadLaw, Varying, Wanted, joined_curve
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.schema import JoinedTable, TableValue
 from mechkin_cli.tape import is_finite, is_traced, plain
 from mechkin_cli.tolerances import LARGEST_NUMBER, OVERSHOOT, SMALLEST_SIZE
@@ -51,20 +49,16 @@ OWN_RUNS = "give the motion time: {from: ..., to: ..., step: ...}, or let the lo
 
 
 class LoadLaws:
-    """Collects the laws of varying loads; what is wrong with one is noted in `fields`.
+    """Collects the laws of varying loads; errors are noted in `fields`.
 
     Args:
-        fields: knows units and parameters.
+        fields: of the file, with units and parameters.
         runs: the quantities of each run by name; only some runs have a time.
-        reader: what the laws are of, for messages.
+        reader: the owner of the laws, for messages.
     """
 
     def __init__(
-        self,
-        fields: Fields,
-        runs: Mapping[str, Mapping[str, Wanted]],
-        *,
-        reader: str = "a load",
+        self, fields: Fields, runs: Mapping[str, Mapping[str, Wanted]], *, reader: str = "a load"
     ) -> None:
         self.fields = fields
         self.runs = runs
@@ -73,10 +67,10 @@ class LoadLaws:
         self.acting(runs.keys())
 
     def acting(self, runs: Collection[str]) -> None:
-        """The runs in which the next laws hold."""
-        found = [self.runs[name] for name in runs if name in self.runs]
-        found = found or list(self.runs.values())
-        self.quantities = next((q for q in found if "time" not in q), found[0])
+        """Sets the runs in which the next laws hold."""
+        known = [self.runs[name] for name in runs if name in self.runs]
+        known = known or list(self.runs.values())
+        self.quantities = next((q for q in known if "time" not in q), known[0])
         timed = [name for name, q in self.runs.items() if "time" in q]
         alone = f"{OWN_RUNS}responses alone: runs: [{', '.join(timed)}]" if timed else NO_TIME[1]
         self.time_hint = alone
@@ -94,22 +88,22 @@ class LoadLaws:
         return Varying(len(self.laws) - 1, any(_is_moving(q) for q in reads))
 
     def watched(self, path: Path, text: str) -> tuple[LoadLaw, Dimension] | None:
-        """The law of an expression of any dimension, which is no load; None where an error was
+        """The law of an expression of any dimension, which is not a load; None where an error was
         noted."""
         try:
             expression = self.fields.definitions.parse(text)
             if expression.names <= self.fields.parameters.keys():
                 hint = "write an expression of coordinates, rates, positions, velocities or time"
                 raise ExpressionError("this value never changes", 0, hint)
-            found = expression.in_doubles.evaluate(self._sample, self.fields.units)
-            if isinstance(found.value, Vector):
+            quantity = expression.in_doubles.evaluate(self._sample, self.fields.units)
+            if isinstance(quantity.value, Vector):
                 hint = "write one component: .x, .y or .z"
                 raise ExpressionError(f"{self.reader} takes one number, this is a vector", 0, hint)
         except ExpressionError as error:
             self.fields.expression_error(path, error)
             return None
         names = tuple(self._read(expression.names))
-        return LoadLaw(names, self.fields.document.place(path), expression), found.dimension
+        return LoadLaw(names, self.fields.document.place(path), expression), quantity.dimension
 
     def by_table(self, path: Path, value: TableValue, over: str, dimension: Dimension) -> Varying:
         """The value of a dimension in a table, which runs over the quantity `over` unless it names
@@ -117,10 +111,8 @@ class LoadLaws:
         path, wanted = (*path, "table"), self._runs_over(path, value, over)
         if wanted is None:
             return Varying(0)
-
-        curve = read_curve(
-            self.fields, path, value.table, wanted.dimension, dimension, joining_of(value)
-        )
+        dimensions = wanted.dimension, dimension
+        curve = read_curve(self.fields, path, value.table, *dimensions, joining_of(value))
         if curve is not None:
             place = self.fields.document.place(path)
             self.laws.append(LoadLaw((wanted.name,), place, curve=curve))
@@ -131,15 +123,15 @@ class LoadLaws:
         if value.over is not None:
             try:
                 over = parse(value.over)
-                found = _one_name(over, over.evaluate(self._sample, self.fields.units))
+                name = _one_name(over, over.evaluate(self._sample, self.fields.units))
             except ExpressionError as error:
                 self.fields.expression_error((*path, "over"), error)
                 return None
-            if found not in self.quantities:
+            if name not in self.quantities:
                 hint = "name a coordinate, a rate or time"
-                self.fields.error("load-table", (*path, "over"), f"{found} is a parameter", hint)
+                self.fields.error("load-table", (*path, "over"), f"{name} is a parameter", hint)
                 return None
-            return self.quantities[found]
+            return self.quantities[name]
         if self.fields.is_refused(usual):
             return None
         wanted = self.quantities.get(usual)
@@ -149,18 +141,15 @@ class LoadLaws:
         return wanted
 
     def _read(self, names: Set[str]) -> list[str]:
-        """The quantities behind the names of an expression, parameters left out."""
-        found = []
-        for name in sorted(names - self.fields.parameters.keys()):
-            whole = name if name in self.quantities else name.rpartition(".")[0]
-            found.append(whole)
-        return found
+        """The quantities behind the names of an expression, without parameters."""
+        read = sorted(names - self.fields.parameters.keys())
+        return [name if name in self.quantities else name.rpartition(".")[0] for name in read]
 
     def _sample(self, name: str) -> Quantity:
         """One row of a quantity, of its dimension."""
         if name in self.fields.parameters:
             parameter = self.fields.parameters[name]
-            # a recorded number stands for itself only where the law is evaluated
+            # a recorded number only has its value where the law is evaluated
             return replace(parameter, value=np.ones(1)) if is_traced(parameter.value) else parameter
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
@@ -177,8 +166,7 @@ class LoadLaws:
             accelerated = wanted.order >= 2 or wanted.kind == "alpha"
             why = "it is an acceleration" if accelerated else "it follows from the loads"
             raise ExpressionError(f"{self.reader} cannot read {name}: {why}", 0, allowed)
-        one = np.ones(1)
-        return Quantity(wanted.value([one] * 3), wanted.dimension)
+        return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 
 def is_known(wanted: Wanted) -> bool:
@@ -190,8 +178,8 @@ def _is_moving(wanted: Wanted) -> bool:
     return wanted.order == 1 or wanted.kind == "omega"
 
 
-def _one_name(expression: Expression, found: Quantity) -> str:
-    """The name of the one number that an expression is.
+def _one_name(expression: Expression, quantity: Quantity) -> str:
+    """The name of the one number that an expression consists of.
 
     Raises:
         ExpressionError: it is more than a name, or a vector.
@@ -200,34 +188,19 @@ def _one_name(expression: Expression, found: Quantity) -> str:
     if expression.names != {name}:
         hint = "name one quantity, such as O1.theta, O1.theta_dot or time"
         raise ExpressionError("a table runs over one quantity, this is an expression", 0, hint)
-    if isinstance(found.value, Vector):
+    if isinstance(quantity.value, Vector):
         hint = "name a coordinate, a rate or time"
         raise ExpressionError(f"a table runs over one number, {name} is a vector", 0, hint)
     return name
 
 
-# Tables of two columns in CSV files to smooth curves.
-#
-# A file has a header line and then one row `x,y` per line, x strictly increasing; numbers are bare
-# and in the units of the mechanism file. Errors name the line and column of the CSV file.
-
 CODE = "csv-table"
-
-
 SMOOTH = Joining()
-"""As points are joined where nothing else is asked for."""
-
-
-class CurveTable(NamedTuple):
-    """The two columns of a table in the units of the mechanism file."""
-
-    x: list[float]
-    y: list[float]
 
 
 def read_curve(
     fields: Fields,
-    path: KeyPath,
+    path: Path,
     file_text: str,
     x_dimension: Dimension,
     y_dimension: Dimension,
@@ -236,8 +209,8 @@ def read_curve(
     """The curve through a table, in SI; None where an error was noted in `fields`.
 
     Args:
-        fields: knows the units and the mechanism file, from whose folder `file_text` leads.
-        path: where the mechanism file names the table.
+        fields: of the mechanism file, from whose folder `file_text` leads.
+        path: of the table's name in the mechanism file.
         file_text: the path of the CSV file as written.
         x_dimension: dimension of the first column, strictly increasing.
         y_dimension: dimension of the second column.
@@ -247,20 +220,20 @@ def read_curve(
     if rows is None:
         return None
     to_si = fields.units.to_si
-    x = [plain(to_si(value, x_dimension)) for value in rows.x]
-    curve = join(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows.y], joining)
+    x = [plain(to_si(value, x_dimension)) for value in rows[0]]
+    curve = join(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows[1]], joining)
     if curve is not None:
         note_overshoot(fields, path, curve, (x_dimension, y_dimension))
     return curve
 
 
 def joining_of(table: JoinedTable) -> Joining:
-    """How the points of a table of the file are joined."""
+    """The way in which the points of a table of the file are joined."""
     return Joining(table.interpolation, table.ends or "not-a-knot")
 
 
 def join(
-    fields: Fields, path: KeyPath, x: list[float], y: list[float], joining: Joining
+    fields: Fields, path: Path, x: list[float], y: list[float], joining: Joining
 ) -> Curve | None:
     """The curve through points; None where it is too steep for numbers, which is noted."""
     try:
@@ -276,12 +249,12 @@ def join(
 
 
 def note_overshoot(
-    fields: Fields, path: KeyPath, curve: Curve, dimensions: tuple[Dimension, Dimension] | None
+    fields: Fields, path: Path, curve: Curve, dimensions: tuple[Dimension, Dimension] | None
 ) -> None:
-    """A note where a curve leaves the range of its points by more than `OVERSHOOT`, with the place
+    """Notes where a curve leaves the range of its points by more than `OVERSHOOT`, with the place
     at which it goes farthest; `dimensions` of a curve in SI, None of one in the file's units."""
     if is_traced(curve.x) or is_traced(curve.coefficients):
-        return  # the note was given when the file was read
+        return  # noted when the file was read
     least, most = float(curve.coefficients[0].min()), float(curve.coefficients[0].max())
     places = curve.turning_places()
     values = curve.evaluate(places)[0]
@@ -291,43 +264,33 @@ def note_overshoot(
     farthest = int(beyond.argmax())
     x, y, limit = places[farthest], values[farthest], most if values[farthest] > most else least
     if dimensions is not None:
-        from_si = fields.units.from_si
         x, y, limit = (
-            float(from_si(one, of))
-            for one, of in ((x, dimensions[0]), (y, dimensions[1]), (limit, dimensions[1]))
+            float(fields.units.from_si(value, dimension))
+            for value, dimension in zip((x, y, limit), (*dimensions, dimensions[1]), strict=True)
         )
     word = "above" if values[farthest] > most else "below"
-    fields.note(
-        Diagnostic(
-            "table-overshoot",
-            "note",
-            f"the curve through this table goes to {y:.6g} at {x:.6g}, {word} all its values",
-            fields.document.place(path),
-            limit=f"{limit:.6g}",
-            hint="write interpolation: monotone to keep it within them",
-        )
-    )
+    text = f"the curve through this table goes to {y:.6g} at {x:.6g}, {word} all its values"
+    hint = "write interpolation: monotone to keep it within them"
+    place = fields.document.place(path)
+    fields.note(Diagnostic("table-overshoot", "note", text, place, limit=f"{limit:.6g}", hint=hint))
 
 
 def read_rows(
-    fields: Fields, path: KeyPath, file_text: str, x_dimension: Dimension, y_dimension: Dimension
-) -> CurveTable | None:
-    """The checked rows of a table in the file's units; arguments and errors as `read_curve`."""
+    fields: Fields, path: Path, file_text: str, x_dimension: Dimension, y_dimension: Dimension
+) -> tuple[list[float], list[float]] | None:
+    """The checked columns x and y of a table in the file's units; arguments and errors as
+    `read_curve`."""
     document = fields.document
     file = table_path(document, file_text)
     if document.folder is None and file_text not in document.tables:
-        fields.error(
-            CODE,
-            path,
-            f"{file_text} is sought beside the mechanism file, but this text comes from no file",
-            "save the mechanism in a file and load that",
-        )
+        text = f"{file_text} is sought beside the mechanism file, but this text comes from no file"
+        fields.error(CODE, path, text, "save the mechanism in a file and load that")
         return None
     try:
         rows = _rows(table_text(document, file_text))
         for i, dimension in enumerate((x_dimension, y_dimension)):
             _check_size(fields, rows, i, dimension)
-        return CurveTable([row[1] for row in rows], [row[2] for row in rows])
+        return [row[1] for row in rows], [row[2] for row in rows]
     except BadTable as bad:
         if bad.line == 0:
             fields.error(CODE, path, f"{file} {bad.message}", bad.hint)
@@ -338,7 +301,7 @@ def read_rows(
 
 
 def _rows(text: str) -> list[tuple[int, float, float]]:
-    """(line, x, y) of every row; blank lines are passed over."""
+    """(line, x, y) of every row; blank lines are skipped."""
     lines = text.replace("\r\n", "\n").split("\n")
     if all(literal(cell) is not None for cell in lines[0].split(",")):
         hint = "the first line is a header, for example time,value"
@@ -353,8 +316,8 @@ def _rows(text: str) -> list[tuple[int, float, float]]:
             raise BadTable(line, 1, text, "order the rows by the first column, each value once")
         rows.append((line, x, y))
     if len(rows) < 2:
-        found = "one row" if rows else "no row"
-        raise BadTable(len(lines), 1, f"this table has {found} behind its header", "give two")
+        text = f"this table has {'one row' if rows else 'no row'} behind its header"
+        raise BadTable(len(lines), 1, text, "give two")
     return rows
 
 
@@ -382,7 +345,8 @@ def _check_size(
     for row in rows:
         if abs(row[i + 1]) > largest:
             text = f"{row[i + 1]:.4g} is too large to compute with (limit {largest:.4g})"
-            raise BadTable(row[0], 1, text, "check its exponent and unit")
-        if is_tiny_length(fields.units.to_si(row[i + 1], dimension), dimension):
+        elif is_tiny_length(fields.units.to_si(row[i + 1], dimension), dimension):
             text = f"{row[i + 1]:.4g} is a length below {SMALLEST_SIZE:g} m"
-            raise BadTable(row[0], 1, text, "check its exponent and unit")
+        else:
+            continue
+        raise BadTable(row[0], 1, text, "check its exponent and unit")

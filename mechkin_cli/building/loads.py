@@ -1,4 +1,8 @@
-"""Loads of the file to loads of the mechanism."""
+"""Loads of the file to loads of the mechanism; `actuators:` - the coordinates at which efforts act.
+
+A file in mm whose gravity is 9.81 computes with a thousandth of it, and nothing else in it looks
+wrong: so bare numbers of gravity are checked against usual units.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,15 @@ from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Literal
 
-from mechkin_cli.building.fields import CODE, Fields, Path, is_coordinate_at, place_at, without
+from mechkin_cli.building.fields import (
+    CODE,
+    Fields,
+    Path,
+    is_coordinate,
+    place_at,
+    refuse_efforts,
+    without,
+)
 from mechkin_cli.building.tables import unknown_run
 from mechkin_cli.diagnostics import Diagnostic, Number, nearest_hint
 from mechkin_cli.expressions import ExpressionError, literal, number_of
@@ -72,11 +84,6 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import LoadLaw
 
 
-# Gravity of the file: its vector in SI, and whether bare numbers are in another unit than meant.
-#
-# A file in mm whose gravity is 9.81 computes with a thousandth of what was meant, and nothing else
-# in it looks wrong.
-
 STANDARD = 9.80665
 """m/s^2, by the third General Conference on Weights and Measures."""
 
@@ -94,9 +101,9 @@ def gravity_of(fields: Fields, path: Path, section: Gravity) -> Vector:
         if section.direction is None:
             return scale(standard, DOWN)
         return scale(standard, fields.direction((*path, "direction"), section.direction))
-    found = fields.vector((*path, "g"), section.g, ACCELERATION)
+    vector = fields.vector((*path, "g"), section.g, ACCELERATION)
     _check_unit(fields, (*path, "g"), section.g)
-    return found
+    return vector
 
 
 def _check_unit(fields: Fields, path: Path, texts: tuple[str, ...]) -> None:
@@ -128,7 +135,7 @@ def _like_gravity(in_si: float) -> bool:
 
 
 class RunLoads(NamedTuple):
-    """What acts in one run: loads, gravity, the laws of the loads that vary, friction."""
+    """The loads of one run: loads, gravity, the laws of the loads that vary, friction."""
 
     loads: tuple[Load, ...]
     gravity: Vector
@@ -141,10 +148,10 @@ class RunLoads(NamedTuple):
 
 
 class LoadBuilder:
-    """Turns load sections into loads; what is wrong is noted in `fields`.
+    """Turns load sections into loads; errors are noted in `fields`.
 
     Args:
-        fields: knows units and parameters.
+        fields: of the file, with units and parameters.
         links, joints, points: of the mechanism, by name.
         runs: quantities that loads may read in each run, by the run's name.
     """
@@ -157,11 +164,8 @@ class LoadBuilder:
         points: Mapping[str, Attached],
         runs: Mapping[str, Mapping[str, Wanted]],
     ) -> None:
-        self.fields = fields
-        self.links = links
-        self.joints = joints
-        self.points = points
-        self.runs = runs
+        self.fields, self.runs = fields, runs
+        self.links, self.joints, self.points = links, joints, points
         self._acting: Collection[str] = runs.keys()
         self._of_runs: list[tuple[Collection[str], Load | Vector | Rubbing]] = []
 
@@ -188,7 +192,7 @@ class LoadBuilder:
         return amount
 
     def of_run(self, run: str) -> RunLoads:
-        """What acts in a run; its laws are numbered in the order of its loads."""
+        """The loads of a run; its laws are numbered in the order of its loads."""
         loads: list[Load] = []
         frictions: list[Rubbing] = []
         gravity, numbers = ZERO, dict[int, int]()
@@ -204,8 +208,7 @@ class LoadBuilder:
             for amount in varying(item):
                 numbers.setdefault(amount.number, len(numbers))
             loads.append(renumbered(item, numbers))
-        known = [] if self.fields.error_count else numbers
-        laws = tuple(self._laws.laws[number] for number in known)
+        laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
         return RunLoads(tuple(loads), gravity, laws, tuple(frictions))
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
@@ -259,12 +262,8 @@ class LoadBuilder:
     def _add_between(self, path: Path, section: SpringBetweenPoints | DamperBetweenPoints) -> None:
         first, second = section.between
         if first == second:
-            self.fields.error(
-                "same-point",
-                (*path, "between", 1),
-                f"a {section.type} from {first} to itself has no direction",
-                "name two points",
-            )
+            text = f"a {section.type} from {first} to itself has no direction"
+            self.fields.error("same-point", (*path, "between", 1), text, "name two points")
             return
         ends = []
         for i, name in enumerate(section.between):
@@ -342,7 +341,6 @@ class LoadBuilder:
             self._put(rubbing)
 
     def _joint(self, path: Path, name: str) -> Joint | None:
-        """The joint of a name; None, and an error, where there is none."""
         if self.fields.is_refused(name):
             return None
         if name not in self.joints:
@@ -360,16 +358,11 @@ class LoadBuilder:
             self.fields.error(CODE, place, *without(joint, coordinate))
             return False
         if not joint.carries:
-            text = f"{name} is no joint of the machine and carries no load"
+            text = f"{name} is not a joint of the machine and carries no load"
             hint = "put the load on a link, or between points"
             self.fields.error("load-on-pose", (*path, "joint"), text, hint)
             return False
         return True
-
-
-# `actuators:` - the coordinates at which efforts act, when not at the inputs.
-
-EFFORT = "effort"
 
 
 def build_drives(
@@ -379,7 +372,7 @@ def build_drives(
     joints: Mapping[str, Joint],
     motion: MotionInputs,
 ) -> Drives:
-    """Where efforts act; what is wrong is noted in `fields`."""
+    """The coordinates at which efforts act; errors are noted in `fields`."""
     errors = fields.error_count
     actuators = tuple(
         (joint, coordinate)
@@ -391,35 +384,29 @@ def build_drives(
     if fields.error_count == errors and names:
         _check_count(fields, drives, section)
     if fields.error_count > errors:
-        # nothing is said of the efforts that follow from what is wrong here
-        for joint in joints.values():
-            fields.refused.update(f"{n}.{EFFORT}" for n in (joint.name, *joint.coordinates))
+        # efforts get no messages of their own
+        refuse_efforts(fields, joints)
         return Drives(tuple(motion.driven), (), motion.constraints)
     return drives
 
 
 def _is_actuator(
-    fields: Fields,
-    path: Path,
-    name: str,
-    joints: Mapping[str, Joint],
-    before: tuple[str, ...],
+    fields: Fields, path: Path, name: str, joints: Mapping[str, Joint], before: tuple[str, ...]
 ) -> bool:
-    if not is_coordinate_at(fields, path, name, joints):
+    if not is_coordinate(fields, path, name, joints, at_key=False):
         return False
     if name in before:
         fields.error("actuator-twice", path, f"{name} is an actuator already", "name it once")
         return False
     joint = joints[name.rpartition(".")[0]]
     if not joint.carries:
-        text = f"{joint.name} is no joint of the machine and carries no effort"
+        text = f"{joint.name} is not a joint of the machine and carries no effort"
         fields.error(CODE, path, text, "name coordinates of joints between its links")
         return False
     return True
 
 
 def _check_count(fields: Fields, drives: Drives, section: MotionSection | None) -> None:
-    """At least as many actuators as freedoms; more share the load."""
     count, freedoms = len(drives.actuators), drives.freedoms
     names = ", ".join(".".join(pair) for pair in drives.inputs)
     if not freedoms:
@@ -442,22 +429,20 @@ def _check_count(fields: Fields, drives: Drives, section: MotionSection | None) 
         place = fields.document.place(("actuators",))
         text = (
             f"there {'is one actuator' if more == 1 else f'are {more} actuators'} more than "
-            f"freedoms ({count} for {freedoms}): of the efforts that keep up the motion these are "
-            "the ones of least sum of squares, moments taken by the size of the mechanism"
+            f"freedoms ({count} for {freedoms}): among the efforts that sustain the motion, these "
+            "have the least sum of squares, with moments over the size of the mechanism"
         )
         hint = f"name {freedoms} coordinates for efforts that nothing else could be"
         fields.note(Diagnostic("shared-effort", "note", text, place, hint=hint))
 
 
 def note_own_motors(fields: Fields, section: MotionSection | None, names: tuple[str, ...]) -> None:
-    """Says of inputs that follow others, where the file does not, that each has its own motor."""
+    """Notes that inputs which follow others have their own motors, where the file leaves it
+    open."""
     if section is None or names:
         return
-    own = [
-        name
-        for name, item in section.inputs.items()
-        if isinstance(item, FollowingInput) and item.drive is None
-    ]
+    inputs = section.inputs.items()
+    own = [n for n, item in inputs if isinstance(item, FollowingInput) and item.drive is None]
     if not own:
         return
     place = fields.document.key_place(("motion", "inputs", own[0]))

@@ -1,4 +1,16 @@
-"""The motion section to values, rates, accelerations and jerks of the inputs over the rows."""
+"""`motion:` to values, rates, accelerations and jerks of the inputs over the rows; row limits,
+equal spacing, and the guides of points whose coordinates are inputs.
+
+The equally spaced values of a sweep are the doubles nearest to the decimal numbers: 0, 0.1, 0.2,
+0.3 and not 0.30000000000000004. The numbers written are fractions over one power of ten, so x_i =
+from + i*step is a quotient of two whole numbers that doubles hold exactly, and a single division
+rounds it. Numbers with too many digits for that (results of expressions) are added as doubles.
+
+A point is guided by a slide that no drawing has: it runs along those axes of the ground and carries
+a ball on a plane, in a groove or in a socket, in a plane a pin in a slot or in a hole, whose centre
+is the point: one equation for each coordinate and no unknown more. Its coordinates are those of the
+point; in the drawing they are not zero.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +18,20 @@ import re
 from collections.abc import Mapping
 from decimal import Decimal
 from math import floor, isfinite
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.fields import Fields, Path, Written, dimension_of, is_coordinate
+from mechkin_cli.building.fields import (
+    Clock,
+    Fields,
+    Path,
+    Written,
+    dimension_of,
+    is_coordinate,
+    refuse_efforts,
+)
 from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.diagnostics import Number, nearest_hint
 from mechkin_cli.expressions import Expression
@@ -23,7 +43,6 @@ from mechkin_cli.mechanism import (
     Frame,
     InputConstraint,
     Joint,
-    JointType,
     Moments,
     MotionInputs,
     Part,
@@ -37,7 +56,6 @@ from mechkin_cli.mechanism import (
     seat_letter,
     upright,
 )
-from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.schema import (
     FollowingInput,
     HeldCoordinate,
@@ -55,44 +73,31 @@ from mechkin_cli.tape import of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
 from mechkin_cli.units import TIME, Dimension
 
-if TYPE_CHECKING:
-    pass
-
-
-# How many rows a run may have: what it keeps must fit into memory.
-#
-# A sweep is a single line of the file, so its rows are counted before any of them is made.
-
 _ROW_COLUMNS: Final = 6
 """Columns of rows.csv beside the inputs."""
 
 
-class RowLimit(NamedTuple):
-    """Numbers that each row keeps: the cells of all tables, the columns of rows.csv and the
-    freedoms of all joints."""
-
-    per_row: int
-
-    def is_exceeded(self, fields: Fields, path: Path, rows: float) -> bool:
-        """Whether so many rows are too many; that is noted at `path`, where they are asked for."""
-        numbers = rows * self.per_row
-        if numbers <= MOST_NUMBERS:
-            return False
-        most = MOST_NUMBERS // self.per_row
-        fields.error(
-            "too-many-numbers",
-            path,
-            f"the run has too many numbers, {rows:.12g} rows of {self.per_row}",
-            "take a larger step or fewer columns, or split the sweep into several files",
-            measured=f"{numbers:.12g} numbers",
-            limit=f"{MOST_NUMBERS} numbers, {most} rows",
-            numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
-        )
-        return True
+def has_too_many_rows(fields: Fields, path: Path, rows: float, per_row: int) -> bool:
+    """Whether this number of rows, before any of them is made, is too large for memory; that is
+    noted at `path`, the place of the number. `per_row`: `numbers_per_row`."""
+    numbers = rows * per_row
+    if numbers <= MOST_NUMBERS:
+        return False
+    fields.error(
+        "too-many-numbers",
+        path,
+        f"the run has too many numbers, {rows:.12g} rows of {per_row}",
+        "take a larger step or fewer columns, or split the sweep into several files",
+        measured=f"{numbers:.12g} numbers",
+        limit=f"{MOST_NUMBERS} numbers, {MOST_NUMBERS // per_row} rows",
+        numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
+    )
+    return True
 
 
-def row_limit(file: MechanismFile, joints: Mapping[str, Joint]) -> RowLimit:
-    """What a row of the file's run keeps."""
+def numbers_per_row(file: MechanismFile, joints: Mapping[str, Joint]) -> int:
+    """The numbers of each row of the file's run in memory: the cells of all tables, the columns of
+    rows.csv and the freedoms of all joints."""
     motion = file.motion
     inputs = list(motion.inputs) if motion else []
     cells = sum(len(table.columns) for table in file.tables)
@@ -101,15 +106,8 @@ def row_limit(file: MechanismFile, joints: Mapping[str, Joint]) -> RowLimit:
         timed = motion is not None and motion.time is not None
         cells = len(default_table(names, inputs, timed=timed).columns)
     freedoms = sum(joint.type.freedoms for joint in joints.values())
-    return RowLimit(cells + _ROW_COLUMNS + len(inputs) + freedoms)
+    return cells + _ROW_COLUMNS + len(inputs) + freedoms
 
-
-# Equally spaced values of a sweep, each the double nearest to the decimal number meant.
-#
-# x_i = from + i*step in decimals: 0, 0.1, 0.2, 0.3 and not 0.30000000000000004. The numbers written
-# are fractions over one power of ten, so x_i is a quotient of two whole numbers that doubles hold
-# exactly, and a single division rounds it. Numbers with too many digits for that (results of
-# expressions) are added as doubles.
 
 EXACT = 2**53
 """Whole numbers up to this one are doubles."""
@@ -147,15 +145,10 @@ def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
 
 
 def _exact(start: int, stride: int, count: int) -> Floats | None:
-    """start + i*stride as doubles; None where one of them is no exact double."""
+    """start + i*stride as doubles; None where one of them is not an exact double."""
     if max(abs(start), abs(stride), abs(start + (count - 1) * stride)) > EXACT:
         return None
     return np.asarray(start + np.arange(count, dtype=np.int64) * stride, dtype=np.float64)
-
-
-# Fields `from`, `to`, `step` or `count` to the values or moments of the rows.
-#
-# n = floor(|to - from|/|step| + 1e-9) + 1 rows, x_i = from + i*step.
 
 
 def spaced(
@@ -163,16 +156,17 @@ def spaced(
     path: Path,
     section: SweptInput | TimeSection,
     dimension: Dimension,
-    limit: RowLimit,
+    per_row: int,
 ) -> Floats:
-    """The values in the file's units; what is wrong is noted in `fields`, one value stands in."""
+    """The values or moments of the rows in the file's units: n = floor(|to - from|/|step| + 1e-9) +
+    1 values x_i = from + i*step, or `count` values. Errors are noted in `fields`, with one
+    value."""
     errors = fields.error_count
     first = fields.written((*path, "from"), section.first, dimension)
     last = fields.written((*path, "to"), section.last, dimension)
     if section.count is not None:
-        if fields.error_count > errors or limit.is_exceeded(
-            fields, (*path, "count"), section.count
-        ):
+        at = (*path, "count")
+        if fields.error_count > errors or has_too_many_rows(fields, at, section.count, per_row):
             return np.array([first])
         return by_count(first, last, section.count)
     assert section.step is not None  # the schema wants one of the two
@@ -181,11 +175,12 @@ def spaced(
         return np.array([first])
     if step == 0.0:
         if first != last:
-            text = "the step is zero"
-            fields.error("zero-step", (*path, "step"), text, "give the distance of rows")
+            hint = "give the distance of rows"
+            fields.error("zero-step", (*path, "step"), "the step is zero", hint)
         return np.array([first])
     ratio = abs(last - first) / step + tolerances.LAST_ROW
-    if limit.is_exceeded(fields, (*path, "step"), floor(ratio) + 1 if isfinite(ratio) else ratio):
+    rows = floor(ratio) + 1 if isfinite(ratio) else ratio
+    if has_too_many_rows(fields, (*path, "step"), rows, per_row):
         return np.array([first])
     return by_step(first, step if last >= first else -step, int(ratio) + 1)
 
@@ -195,7 +190,7 @@ _ORDERS = ("value", *_RATES)
 
 
 def build_motion(
-    fields: Fields, section: MotionSection | None, joints: Mapping[str, Joint], limit: RowLimit
+    fields: Fields, section: MotionSection | None, joints: Mapping[str, Joint], per_row: int
 ) -> MotionInputs:
     """Inputs with their values; without inputs the motion has one row, or those of `time`."""
     if section is None:
@@ -203,68 +198,56 @@ def build_motion(
     errors = fields.error_count
     written = Written(section.inputs, ("motion", "inputs"))
     if section.time is not None:
-        written = _timed(fields, written, ("motion", "time"), section.time, limit)
-    motion = build_inputs(fields, written, joints, limit)
+        moments, last = spaced_moments(fields, ("motion", "time"), section.time, per_row)
+        clock = Clock(moments.written, float(moments.written[0]), last)
+        written = written._replace(time=moments, clock=clock)
+    motion = build_inputs(fields, written, joints, per_row)
     if motion is not None and fields.error_count == errors:
         return motion
     fields.refused.add("time")
-    for joint in joints.values():
-        fields.refused.update(f"{name}.effort" for name in (joint.name, *joint.coordinates))
+    refuse_efforts(fields, joints)
     return MotionInputs((), 1)
 
 
 def build_inputs(
-    fields: Fields, written: Written, joints: Mapping[str, Joint], limit: RowLimit
+    fields: Fields, written: Written, joints: Mapping[str, Joint], per_row: int
 ) -> MotionInputs | None:
     """Driven coordinates over the rows and between them; None where an error was noted."""
     errors = fields.error_count
     time = written.time
     with np.errstate(all="ignore"):
-        orders, following = _orders(fields, written, joints, limit)
+        orders, following = _orders(fields, written, joints, per_row)
     rows = time.written.size if time else _row_count(fields, orders)
     if fields.error_count == errors:
-        limit.is_exceeded(fields, written.path, rows)
+        has_too_many_rows(fields, written.path, rows, per_row)
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.course import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        followed = Following(fields, orders, rows, time, written.path)
-        followed.add_all(following, coordinates)
-        expressions = followed.expressions
+        followers = Following(fields, orders, rows, time, written.path)
+        followers.add_all(following, coordinates)
+        expressions = followers.expressions
         if fields.error_count == errors:
-            constraint_rates = followed.constraint_rates()
+            constraint_rates = followers.constraint_rates()
     if fields.error_count > errors:
         return None
-    inputs = [
-        _driven(fields, (*written.path, name), orders[name], rows)._replace(
-            follows=name in following
-        )
+    inputs = tuple(
+        _driven(fields, (*written.path, name), orders[name], rows, name in following)
         for name in written.inputs
         if name in orders
-    ]
+    )
     if fields.error_count > errors:
         return None
-    moving = _constrained(MotionInputs(tuple(inputs), rows, time), constraint_rates)
-    return _with_course(fields, written, moving, expressions)
-
-
-def _constrained(motion: MotionInputs, rates: Mapping[tuple[str, str], Floats]) -> MotionInputs:
-    """A motion with the inputs that motors of others move."""
-    if not rates:
-        return motion
-    number = {item.name: k for k, item in enumerate(motion.inputs)}
-    constraints = tuple(InputConstraint(*(number[name] for name in pair)) for pair in rates)
-    return motion._replace(constraints=constraints, constraint_rates=np.array(list(rates.values())))
-
-
-def _with_course(
-    fields: Fields, written: Written, motion: MotionInputs, expressions: dict[str, Expression]
-) -> MotionInputs:
-    """A motion with its inputs between the rows, where they do not simply run from one to the
-    next."""
-    inputs, time = motion.inputs, motion.time
+    motion = MotionInputs(inputs, rows, time)
+    if constraint_rates:
+        number = {item.name: k for k, item in enumerate(inputs)}
+        pairs = [(number[name], number[leader]) for name, leader in constraint_rates]
+        motion = motion._replace(
+            constraints=tuple(InputConstraint(*pair) for pair in pairs),
+            constraint_rates=np.array(list(constraint_rates.values())),
+        )
     if not inputs or (time is None and not expressions):
         return motion
     from mechkin_cli.building.course import build_course, build_paths
@@ -274,24 +257,13 @@ def _with_course(
     return motion._replace(course=course, paths=paths)
 
 
-def _timed(
-    fields: Fields, written: Written, path: Path, section: TimeSection, limit: RowLimit
-) -> Written:
-    """With the moments of a section at `path`."""
-    from mechkin_cli.building.fields import Clock
-
-    moments, last = spaced_moments(fields, path, section, limit)
-    clock = Clock(moments.written, float(moments.written[0]), last)
-    return written._replace(time=moments, clock=clock)
-
-
 def spaced_moments(
-    fields: Fields, path: Path, section: TimeSection, limit: RowLimit
+    fields: Fields, path: Path, section: TimeSection, per_row: int
 ) -> tuple[Moments, float]:
-    """The moments of a section, which run forwards, and where it ends in the file's unit; one
-    moment stands in for those with an error."""
+    """The moments of a section, which run forwards, and its end in the file's unit; errors are
+    noted, with one moment."""
     errors = fields.error_count
-    written = spaced(fields, path, section, TIME, limit)
+    written = spaced(fields, path, section, TIME, per_row)
     last = float(written[0])
     if fields.error_count == errors:
         last = fields.written((*path, "to"), section.last, TIME)
@@ -305,11 +277,11 @@ def spaced_moments(
 
 
 def _orders(
-    fields: Fields, written: Written, joints: Mapping[str, Joint], limit: RowLimit
+    fields: Fields, written: Written, joints: Mapping[str, Joint], per_row: int
 ) -> tuple[dict[str, Floats], dict[str, FollowingInput]]:
     """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
     and the sections of those that follow."""
-    found: dict[str, Floats] = {}
+    orders: dict[str, Floats] = {}
     following: dict[str, FollowingInput] = {}
     for name, item in written.inputs.items():
         path: Path = (*written.path, name)
@@ -320,36 +292,32 @@ def _orders(
             following[name] = item
         elif isinstance(item, HeldCoordinate):
             at = fields.written((*path, "at"), item.at, dimension_of(coordinate))
-            found[name] = with_rates(of_numbers([at]), [0.0, 0.0, 0.0])
+            orders[name] = with_rates(of_numbers([at]), [0.0, 0.0, 0.0])
         elif isinstance(item, (SweptInput, ListedInput, HeldInput)):
-            values = _values(fields, path, item, coordinate, limit)
-            found[name] = _constant_rates(fields, path, item, values, coordinate, written.time)
+            values = _values(fields, path, item, coordinate, per_row)
+            rates = _constant_rates(fields, path, item, coordinate, written.time)
+            orders[name] = with_rates(values, rates)
         else:
             from mechkin_cli.building.laws import law_values
 
-            assert written.clock is not None  # the schema lets no law stand without time
-            found[name] = law_values(fields, path, item, coordinate, written.clock)
-    return found, following
+            assert written.clock is not None  # the schema refuses a law without time
+            orders[name] = law_values(fields, path, item, coordinate, written.clock)
+    return orders, following
 
 
 def _constant_rates(
-    fields: Fields,
-    path: Path,
-    item: WithRates,
-    values: Floats,
-    coordinate: str,
-    time: Moments | None,
-) -> Floats:
-    """Values of a sweep, with the same rates in every row."""
+    fields: Fields, path: Path, item: WithRates, coordinate: str, time: Moments | None
+) -> list[float]:
+    """The rates of all rows of a sweep."""
     rates = []
-    texts = (item.rate, item.acceleration, item.jerk)
-    for order, (key, text) in enumerate(zip(_RATES, texts, strict=True), start=1):
-        rates.append(fields.written((*path, key), text, dimension_of(coordinate, order)))
+    for order, key in enumerate(_RATES, start=1):
+        dimension = dimension_of(coordinate, order)
+        rates.append(fields.written((*path, key), getattr(item, key), dimension))
         if time is not None and rates[-1] != 0.0:
             text = "an input that is held while time runs has no rate"
             hint = "write law: constant-rate, or another law"
             fields.key_error("held-rate", (*path, key), text, hint)
-    return with_rates(values, rates)
+    return rates
 
 
 def _driven_twice(fields: Fields, path: Path, joints: Mapping[str, Joint]) -> bool:
@@ -372,7 +340,7 @@ def _values(
     path: Path,
     item: SweptInput | ListedInput | HeldInput,
     coordinate: str,
-    limit: RowLimit,
+    per_row: int,
 ) -> Floats:
     """Values in the file's units."""
     dimension = dimension_of(coordinate)
@@ -381,25 +349,21 @@ def _values(
     if isinstance(item, ListedInput):
         texts = enumerate(item.values)
         return of_numbers(fields.written((*path, "values", i), t, dimension) for i, t in texts)
-    return spaced(fields, path, item, dimension, limit)
+    return spaced(fields, path, item, dimension, per_row)
 
 
 def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
     """Rows that all inputs share."""
     lengths = {name: orders.shape[1] for name, orders in columns.items() if orders.shape[1] > 1}
     if len(set(lengths.values())) > 1:
-        words = ", ".join(f"{name} {n}" for name, n in lengths.items())
-        fields.error(
-            "row-counts",
-            ("motion", "inputs"),
-            "inputs that run together need equally many rows",
-            "use the same number of values, or hold an input with at:",
-            measured=words,
-        )
+        text = "inputs that run together need equally many rows"
+        hint = "use the same number of values, or hold an input with at:"
+        measured = ", ".join(f"{name} {n}" for name, n in lengths.items())
+        fields.error("row-counts", ("motion", "inputs"), text, hint, measured=measured)
     return max(lengths.values(), default=1)
 
 
-def _driven(fields: Fields, path: Path, orders: Floats, rows: int) -> DrivenInput:
+def _driven(fields: Fields, path: Path, orders: Floats, rows: int, follows: bool) -> DrivenInput:
     """The input of the key at `path`, in SI and as written; numbers too large to compute with are
     noted."""
     name = str(path[-1])
@@ -421,57 +385,36 @@ def _driven(fields: Fields, path: Path, orders: Floats, rows: int) -> DrivenInpu
                 limit=f"{LARGEST_NUMBER:g}",
             )
             break
-    return DrivenInput(joint, coordinate, in_si[0], in_si[1], in_si[2], in_si[3], written)
+    value, rate, acceleration, jerk = in_si
+    return DrivenInput(joint, coordinate, value, rate, acceleration, jerk, written, follows)
 
 
-# `motion.inputs: {p.position.z: ...}` - one, two or three coordinates of a point as inputs.
-#
-# A slide that no drawing has runs along those axes of the ground and carries a ball on a plane, in
-# a groove or in a socket, in a plane a pin in a slot or in a hole, whose centre is the point: one
-# equation for each coordinate and no unknown more. Its coordinates are those of the point; in the
-# drawing they are not zero.
-
-_NAME = re.compile(r"(?P<point>\w+)\.position\.(?P<axis>[xyz])")
-
-
-@dataclass
-class Guides:
-    """Links and joints that guide points, by name."""
-
-    plane: bool = False
-    links: dict[str, RigidLink] = field(default_factory=dict)
-    joints: dict[str, Joint] = field(default_factory=dict)
-
-    def add(self, name: str, at: Attached, axes: str) -> None:
-        """Guides a point along some of the axes x, y and z."""
-        guide = f"{name}.position"
-        self.links[guide] = RigidLink(guide)
-        slide = joint_type(guide_letter(axes))
-        place = upright(at.vector)
-        parts = tuple(_slide_part(axis, at.vector) for axis in axes)
-        self.joints[guide] = Joint(guide, slide.letter, GROUND_NAME, guide, place, place, parts)
-        held = f"{guide} of {at.link}"
-        hold = _held_pin if self.plane else _held_ball
-        self.joints[held] = hold(held, at, guide, axes)
+_POSITION = re.compile(r"(?P<point>\w+)\.position\.(?P<axis>[xyz])")
 
 
 def point_guides(
-    fields: Fields,
-    section: MotionSection | None,
-    points: Mapping[str, Attached],
-) -> Guides:
-    """What guides the points whose coordinates are inputs; what is wrong is noted in `fields`."""
-    guides = Guides(fields.plane)
-    wanted: dict[str, str] = {}
+    fields: Fields, section: MotionSection | None, points: Mapping[str, Attached]
+) -> tuple[dict[str, RigidLink], dict[str, Joint]]:
+    """Links and joints that guide the points whose coordinates are inputs, by name; errors are
+    noted in `fields`."""
+    guided: dict[str, str] = {}
     for name in section.inputs if section is not None else ():
-        found = _NAME.fullmatch(name)
-        if found and fields.plane and _leaves_plane(fields, name, found["axis"]):
+        match = _POSITION.fullmatch(name)
+        if match and fields.plane and _leaves_plane(fields, name, match["axis"]):
             continue
-        if found and _is_moving_point(fields, ("motion", "inputs", name), found["point"], points):
-            wanted[found["point"]] = wanted.get(found["point"], "") + found["axis"]
-    for name, axes in wanted.items():
-        guides.add(name, points[name], "".join(sorted(axes)))
-    return guides
+        if match and _is_moving_point(fields, ("motion", "inputs", name), match["point"], points):
+            guided[match["point"]] = guided.get(match["point"], "") + match["axis"]
+    links, joints = {}, {}
+    for name, letters in guided.items():
+        axes, at, guide = "".join(sorted(letters)), points[name], f"{name}.position"
+        links[guide] = RigidLink(guide)
+        slide, place = joint_type(guide_letter(axes)), upright(at.vector)
+        parts = tuple(_slide_part(axis, at.vector) for axis in axes)
+        joints[guide] = Joint(guide, slide.letter, GROUND_NAME, guide, place, place, parts)
+        held = f"{guide} of {at.link}"
+        hold = _held_pin if fields.plane else _held_ball
+        joints[held] = hold(held, at, guide, axes)
+    return links, joints
 
 
 def _leaves_plane(fields: Fields, name: str, axis: str) -> bool:
@@ -517,20 +460,17 @@ def _slide_part(axis: str, at: Vector) -> Part:
 def _held_ball(name: str, at: Attached, guide: str, axes: str) -> Joint:
     """The ball about the point, of its link, on what the slide carries."""
     kind = joint_type(seat_letter(axes))
-    centre, second = upright(at.vector), _seat(kind, at.vector, axes)
-    meeting = (centre, centre)
+    centre, second = upright(at.vector), _seat(at.vector, axes)
     parts = []
     for step in kind.steps:
         along = step.along
         if along is None:
-            parts.append(Part(step.letter, *meeting))
+            parts.append(Part(step.letter, centre, centre))
             continue
         direction = getattr(second, along.axis)
-        still = frame_about(
-            scale(-1.0, direction) if along.reverse else direction,
-            second.x if along.axis == "z" else second.z,
-            second.o,
-        )
+        direction = scale(-1.0, direction) if along.reverse else direction
+        across = second.x if along.axis == "z" else second.z
+        still = frame_about(direction, across, second.o)
         parts.append(Part(step.letter, still, still))
     return Joint(name, kind.letter, at.link, guide, centre, second, tuple(parts))
 
@@ -545,13 +485,10 @@ def _held_pin(name: str, at: Attached, guide: str, axes: str) -> Joint:
     return Joint(name, kind.letter, at.link, guide, pin, pin, parts_of(kind, halves), plane=True)
 
 
-def _seat(kind: JointType, at: Vector, axes: str) -> Frame:
+def _seat(at: Vector, axes: str) -> Frame:
     """The frame of the ball's seat: z along the one axis that guides it, or along the one that does
     not."""
-    if len(axes) == 1:
-        still = _axis(axes)
-    elif len(axes) == 2:
-        still = _axis(next(axis for axis in "xyz" if axis not in axes))
-    else:
+    if len(axes) == 3:
         return upright(at)
+    still = _axis(axes if len(axes) == 1 else next(axis for axis in "xyz" if axis not in axes))
     return Frame(still.x, still.y, still.z, at)

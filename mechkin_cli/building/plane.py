@@ -1,8 +1,8 @@
 """A file in a plane as one in space: the plane is z = 0, and its normal is the axis of all turns.
 
-Every key keeps its path, so that what is wrong with a value is told where it is written; what the
-plane leaves out stands in as a literal, which has no errors of its own. That no closing joint holds
-what the plane holds already is the joints' own affair (mechanism/pairs.py).
+Every key keeps its path, so that errors are reported where a value is written; the values that a
+plane file omits are literals, which have no errors of their own. That no cut joint repeats the
+constraints of the plane is up to the pairs (mechanism/pairs.py).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from mechkin_cli.schema import (
 )
 
 Texts = tuple[str, ...]
-Given = str | Texts
+Place = str | Texts
 """A vector of the plane, or the name of a point."""
 
 _NORMAL: Texts = ("0", "0", "1")
@@ -70,16 +70,16 @@ def in_space(file: AnyFile) -> MechanismFile:
     )
 
 
-def _flat(given: Given) -> Given:
+def _flat(place: Place) -> Place:
     """A vector of the plane in space; a name stays a name."""
-    return given if isinstance(given, str) else (*given, "0")
+    return place if isinstance(place, str) else (*place, "0")
 
 
-def _each(given: Given | Mapping[str, Given]) -> Given | Mapping[str, Given]:
-    """The same of one vector, or of one per link."""
-    if isinstance(given, Mapping):
-        return {link: _flat(one) for link, one in given.items()}
-    return _flat(given)
+def _each(place: Place | Mapping[str, Place]) -> Place | Mapping[str, Place]:
+    """One vector, or one per link, in space."""
+    if isinstance(place, Mapping):
+        return {link: _flat(one) for link, one in place.items()}
+    return _flat(place)
 
 
 def _link(link: written.PlaneLink) -> Link:
@@ -105,8 +105,7 @@ def _joint(joint: spatial.JointBase) -> spatial.AnyJoint:
         return section_of(spatial.PrismaticJoint, type=joint.type, links=links, **of_guide)
     if isinstance(joint, written.PinInSlotJoint):
         of_slot = {"point": _each(joint.point), "normal": _NORMAL, "slot": _flat(joint.slot)}
-        pin: spatial.AnyJoint = section_of(_PinInSlot, type=joint.type, links=links, **of_slot)  # type: ignore[assignment]
-        return pin
+        return section_of(_PinInSlot, type=joint.type, links=links, **of_slot)  # type: ignore[return-value]
     return section_of(spatial.WeldJoint, type="W", links=links)
 
 
@@ -122,10 +121,8 @@ def _load(load: object) -> AnyLoad:
         of_force = {"link": load.link, "point": _flat(load.point), "force": force}
         return section_of(ForceOnLink, type=load.type, axes=load.axes, runs=load.runs, **of_force)
     if isinstance(load, written.PlaneTorque):
-        torque = ("0", "0", load.torque)
-        return section_of(
-            TorqueOnLink, type=load.type, link=load.link, torque=torque, runs=load.runs
-        )
+        of_torque = {"link": load.link, "torque": ("0", "0", load.torque)}
+        return section_of(TorqueOnLink, type=load.type, runs=load.runs, **of_torque)
     if isinstance(load, written.PlaneFriction):
         common = {field.name: getattr(load, field.name) for field in fields_of(type(load)).values()}
         return section_of(FrictionAtJoint, **common)

@@ -1,8 +1,9 @@
-"""A problem built of recorded numbers: how everything in it depends on some parameters.
+"""A problem built of recorded numbers: how everything in it depends on some parameters, or on the
+exact numbers of the text.
 
-The file is built once more, with the parameters' values as they are but on a recorder; whatever the
-building decides on one of them becomes a guard. What no tape can hold (a number of rows, a table, a
-warning in question) raises `TraceLost`.
+The file is built once more, with the same values, but on a recorder; each decision on one of them
+becomes a guard. A dependence that no tape can hold (a number of rows, a table, an uncertain
+warning) raises `TraceLost`.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from mechkin_cli import idle
 from mechkin_cli.building.assembly import settled
 from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
@@ -57,8 +59,8 @@ class Recording(NamedTuple):
 
 
 class ExactRecording(NamedTuple):
-    """A problem whose every number is `Traced`, down to the decimals of the text; its motion over
-    the rows stands beside it."""
+    """A problem whose every number is `Traced`, down to the decimals of the text, and its motion
+    over the rows."""
 
     recorder: ExactRecorder
     problem: Problem
@@ -75,8 +77,8 @@ def record_exactly(
 
     Args:
         built: the file, which has no errors.
-        given: the values of parameters that were set in place of their texts when it was built.
-        recorder: that holds the recording; None: a new one.
+        given: the values of parameters that replaced their texts when it was built.
+        recorder: of the recording; None: a new one.
         moved: as in `evaluate_parameters`, of recorded values.
 
     Raises:
@@ -89,21 +91,25 @@ def record_exactly(
         file = built.read.file
         problem = build_problem(fields, file, responses=False, motion=base.motion)
         motion = exact_motion(fields, file.motion, base.motion, recorder)
+    _refuse_errors(fields)
+    problem = _completed(problem, base, _held(base, problem, recorder))
+    return ExactRecording(recorder, settled(problem), motion)
+
+
+def _refuse_errors(fields: Fields) -> None:
     if fields.error_count:
         raise TraceLost("the recording came to an error that the file does not have")
-    problem = replace(
-        problem,
-        hold_idle=base.hold_idle,
-        held=_held(base, problem, recorder),
-        follow=base.follow,
-        diagnostics=base.diagnostics,
-    )
-    return ExactRecording(recorder, settled(problem), motion)
+
+
+def _completed(problem: Problem, base: Problem, held: tuple[LockedFreedom, ...]) -> Problem:
+    """A recorded problem, with the settings that the recording does not build."""
+    problem = replace(problem, hold_idle=base.hold_idle, held=held)
+    return replace(problem, follow=base.follow, diagnostics=base.diagnostics)
 
 
 @contextmanager
 def _exactly(recorder: ExactRecorder) -> Iterator[None]:
-    """Numbers that are read in this context are what their digits say."""
+    """Numbers that are read in this context are exactly those of their digits."""
 
     def read(digits: str) -> Traced:
         if digits == "pi":
@@ -115,17 +121,14 @@ def _exactly(recorder: ExactRecorder) -> Iterator[None]:
 
 
 def _fields(
-    built: Built,
-    given: Mapping[str, Quantity],
-    recorder: ExactRecorder,
-    moved: Move | None = None,
+    built: Built, given: Mapping[str, Quantity], recorder: ExactRecorder, moved: Move | None = None
 ) -> Fields:
-    """Units and parameters of a file, those `given` as the doubles that they are."""
-    set_anew = {
+    """Units and parameters of a file, those `given` as exact doubles."""
+    recorded = {
         name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
         for name, one in given.items()
     }
-    return read_fields(built.read, set_anew, moved)
+    return read_fields(built.read, recorded, moved)
 
 
 def record_response(
@@ -158,8 +161,7 @@ def record_response(
         moments = exact_moments(fields, path, file.responses[name].time, over)
         motion = start_motion(fields, recorded, recorder)
         both = [fields.units.to_si(moments, TIME), moments]
-    if fields.error_count:
-        raise TraceLost("the recording came to an error that the file does not have")
+    _refuse_errors(fields)
     problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
     problem = replace(problem, held=_held(first, problem, recorder))
     in_si, written = over.double_doubles(both)
@@ -168,36 +170,32 @@ def record_response(
 
 
 def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[LockedFreedom, ...]:
-    """What holds the idle freedoms, with its pairs on the recording."""
-    if not base.held:
-        return ()
-    from mechkin_cli.idle import exact_holds
+    """The locks of the idle freedoms, with their pairs on the recording."""
 
     def lift(value: float) -> Any:
         return recorder.number(recorder.constant(value))
 
     own, recorded = base.mechanism, problem.mechanism
-    return tuple(exact_holds(held, own, recorded, lift) for held in base.held)
+    return tuple(idle.exact_holds(held, own, recorded, lift) for held in base.held)
 
 
 def precise(built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING) -> Precise:
-    """The numbers of a file as its text says them, for the sessions of its `problem` in doubles;
-    the other arguments and errors as those of `record_exactly`."""
-    recording = record_exactly(built, given)
-    return Precise(*recording, problem)
+    """The exact numbers of a file's text, for the sessions of its `problem` in doubles; the other
+    arguments and errors as those of `record_exactly`."""
+    return Precise(*record_exactly(built, given), problem)
 
 
 def shifting(
     built: Built, problem: Problem, given: Mapping[str, Quantity] = _NOTHING
 ) -> ShiftingPrecise:
-    """As `precise`, and any parameter can be shifted: what depends on it follows."""
+    """As `precise`, and any parameter can be shifted, with all that depends on it."""
     recorder = ShiftingRecorder()
     leaves: dict[str, int] = {}
 
-    def moved(name: str, found: Quantity) -> Quantity:
+    def moved(name: str, quantity: Quantity) -> Quantity:
         leaves[name] = recorder.leaf()
         shift: Any = recorder.number(leaves[name])
-        return Quantity(found.value + shift, found.dimension, found.rest)
+        return Quantity(quantity.value + shift, quantity.dimension, quantity.rest)
 
     recording = record_exactly(built, given, recorder, moved)
     return ShiftingPrecise(recorder, recording.problem, recording.motion, problem, leaves)
@@ -206,8 +204,8 @@ def shifting(
 def precise_response(
     built: Built, first: Problem, given: Mapping[str, Quantity] = _NOTHING
 ) -> Precise:
-    """The numbers of a response as its text says them, for the sessions of its `first` moment in
-    doubles; arguments and errors as those of `record_response`."""
+    """The exact numbers of a response's text, for the sessions of its `first` moment in doubles;
+    arguments and errors as those of `record_response`."""
     recording, *moments = record_response(built, first, given)
     return Precise(*recording, first, ExactMoments(*moments))
 
@@ -227,22 +225,15 @@ def record(built: Built, names: Sequence[str]) -> Recording:
     }
     fields = read_fields(built.read, given)
     problem = build_problem(fields, built.read.file, responses=False)
-    problem = replace(
-        problem,
-        hold_idle=base.hold_idle,
-        held=base.held,
-        follow=base.follow,
-        diagnostics=base.diagnostics,
-    )
+    problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables_of(SWEEP))
-    if fields.error_count:
-        raise TraceLost("the recording came to an error that the file does not have")
+    _refuse_errors(fields)
     return Recording(recorder, settled(problem))
 
 
 def _refuse_varied_lines(problem: Problem) -> None:
-    """What is held is idle as long as the joints around it, or all, lie as they are drawn.
+    """A held freedom is idle as long as the joints around it, or all, lie as they are drawn.
 
     Raises:
         TraceLost: one of them depends on a parameter.

@@ -1,18 +1,24 @@
-"""`responses:` to what each response asks for: start, assembly, efforts, drives, moments, stops."""
+"""`responses:` - start, assembly, efforts, drives, moments and stops of each response; and the
+solver graph at its start, which shows whether the start names as many coordinates as are free.
+
+Values of a start name the independent coordinates. There are as many rates as values: those that
+are not written are zero, unless a rate of another coordinate stands for one of them; then all are
+named.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.assembly import held_of, near_values, note_spins, settled
-from mechkin_cli.building.fields import CODE, Clock, Written, dimension_of, is_coordinate, without
+from mechkin_cli.building.fields import Clock, Written, dimension_of, is_coordinate
 from mechkin_cli.building.load_laws import LoadLaws
-from mechkin_cli.building.motion import build_inputs, spaced_moments
-from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.building.motion import build_inputs, has_too_many_rows, spaced_moments
+from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     CrossingEnd,
     DeadCentreEnd,
@@ -35,14 +41,8 @@ from mechkin_cli.units import DIMENSIONLESS, TIME
 if TYPE_CHECKING:
     from mechkin_cli.building.fields import Fields, Path
     from mechkin_cli.building.loads import LoadBuilder
-    from mechkin_cli.building.motion import RowLimit
     from mechkin_cli.mechanism import Assembly, Joint, Mechanism, Problem, Wanted
 
-
-# The start of a response: coordinates and rates at its first moment.
-#
-# Values name the independent coordinates. There are as many rates as values: those that are left
-# out are zero, unless a rate of another coordinate stands for one of them; then all are named.
 
 RATE = "_dot"
 
@@ -59,12 +59,16 @@ def build_start(
         name, place = key.removesuffix(RATE), (*path, key)
         if not is_coordinate(fields, place, name, joints):
             continue
-        if _is_prescribed(fields, place, name, section, joints):
-            continue
         coordinate = name.rpartition(".")[2]
-        if key.endswith(RATE):
+        if _same_freedom(name, section.driven, joints):
+            message = f"{name} is driven, so its law defines where it starts"
+            fields.key_error("start-and-drive", place, message, "remove it here, or under driven:")
+        elif key.endswith(RATE):
             rates[name] = fields.number(place, text, dimension_of(coordinate, 1))
-        elif not _is_same_freedom(fields, place, name, values, joints):
+        elif other := _same_freedom(name, values, joints):
+            message = f"{other} and {name} are one freedom"
+            fields.key_error("driven-twice", place, message, "start one of them")
+        else:
             values[name] = fields.number(place, text, dimension_of(coordinate))
     if fields.error_count == errors:
         rates = _all_rates(fields, path, values, rates)
@@ -79,6 +83,18 @@ def build_start(
 def _split(name: str) -> tuple[str, str]:
     joint, _, coordinate = name.rpartition(".")
     return joint, coordinate
+
+
+def _same_freedom(name: str, others: Iterable[str], joints: Mapping[str, Joint]) -> str | None:
+    """The first of other coordinates that has the freedom of one, as the turn and the slide of a
+    thread have."""
+    joint, coordinate = _split(name)
+    freedom = joints[joint].type.freedom_of
+    for other in others:
+        owner, own = _split(other)
+        if owner == joint and own in freedom and freedom[own] == freedom[coordinate]:
+            return other
+    return None
 
 
 def _all_rates(
@@ -105,51 +121,11 @@ def _counted(named: Mapping[str, float], word: str) -> str:
     return f"{len(named)} {word}{'s' * (len(named) != 1)}"
 
 
-def _is_prescribed(
-    fields: Fields,
-    place: Path,
-    name: str,
-    section: written.Response,
-    joints: Mapping[str, Joint],
-) -> bool:
-    """Whether the motion of a coordinate is driven already; that is noted."""
-    joint, coordinate = _split(name)
-    freedom = joints[joint].type.freedom_of
-    for other in section.driven:
-        owner, driven = _split(other)
-        if owner == joint and driven in freedom and freedom[driven] == freedom[coordinate]:
-            text = f"{name} is driven: its law says where it starts"
-            fields.key_error("start-and-drive", place, text, "remove it here, or under driven:")
-            return True
-    return False
-
-
-def _is_same_freedom(
-    fields: Fields,
-    place: Path,
-    name: str,
-    values: Mapping[str, float],
-    joints: Mapping[str, Joint],
-) -> bool:
-    """Whether a coordinate is the turn or the slide of a thread whose other one is named."""
-    joint, coordinate = _split(name)
-    freedom = joints[joint].type.freedom_of
-    for other in values:
-        owner, known = _split(other)
-        if owner == joint and freedom[known] == freedom[coordinate]:
-            text = f"{other} and {name} are one freedom"
-            fields.key_error("driven-twice", place, text, "start one of them")
-            return True
-    return False
-
-
-# What ends a response: a value that passes another, dead centres, turns.
-
-_WAYS = {"up": " upwards", "down": " downwards", "any": ""}
+_DIRECTIONS = {"up": " upwards", "down": " downwards", "any": ""}
 
 
 class StopBuilder:
-    """Builds the stops of one run; what is wrong is noted in `fields`."""
+    """Builds the stops of one run; errors are noted in `fields`."""
 
     def __init__(
         self,
@@ -158,61 +134,45 @@ class StopBuilder:
         run: str,
         quantities: Mapping[str, Wanted],
     ) -> None:
-        self.fields = fields
-        self.joints = joints
+        self.fields, self.joints = fields, joints
         self.laws = LoadLaws(fields, {run: quantities}, reader="a stop")
 
     def build(self, path: Path, sections: Sequence[written.Stop]) -> tuple[Stop, ...]:
         """The stops of the response at `path`."""
-        found = [self._stop((*path, "stop", i), section) for i, section in enumerate(sections)]
-        return tuple(stop for stop in found if stop is not None)
+        stops = [self._stop((*path, "stop", i), section) for i, section in enumerate(sections)]
+        return tuple(stop for stop in stops if stop is not None)
 
     def _stop(self, path: Path, section: written.Stop) -> Stop | None:
         if isinstance(section, written.Crossing):
             return self._crossing(path, section)
         place, count = self.fields.document.place(path), section.count
-        if isinstance(section, written.DeadCentre):
-            name = section.dead_centre
-            words = f"dead centre {count} of {name}" if count > 1 else f"dead centre of {name}"
-            if not self._is_known((*path, "dead_centre"), name):
-                return None
-            joint, _, coordinate = name.rpartition(".")
-            return DeadCentreEnd(words, place, joint, coordinate, count)
-        name = section.turns
-        if not self._is_known((*path, "turns"), name):
+        at_dead_centre = isinstance(section, written.DeadCentre)
+        key = "dead_centre" if at_dead_centre else "turns"
+        name = getattr(section, key)
+        at = (*path, key)
+        if not is_coordinate(self.fields, at, name, self.joints, at_key=False):
             return None
-        joint, _, coordinate = name.rpartition(".")
+        joint, coordinate = _split(name)
+        if at_dead_centre:
+            words = f"dead centre {count} of {name}" if count > 1 else f"dead centre of {name}"
+            return DeadCentreEnd(words, place, joint, coordinate, count)
         if not is_angle(coordinate):
             text, hint = f"{name} is a slide and does not turn", "write value: and at: for a slide"
-            self.fields.error("no-angle", (*path, "turns"), text, hint)
+            self.fields.error("no-angle", at, text, hint)
             return None
         words = f"{count} turn{'s' * (count > 1)} of {name}"
         return TurnsEnd(words, place, joint, coordinate, count)
 
     def _crossing(self, path: Path, section: written.Crossing) -> CrossingEnd | None:
-        found = self.laws.watched((*path, "value"), section.value)
-        if found is None:
+        watched = self.laws.watched((*path, "value"), section.value)
+        if watched is None:
             return None
-        law, dimension = found
+        law, dimension = watched
         at = self.fields.number((*path, "at"), section.at, dimension)
         in_file = float(self.fields.units.from_si(at, dimension)) + 0.0  # no -0
         amount = f"{in_file:.12g} {self.fields.units.label(dimension)}".rstrip()
-        words = f"{section.value.strip()} = {amount}{_WAYS[section.direction]}"
+        words = f"{section.value.strip()} = {amount}{_DIRECTIONS[section.direction]}"
         return CrossingEnd(words, law.place, law, dimension, at, section.direction)
-
-    def _is_known(self, path: Path, name: str) -> bool:
-        """Whether the value at `path` names a coordinate; if not, that is noted."""
-        owner, _, coordinate = name.rpartition(".")
-        joint = self.joints.get(owner)
-        if joint is not None and coordinate in joint.type.coordinates:
-            return True
-        if joint is not None:
-            self.fields.error(CODE, path, *without(joint, coordinate))
-        elif not self.fields.is_refused(owner):
-            known = [c for one in self.joints.values() for c in one.coordinates]
-            text = f"{name} is no coordinate"
-            self.fields.error(CODE, path, text, nearest_hint(name, known))
-        return False
 
 
 def build_responses(
@@ -220,43 +180,39 @@ def build_responses(
     sections: Mapping[str, written.Response],
     problem: Problem,
     loads: LoadBuilder,
-    limit: RowLimit,
+    per_row: int,
     known: Mapping[str, ResponseProblem] | None = None,
 ) -> dict[str, ResponseProblem]:
-    """The responses of a file; what is wrong is noted in `fields`, and something stands in.
+    """The responses of a file; errors are noted in `fields`.
 
     Args:
-        fields: knows units and parameters.
+        fields: of the file, with units and parameters.
         sections: as written.
         problem: mechanism and assembly of the file.
-        loads: has all loads of the file.
-        limit: how many rows a run may have.
+        loads: all loads of the file.
+        per_row: `numbers_per_row` of the file.
         known: the same responses in doubles, where the file is recorded: moments, drives, stops and
             tolerances are theirs.
     """
-    builder = _ResponseBuilder(fields, problem, loads, limit)
+    builder = _ResponseBuilder(fields, problem, loads, per_row)
     if known is not None:
-        return {name: builder.anew(name, sections[name], known[name]) for name in sections}
+        return {name: builder.recorded(name, sections[name], known[name]) for name in sections}
     return {name: builder.response(name, section) for name, section in sections.items()}
 
 
 class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
-    def __init__(
-        self, fields: Fields, problem: Problem, loads: LoadBuilder, limit: RowLimit
-    ) -> None:
-        self.fields = fields
-        self.problem = problem
+    def __init__(self, fields: Fields, problem: Problem, loads: LoadBuilder, per_row: int) -> None:
+        self.fields, self.problem = fields, problem
         self.joints = problem.mechanism.joints
-        self.loads = loads
-        self.limit = limit
+        self.loads, self.per_row = loads, per_row
 
     def response(self, name: str, section: written.Response) -> ResponseProblem:
         """The response of a name."""
         path: Path = ("responses", name)
         timed = self._timed(path, section)
-        driven = build_inputs(self.fields, timed, self.joints, self.limit) or MotionInputs((), 1)
+        driven = build_inputs(self.fields, timed, self.joints, self.per_row) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
         acting = self.loads.of_run(name)
         start = build_start(self.fields, path, section, self.joints)
@@ -279,7 +235,9 @@ class _ResponseBuilder:
             load_laws=acting.laws,
         )
 
-    def anew(self, name: str, section: written.Response, known: ResponseProblem) -> ResponseProblem:
+    def recorded(
+        self, name: str, section: written.Response, known: ResponseProblem
+    ) -> ResponseProblem:
         """A known response whose start, loads and links are those of the recording."""
         path: Path = ("responses", name)
         efforts = self._efforts(path, section, name)
@@ -298,7 +256,7 @@ class _ResponseBuilder:
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            moments, last = spaced_moments(self.fields, place, section.time, self.limit)
+            moments, last = spaced_moments(self.fields, place, section.time, self.per_row)
         else:
             moments = self._listed(place, section.time)
             last = float(moments.written[-1])
@@ -316,31 +274,29 @@ class _ResponseBuilder:
                 text = f"{values[i]!r} is not later than the {values[i - 1]!r} before it"
                 hint = "order the moments, each once"
                 self.fields.error("time-backwards", (*place, "values", i), text, hint)
-        self.limit.is_exceeded(self.fields, (*place, "values"), len(values))
+        has_too_many_rows(self.fields, (*place, "values"), len(values), self.per_row)
         moments = np.array(values)
         return Moments(self.fields.units.to_si(moments.copy(), TIME), moments)
 
     def _assembly(self, path: Path, section: written.Response) -> Assembly:
         """The response's own choice, else the file's."""
-        own = near_values(self.fields, (*path, "near"), section.near, self.joints)
-        if not own and section.mode is None:
+        near = near_values(self.fields, (*path, "near"), section.near, self.joints)
+        if not near and section.mode is None:
             return self.problem.assembly
-        return replace(self.problem.assembly, near=own, mode=section.mode)
+        return replace(self.problem.assembly, near=near, mode=section.mode)
 
     def _efforts(self, path: Path, section: written.Response, run: str) -> tuple[Effort, ...]:
-        found = []
+        efforts = []
         for name, value in section.efforts.items():
             place = (*path, "efforts", name)
             if not is_coordinate(self.fields, place, name, self.joints):
                 continue
             if name in section.driven:
-                text = f"{name} is driven: what its drive has to do follows from the motion"
+                text = f"{name} is driven, so the effort of its drive follows from the motion"
                 self.fields.key_error("effort-and-drive", place, text, "remove one of the two")
                 continue
-            joint, _, coordinate = name.rpartition(".")
-            amount = self.loads.add_effort(place, name, value, run)
-            found.append(Effort(joint, coordinate, amount))
-        return tuple(found)
+            efforts.append(Effort(*_split(name), self.loads.add_effort(place, name, value, run)))
+        return tuple(efforts)
 
     def _tolerance(self, path: Path, text: str | None) -> float:
         if text is None:
@@ -369,22 +325,14 @@ class _ResponseBuilder:
         most = tolerances.MOST_RESPONSE_STEPS
         span = float(moments.values[-1] - moments.values[0])
         if not value > 0.0:
-            message = "a step takes a positive time"
-            self.fields.error("zero-step", path, message, "write 1e-3 s")
+            self.fields.error("zero-step", path, "a step takes a positive time", "write 1e-3 s")
         elif span > most * value:
-            self.fields.error(
-                "too-many-steps",
-                path,
-                "steps of this length are too many for the time of the response",
-                "write a longer step, or a tolerance",
-                measured=f"{span / value:.3g} steps",
-                limit=f"{most} steps",
-            )
+            message = "steps of this length are too many for the time of the response"
+            hint, measured = "write a longer step, or a tolerance", f"{span / value:.3g} steps"
+            limit = f"{most} steps"
+            self.fields.error("too-many-steps", path, message, hint, measured=measured, limit=limit)
         return value
 
-
-# The solver graph of each response at its start, and whether the start names as many coordinates
-# as are free.
 
 Graphs = dict[str, SolverGraph | Diagnostic]
 
@@ -392,8 +340,8 @@ HINT = "start as many independent coordinates as are free: start: {O1.theta: 20}
 
 
 def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
-    """The problem whose responses have their idle freedoms held, and their graphs; what would spin
-    is noted."""
+    """The problem whose responses have their idle freedoms held, and their graphs; links that would
+    spin are noted."""
     responses, graphs = {}, Graphs()
     for name, response in problem.responses.items():
         first = response_problem(problem, response)
@@ -413,8 +361,8 @@ def response_graph(
     """The solver graph with the start's coordinates driven, or why there is none: the start names
     too few coordinates or too many.
 
-    Where constraints are redundant their equations do not tell how many are free; then the motion
-    at the assembled start does.
+    Where constraints are redundant the number of their equations does not determine how many
+    coordinates are free; then the motion at the assembled start does.
     """
     first = response_problem(problem, response)
     driven, mechanism = first.driven, first.solved_mechanism

@@ -1,4 +1,4 @@
-"""A mechanism file, read and checked: what was meant, and where it was written."""
+"""A mechanism file, read and checked, with the places of its values; and the CSV files it names."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from mechkin_cli import reading
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading import (
     MOST_BYTES,
@@ -24,8 +25,8 @@ _NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
 
 
 class MechanismSource(NamedTuple):
-    """The content of a mechanism file, of one in a plane as in space, and the document that knows
-    the place of each value."""
+    """The content of a mechanism file, in space if it is of a plane, and the document with the
+    place of each value."""
 
     file: MechanismFile
     document: Document
@@ -47,8 +48,8 @@ def open_text(
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
 ) -> MechanismSource:
-    """As `open_file`, for a text; `name` stands for the file in messages, in `folder` are the files
-    that the text names; `tables` are contents of such files that are known already."""
+    """As `open_file`, for a text; `name` stands for the file in messages, `folder` has the files
+    that the text names; `tables` are contents of such files that were read already."""
     document = replace(document_from_text(text, name), folder=folder, tables=dict(tables))
     return _checked(document.with_parameters(parameters))
 
@@ -60,10 +61,8 @@ def open_data(
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
 ) -> MechanismSource:
-    """As `open_text`, for the plain data of a program; places are ways of keys."""
-    from mechkin_cli.reading import document_from_data
-
-    document = replace(document_from_data(data, name, folder), tables=dict(tables))
+    """As `open_text`, for the plain data of a program; places are paths of keys."""
+    document = replace(reading.document_from_data(data, name, folder), tables=dict(tables))
     return _checked(document.with_parameters(parameters))
 
 
@@ -71,9 +70,8 @@ def _checked(document: Document) -> MechanismSource:
     try:
         file = validate(document.data)
     except InvalidDataError as invalid:
-        from mechkin_cli.reading import explain, is_study  # only on the way to messages
-
-        raise InvalidFile(is_study(document) or explain(invalid.errors, document)) from None
+        diagnostics = reading.is_study(document) or reading.explain(invalid.errors, document)
+        raise InvalidFile(diagnostics) from None
     if isinstance(file, MechanismFile):
         return MechanismSource(file, document)
     from mechkin_cli.building.plane import in_space  # only for files in a plane
@@ -81,11 +79,8 @@ def _checked(document: Document) -> MechanismSource:
     return MechanismSource(in_space(file), document)
 
 
-# The text of CSV files that a file names, as it was when it was first read.
-
-
 class BadTable(Exception):
-    """What is wrong with a CSV file; `line` and `column` count from 1, line 0 is the whole file."""
+    """An error in a CSV file; `line` and `column` count from 1, line 0 is the whole file."""
 
     def __init__(self, line: int, column: int, message: str, hint: str) -> None:
         super().__init__(message)
@@ -93,19 +88,25 @@ class BadTable(Exception):
 
 
 def table_path(document: Document, name: str) -> Path:
-    """Where a file lies that a document names."""
+    """The path of a file that a document names."""
     return Path(name) if document.folder is None else document.folder / name
 
 
 def table_text(document: Document, name: str, most: int = MOST_BYTES) -> str:
-    """The text of a file that a document names, of at most so many bytes.
+    """The text of a file that a document names, of at most `most` bytes, as it was first read.
 
     Raises:
         BadTable: it cannot be read.
     """
     if name not in document.tables:
         document.tables[name] = _content(table_path(document, name), most)
-    return _text(document.tables[name])
+    content = document.tables[name]
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        text = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
+        raise BadTable(line, 1, text, "save the file as UTF-8") from None
 
 
 def _content(file: Path, most: int) -> bytes:
@@ -123,12 +124,3 @@ def _content(file: Path, most: int) -> bytes:
         text = f"is too large for a table: more than {most >> 20} MiB (limit {most} bytes)"
         raise BadTable(0, 0, text, "keep fewer rows: the curve between them is smooth")
     return content
-
-
-def _text(content: bytes) -> str:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = content.count(b"\n", 0, error.start) + 1
-        text = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
-        raise BadTable(line, 1, text, "save the file as UTF-8") from None

@@ -1,4 +1,4 @@
-"""Checks the columns of the tables once: names, dimensions, one number per row."""
+"""`tables:` and `coefficients:` - layouts whose columns have known names and one number per row."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import mechanism
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
@@ -27,9 +28,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema import Coefficients
 
 
-# Runs that a file names: the sweep and its responses.
-
-
 def runs_of(file: MechanismFile) -> tuple[str, ...]:
     """The runs of a file by name, the sweep first; a file of responses alone has no sweep."""
     swept = file.motion is not None or not file.responses
@@ -37,7 +35,7 @@ def runs_of(file: MechanismFile) -> tuple[str, ...]:
 
 
 def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -> None:
-    """Notes that the name at `path` is no run."""
+    """Notes that the name at `path` is not a run."""
     if name == SWEEP:
         text, hint = "there is no sweep: the file has no motion:", "name a response, or add motion:"
     else:
@@ -47,8 +45,7 @@ def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -
 
 
 def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[TableLayout, ...]:
-    """The tables' layouts, and one for each run that has none; what is wrong with a column is noted
-    in `fields`."""
+    """The tables' layouts, and one for each run that has none; errors are noted in `fields`."""
     runs = runs_of(file)
     known = {run: quantities_of(problem, run) for run in runs}
     drives = problem.mechanism.drives
@@ -72,9 +69,7 @@ def quantities_of(problem: Problem, run: str) -> Mapping[str, Wanted]:
     """The quantities that the rows of a run have, by name."""
     if run == SWEEP:
         return problem.quantities()
-    from mechkin_cli.mechanism import response_problem
-
-    return response_problem(problem, problem.responses[run]).quantities()
+    return mechanism.response_problem(problem, problem.responses[run]).quantities()
 
 
 def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[str]) -> str | None:
@@ -108,7 +103,6 @@ def _table(
 
 
 def _default(problem: Problem, run: str) -> TableLayout:
-    """The table of a run that has none."""
     if run == SWEEP:
         timed = problem.motion.time is not None
         efforts = [".".join(pair) for pair in problem.acting]
@@ -135,8 +129,7 @@ def _published(section: written.PublishedValues | None) -> PrintedSource | None:
 
 
 def _warn_of_missing_print(fields: Fields, file: MechanismFile) -> None:
-    """Files of printed values that are not there are warned of, all at once, since tables need none
-    until they are compared."""
+    """One warning of all missing files of printed values, which tables only need for comparison."""
     folder = fields.document.folder
     missing: list[tuple[Path, str]] = []
     for i, table in enumerate(file.tables):
@@ -162,13 +155,10 @@ def _column(
     try:
         expression = fields.definitions.parse(column.value)
         if column.value.strip() not in sample.texts:
-            found = expression.evaluate(sample, fields.units)
-            if isinstance(found.value, Vector):
-                raise ExpressionError(
-                    "a column holds one number per row, this is a vector",
-                    0,
-                    "write one component: .x, .y or .z",
-                )
+            quantity = expression.evaluate(sample, fields.units)
+            if isinstance(quantity.value, Vector):
+                message = "a column holds one number per row, this is a vector"
+                raise ExpressionError(message, 0, "write one component: .x, .y or .z")
     except ExpressionError as error:
         fields.expression_error(path, error)
         return None
@@ -185,110 +175,94 @@ class ColumnSample:
         run: str,
         drives: Drives | None = None,
     ) -> None:
-        self.run = run
+        self.run, self.drives = run, drives
         self.texts = row_texts(run)
-        self.drives = drives
-        self.fields = fields
-        self.parameters = fields.parameters
+        self.fields, self.parameters = fields, fields.parameters
         self.quantities = quantities
 
     def __call__(self, name: str) -> Quantity:
         """The stand-in of a name.
 
         Raises:
-            ExpressionError: nothing has this name, or what has it is a text.
+            ExpressionError: nothing has this name, or it is the name of a text.
         """
         if name in self.parameters:
             return self.parameters[name]
         if name in self.texts:
-            raise ExpressionError(f"{name} is a text, no number", 0, "make it a column of its own")
+            message = f"{name} is a text, not a number"
+            raise ExpressionError(message, 0, "make it a column of its own")
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
         if wanted is None:
-            known = [
-                *self.parameters,
-                *self.fields.definitions.named,
-                *self.quantities,
-                *self.texts,
-            ]
+            named = self.fields.definitions.named
+            known = [*self.parameters, *named, *self.quantities, *self.texts]
             response = self.run != SWEEP
             passive = without_effort(name, self.quantities, self.drives, response=response)
-            held = hint_in_plane(name) if self.fields.plane else None
-            raise UnknownName(name, known, passive or held or hint_of(name))
-        one = np.ones(1)
-        return Quantity(wanted.value([one] * 3), wanted.dimension)
+            in_plane = hint_in_plane(name) if self.fields.plane else None
+            raise UnknownName(name, known, passive or in_plane or hint_of(name))
+        return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 
 def used_quantities(tables: Sequence[TableLayout], quantities: Mapping[str, Wanted]) -> list[str]:
     """Names of the quantities that some tables read."""
-    found: dict[str, None] = {}
+    used: dict[str, None] = {}
     for table in tables:
         for column in table.columns:
             for name in sorted(column.expression.names):
-                for candidate in (name, name.rpartition(".")[0]):
-                    if candidate in quantities:
-                        found[candidate] = None
-                        break
-    return list(found)
-
-
-# Checks `coefficients:` - rows, balls and directions that exist, names that no table has.
+                candidates = (name, name.rpartition(".")[0])
+                used |= dict.fromkeys([each for each in candidates if each in quantities][:1])
+    return list(used)
 
 
 def build_coefficients(
-    fields: Fields,
-    file: MechanismFile,
-    problem: Problem,
-    tables: Sequence[TableLayout],
+    fields: Fields, file: MechanismFile, problem: Problem, tables: Sequence[TableLayout]
 ) -> tuple[CoefficientsLayout, ...]:
-    """The layouts; what is wrong is noted in `fields`."""
-    found: list[CoefficientsLayout] = []
+    """The layouts of `coefficients:`; errors are noted in `fields`."""
+    layouts: list[CoefficientsLayout] = []
     for number, section in enumerate(file.coefficients):
         path: Path = ("coefficients", number)
         if section.row > problem.motion.rows:
             text = f"the sweep has {problem.motion.rows} rows"
             fields.error("unknown-row", (*path, "row"), text, f"write 1 to {problem.motion.rows}")
         along = _along(fields, (*path, "along"), section, problem)
-        layout = CoefficientsLayout(
-            section.name, section.title or section.name, section.row, along, section.counted
-        )
-        taken = {one.name.casefold() for one in tables}
-        taken |= {name.casefold() for other in found for name in other.names}
+        title = section.title or section.name
+        layout = CoefficientsLayout(section.name, title, section.row, along, section.counted)
+        taken = {table.name.casefold() for table in tables}
+        taken |= {name.casefold() for other in layouts for name in other.names}
         for name in layout.names:
             if name.casefold() in taken:
                 text = f"another table is written to {name}"
                 fields.error("table-clash", (*path, "name"), text, "rename one of them")
-        found.append(layout)
-    if found and SWEEP not in runs_of(file):
-        text = "coefficients: are told at a row of the sweep, and the file has responses alone"
+        layouts.append(layout)
+    if layouts and SWEEP not in runs_of(file):
+        text = "coefficients: belong to a row of the sweep, and the file has responses alone"
         fields.error("no-sweep", ("coefficients",), text, "add motion:, or leave them out")
-    if found and problem.mechanism.frictions:
-        text = "coefficients: cannot be told where joints rub: friction is no linear function"
+    if layouts and problem.mechanism.frictions:
+        text = "there are no coefficients: where joints rub, since friction is not linear"
         fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
-    if found and problem.hold_idle:
-        text = "coefficients: cannot be told where idle freedoms are held against loads"
+    if layouts and problem.hold_idle:
+        text = "there are no coefficients: where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")
-    return tuple(found)
+    return tuple(layouts)
 
 
 def _along(
     fields: Fields, path: Path, section: Coefficients, problem: Problem
 ) -> dict[str, tuple[str, str]]:
-    mechanism = problem.mechanism
-    found: dict[str, tuple[str, str]] = {}
+    joints, known = problem.mechanism.joints, problem.mechanism.directions
+    along: dict[str, tuple[str, str]] = {}
     for name, directions in section.along.items():
-        joint = mechanism.joints.get(name)
-        if joint is None or not joint.type.is_ball:
-            balls = [one.name for one in mechanism.joints.values() if one.type.is_ball]
+        if name not in joints or not joints[name].type.is_ball:
+            balls = [joint.name for joint in joints.values() if joint.type.is_ball]
             hint = f"balls are {', '.join(balls)}" if balls else "the mechanism has none"
-            fields.error("no-ball", (*path, name), f"{name} is no ball of the mechanism", hint)
+            fields.error("no-ball", (*path, name), f"{name} is not a ball of the mechanism", hint)
             continue
-        unknown = [one for one in directions if one not in mechanism.directions]
-        for one in unknown:
-            hint = nearest_hint(one, mechanism.directions) or "name it in directions:"
-            place = (*path, name, directions.index(one))
-            fields.error("unknown-name", place, f"there is no direction {one}", hint)
+        unknown = [direction for direction in directions if direction not in known]
+        for direction in unknown:
+            hint = nearest_hint(direction, known) or "name it in directions:"
+            place = (*path, name, directions.index(direction))
+            fields.error("unknown-name", place, f"there is no direction {direction}", hint)
         if not unknown:
-            found[name] = (directions[0], directions[1])
-    return found
+            along[name] = (directions[0], directions[1])
+    return along

@@ -1,4 +1,4 @@
-"""Checks `view:` - links and points that exist, lengths that can be drawn."""
+"""`view:` - the settings of a view, with links and points that exist and lengths in SI."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema import ShapeOfLink, ViewSection
     from mechkin_cli.units import Dimension
 
-
-# What the `view:` section of a file asks for, checked and in SI.
 
 Kind = Literal["rod", "plate", "star", "none"]
 
@@ -57,17 +55,19 @@ class ViewSettings:
 
 
 def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> ViewSettings:
-    """What the section asks for; what is wrong is noted in `fields`."""
+    """The settings of the section; errors are noted in `fields`."""
     view = _View(fields, mechanism)
     camera = section.camera
     return ViewSettings(
         colours=dict(view.of_links("colours", section.colours)),
-        hidden=frozenset(view.links("hidden", section.hidden)),
+        hidden=view.existing("hidden", section.hidden, view.known, "link"),
         shapes={
             name: view.shape(name, shape) for name, shape in view.of_links("shapes", section.shapes)
         },
         joint_radius=view.positive("joint_radius", section.joint_radius, LENGTH),
-        paths=None if section.paths is None else frozenset(view.points(section.paths)),
+        paths=None
+        if section.paths is None
+        else view.existing("paths", section.paths, list(mechanism.points), "point"),
         forces=section.forces == "shown",
         arrow_length=view.positive("arrow_length", section.arrow_length, LENGTH),
         camera=None if camera is None else fields.direction(("view", "camera"), camera),
@@ -83,42 +83,31 @@ class _View:
         self.mechanism = mechanism
         self.known = [GROUND_NAME, *(name for name in mechanism.links if is_written(name))]
 
-    def links(self, key: str, names: Iterable[str]) -> list[str]:
-        """Those of the names that are links."""
-        return [
-            name
-            for at, name in enumerate(names)
-            if self._exists(("view", key, at), name, self.known, "link")
-        ]
+    def existing(
+        self, key: str, names: Iterable[str], known: list[str], what: str
+    ) -> frozenset[str]:
+        """Those of the names that are known."""
+        each = enumerate(names)
+        return frozenset(n for at, n in each if self._exists(("view", key, at), n, known, what))
 
-    def of_links(self, key: str, given: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    def of_links(self, key: str, entries: Mapping[str, Any]) -> list[tuple[str, Any]]:
         """Those entries of a mapping that belong to links."""
-        found = []
-        for name, value in given.items():
+        known = []
+        for name, value in entries.items():
             hint = self._hint(name, self.known)
             if hint is None:
-                found.append((name, value))
+                known.append((name, value))
             elif not self.fields.is_refused(name):
                 text = f"there is no link {name}"
                 self.fields.key_error("unknown-name", ("view", key, name), text, hint)
-        return found
-
-    def points(self, names: Iterable[str]) -> list[str]:
-        """Those of the names that are named points."""
-        known = list(self.mechanism.points)
-        return [
-            name
-            for at, name in enumerate(names)
-            if self._exists(("view", "paths", at), name, known, "point")
-        ]
+        return known
 
     def shape(self, link: str, section: ShapeOfLink) -> ShapeSetting:
         """The shape of a link."""
-        points = section.points
-        if points is None:
+        if section.points is None:
             return ShapeSetting(section.kind)
-        found = [self._point(link, at, point) for at, point in enumerate(points)]
-        return ShapeSetting(section.kind, tuple(point for point in found if point is not None))
+        points = [self._point(link, at, point) for at, point in enumerate(section.points)]
+        return ShapeSetting(section.kind, tuple(point for point in points if point is not None))
 
     def positive(self, key: str, text: str | None, dimension: Dimension) -> float | None:
         """A number above zero; None where the section has none."""
@@ -134,13 +123,10 @@ class _View:
         path: Path = ("view", "shapes", link, "points", at)
         if not isinstance(point, str):
             return self.fields.vector(path, point, LENGTH)
-        own = {name: on.vector for name, on in self.mechanism.joint_points() if on.link == link}
-        own |= {name: on.vector for name, on in self.mechanism.points.items() if on.link == link}
-        return (
-            own[point]
-            if self._exists(path, point, list(own), f"joint or point of {link}")
-            else None
-        )
+        places = (*self.mechanism.joint_points(), *self.mechanism.points.items())
+        own = {name: on.vector for name, on in places if on.link == link}
+        known = self._exists(path, point, list(own), f"joint or point of {link}")
+        return own[point] if known else None
 
     def _exists(self, path: Path, name: str, known: list[str], what: str) -> bool:
         hint = self._hint(name, known)
@@ -149,7 +135,7 @@ class _View:
         return hint is None
 
     def _hint(self, name: str, known: list[str]) -> str | None:
-        """What to write in place of a name that is not known; None of one that is."""
+        """A hint for a name that is not known; None for one that is."""
         if name in known:
             return None
         return nearest_hint(name, known) or f"there are {', '.join(known) or 'none'}"

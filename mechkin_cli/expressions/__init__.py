@@ -53,34 +53,13 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "differentiation": ["derivatives", "differentiated"],
-        "expression": ["Definitions", "Differentiate", "Expression", "exact_literal", "parse"],
-        "fields": [
-            "Move",
-            "constant",
-            "constant_in_file_units",
-            "evaluate_parameters",
-            "in_order",
-            "literal",
-            "lookup",
-            "number_of",
-            "scalar",
-        ],
-        "grammar": ["parse_nodes"],
-        "jets": ["Jet", "constant_jet"],
-        "quantity": [
-            "ExpressionError",
-            "MAX_QUOTED",
-            "Name",
-            "Node",
-            "NumberNode",
-            "OperationNode",
-            "Quantity",
-            "Resolve",
-            "UnknownName",
-            "Value",
-            "Vector",
-            "numbers_read_by",
-        ],
+        "differentiation": "derivatives differentiated",
+        "expression": "Definitions Differentiate Expression exact_literal parse",
+        "fields": "Move constant constant_in_file_units evaluate_parameters in_order literal "
+        "lookup number_of scalar",
+        "grammar": "parse_nodes",
+        "jets": "Jet constant_jet",
+        "quantity": "ExpressionError MAX_QUOTED Name Node NumberNode OperationNode Quantity "
+        "Resolve UnknownName Value Vector numbers_read_by",
     },
 )

@@ -1,28 +1,26 @@
-"""The derivative of an expression as an expression: the chain rule, operation by operation.
+"""Derivatives of expressions by the chain rule, operation by operation: as numbers and as nodes.
 
-Nothing is differenced: the result is evaluated as any other expression, with its dimensions checked
-and in whatever arithmetic it is asked for. Steps (sign, floor, comparisons) are taken for
-constants; of min, max, clip and `if` it is the derivative of what is chosen. There is none where
-the expression has no value.
+`derivatives` evaluates an expression whose names move, up to third order, with jets. Where a
+derivative does not exist (abs and sign at zero, min and max of two that cross, a comparison of
+equals, a step of floor, sqrt at zero) it is nan or infinite.
+
+`differentiated` gives the derivative as an expression, which is evaluated as any other one, with
+its dimensions checked and in any arithmetic. Steps (sign, floor, comparisons) are taken for
+constants; of min, max, clip and `if` it is the derivative of the chosen one. It has no value where
+the expression has none.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, reduce
+from itertools import chain
 from operator import add
 from typing import Any
 
 import numpy as np
 
-from mechkin_cli.expressions import (
-    jets,
-    jets as slopes,
-    operations as conditions,
-    operations as scalar_functions,
-    operations as steps,
-    operations as truths,
-)
+from mechkin_cli.expressions import jets, operations
 from mechkin_cli.expressions.expression import Expression, refuse_large
 from mechkin_cli.expressions.grammar import parse_nodes
 from mechkin_cli.expressions.jets import Jet
@@ -32,15 +30,9 @@ from mechkin_cli.expressions.quantity import (
     NumberNode,
     OperationNode,
 )
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Floats
+from mechkin_cli.tape import SLOPES
 from mechkin_cli.units import conversion
-
-# Derivatives of an expression whose names move: the chain rule, node by node, up to third order.
-#
-# Each operation and function of expressions has its rule for jets here. Where a derivative does not
-# exist (abs and sign at zero, min and max of two that cross, a comparison
-# of equals, a step of floor, sqrt at zero) it is nan or infinite.
 
 JetVector = tuple[Jet, ...]
 
@@ -60,17 +52,13 @@ def derivatives(expression: Expression, names: Mapping[str, Jet]) -> Jet:
                 del stack[-node.arity :]
                 stack.append(RULES[node.symbol](*operands))
             elif isinstance(node, NumberNode):
-                stack.append(jets.constant_jet(_in_si(node)))
+                unit = node.unit
+                value = conversion(unit.factor).apply(node.value) if unit else node.value
+                stack.append(jets.constant_jet(value))
             else:
                 stack.append(names[node.text])
     jet: Jet = stack[-1]
     return jet
-
-
-def _in_si(number: NumberNode) -> float:
-    if number.unit is None:
-        return number.value
-    return conversion(number.unit.factor).apply(number.value)
 
 
 def _on_each(rule: Callable[[Jet, Jet], Jet]) -> Callable[[Any, Any], Any]:
@@ -90,7 +78,7 @@ def _negative(a: Any) -> Any:
     return tuple(-each for each in a) if isinstance(a, tuple) else -a
 
 
-def _through(outer: Callable[[Floats], tuple[Floats, ...]]) -> Callable[[Jet], Jet]:
+def _through(outer: Callable[[Floats], Sequence[Floats]]) -> Callable[[Jet], Jet]:
     return lambda inner: jets.of(outer(inner[0]), inner)
 
 
@@ -98,7 +86,7 @@ def _angle_of(y: Jet, x: Jet) -> Jet:
     """atan2(y, x): its rate is (x y' - y x') / (x^2 + y^2), whose jet has one order less."""
     turning = jets.product(x, _rate(y)) - jets.product(y, _rate(x))
     rate = jets.quotient(turning, jets.product(x, x) + jets.product(y, y))
-    value = scalar_functions.angle_of(*np.broadcast_arrays(y[0], x[0]))
+    value = operations.angle_of(*np.broadcast_arrays(y[0], x[0]))
     still = (turning == 0.0).all(axis=0)
     return np.stack(np.broadcast_arrays(value, *np.where(still, 0.0, rate[:3])))
 
@@ -109,14 +97,14 @@ def _rate(jet: Jet) -> Jet:
 
 
 def _power(base: Jet, exponent: Jet) -> Jet:
-    if not jets.is_constant(exponent):
-        value = scalar_functions.power(*np.broadcast_arrays(base[0], exponent[0]))
-        by_logarithm = jets.product(exponent, jets.of(slopes.log(base[0]), base))
+    if exponent[1:].any():
+        value = operations.power(*np.broadcast_arrays(base[0], exponent[0]))
+        by_logarithm = jets.product(exponent, jets.of(SLOPES["LOG"](base[0]), base))
         return jets.of((value,) * jets.ORDERS, by_logarithm)  # type: ignore[arg-type]
     x, n = np.broadcast_arrays(base[0], exponent[0])
     orders, factor = [], np.ones_like(x)
     for order in range(jets.ORDERS):
-        power = x * x if order == 0 and (n == 2.0).all() else scalar_functions.power(x, n - order)
+        power = x * x if order == 0 and (n == 2.0).all() else operations.power(x, n - order)
         orders.append(np.where(factor == 0.0, 0.0, factor * power))
         factor = factor * (n - order)
     return jets.of(orders, base)
@@ -124,32 +112,25 @@ def _power(base: Jet, exponent: Jet) -> Jet:
 
 def _absolute(a: Jet) -> Jet:
     corner = (a[0] == 0.0) & (a[1:] != 0.0).any(axis=0)
-    jet = jets.chosen(a[0] < 0.0, -a, a)
+    jet = np.where(a[0] < 0.0, -a, a)
     return np.concatenate([np.abs(a[:1]), np.where(corner, np.nan, jet[1:])])
-
-
-def _sign(a: Jet) -> Jet:
-    """A step where the argument passes zero, else a constant."""
-    jump = (a[0] == 0.0) & (a[1:] != 0.0).any(axis=0)
-    still = np.where(jump, np.nan, np.zeros_like(a[1:]))
-    return np.concatenate([np.atleast_2d(scalar_functions.sign(a[0])), still])
 
 
 def _extreme(sign: float) -> Callable[..., Jet]:
     """max for sign 1, min for -1; a corner where two are equal and do not move alike."""
 
-    def one(a: Jet, b: Jet) -> Jet:
+    def of_two(a: Jet, b: Jet) -> Jet:
         a, b = np.broadcast_arrays(a, b)
         corner = (a[0] == b[0]) & (a[1:] != b[1:]).any(axis=0)
-        jet = jets.chosen(sign * b[0] > sign * a[0], b, a)
+        jet = np.where(sign * b[0] > sign * a[0], b, a)
         return np.concatenate([jet[:1], np.where(corner, np.nan, jet[1:])])
 
-    return lambda *operands: reduce(one, operands)
+    return lambda *operands: reduce(of_two, operands)
 
 
 def _compared(symbol: str) -> Callable[[Jet, Jet], Jet]:
     """A step where a difference passes zero, else a constant."""
-    truth = conditions.COMPARED[symbol]
+    truth = operations.COMPARED[symbol]
 
     def apply(a: Jet, b: Jet) -> Jet:
         step = _sign(a - b)
@@ -179,9 +160,9 @@ def _joined(truth: Callable[[Any, Any], Any]) -> Callable[[Jet, Jet], Jet]:
 def _if(truth: Jet, a: Any, b: Any) -> Any:
     """The chosen one; where the choice jumps nothing has a derivative."""
 
-    def of_numbers(one: Jet, other: Jet) -> Jet:
-        found = np.where(truth[0] == 0.0, other, one)
-        return np.where(np.isnan(truth).any(axis=0), np.nan, found)
+    def of_numbers(a: Jet, b: Jet) -> Jet:
+        chosen = np.where(truth[0] == 0.0, b, a)
+        return np.where(np.isnan(truth).any(axis=0), np.nan, chosen)
 
     return _on_each(of_numbers)(a, b)
 
@@ -199,7 +180,8 @@ def _staircase(
     return apply
 
 
-_floor = _staircase(steps.below, lambda x: x - steps.nearest(x))
+_sign = _staircase(operations.sign, lambda x: x)
+_floor = _staircase(operations.below, lambda x: x - operations.nearest(x))
 
 
 def _mod(a: Jet, period: Jet) -> Jet:
@@ -208,15 +190,11 @@ def _mod(a: Jet, period: Jet) -> Jet:
 
 def _hypot(*sides: Jet) -> Jet:
     square = reduce(lambda a, b: a + b, (jets.product(side, side) for side in sides))
-    return jets.of(slopes.sqrt(square[0]), square)
-
-
-def _norm(a: JetVector) -> Jet:
-    return _hypot(*a)
+    return jets.of(SLOPES["SQUARE_ROOT"](square[0]), square)
 
 
 def _wrap(a: Jet) -> Jet:
-    return np.concatenate([np.atleast_2d(scalar_functions.wrap(a[0])), a[1:]])
+    return np.concatenate([np.atleast_2d(operations.wrap(a[0])), a[1:]])
 
 
 def _dot(a: JetVector, b: JetVector) -> Jet:
@@ -232,13 +210,15 @@ def _cross(a: JetVector, b: JetVector) -> Any:
 
 def _size(normal: Any) -> Jet:
     """Of a vector product, which in a plane is one number."""
-    return _norm(normal) if isinstance(normal, tuple) else _absolute(normal)
+    return _hypot(*normal) if isinstance(normal, tuple) else _absolute(normal)
 
 
 def _zero_of(a: JetVector) -> Jet:
     """Zero, and no number in rows where a vector has no direction."""
     return jets.quotient(jets.constant_jet(0.0), _dot(a, a))
 
+
+_ELEMENTARY = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log")
 
 RULES: dict[str, Callable[..., Any]] = {
     "+": _on_each(lambda a, b: a + b),
@@ -251,16 +231,9 @@ RULES: dict[str, Callable[..., Any]] = {
     ".x": lambda a: a[0],
     ".y": lambda a: a[1],
     ".z": lambda a: a[2],
-    "sin": _through(slopes.sin),
-    "cos": _through(slopes.cos),
-    "tan": _through(slopes.tan),
-    "asin": _through(slopes.asin),
-    "acos": _through(slopes.acos),
-    "atan": _through(slopes.atan),
+    **{name: _through(SLOPES[name.upper()]) for name in _ELEMENTARY},
     "atan2": _angle_of,
-    "sqrt": _through(slopes.sqrt),
-    "exp": _through(slopes.exp),
-    "log": _through(slopes.log),
+    "sqrt": _through(SLOPES["SQUARE_ROOT"]),
     "pow": _power,
     "abs": _absolute,
     "sign": _sign,
@@ -270,43 +243,37 @@ RULES: dict[str, Callable[..., Any]] = {
     "dot": _dot,
     "cross": _cross,
     "det": lambda a, b, c: _dot(a, _cross(b, c)),
-    "norm": _norm,
-    "unit_vector": lambda a: _on_each(jets.quotient)(a, _norm(a)),
+    "norm": lambda a: _hypot(*a),
+    "unit_vector": lambda a: _on_each(jets.quotient)(a, _hypot(*a)),
     "angle_between": lambda a, b: (
         _angle_of(_size(_cross(a, b)), _dot(a, b)) + (_zero_of(a) + _zero_of(b))
     ),
-    **{symbol: _compared(symbol) for symbol in conditions.COMPARED},
-    "and": _joined(truths.both),
-    "or": _joined(truths.either),
+    **{symbol: _compared(symbol) for symbol in operations.COMPARED},
+    "and": _joined(operations.both),
+    "or": _joined(operations.either),
     "not": lambda a: jets.constant_jet(1.0) - a,
     "if": _if,
     "clip": lambda a, least, most: _extreme(-1.0)(_extreme(1.0)(a, least), most),
     "hypot": _hypot,
     "floor": _floor,
-    "ceil": _staircase(steps.above, lambda x: x - steps.nearest(x)),
-    "round": _staircase(steps.nearest, lambda x: x - steps.below(x) - 0.5),
+    "ceil": _staircase(operations.above, lambda x: x - operations.nearest(x)),
+    "round": _staircase(operations.nearest, lambda x: x - operations.below(x) - 0.5),
     "mod": _mod,
-    "sinh": _through(slopes.sinh),
-    "cosh": _through(slopes.cosh),
-    "tanh": _through(slopes.tanh),
-    "asinh": _through(slopes.asinh),
-    "acosh": _through(slopes.acosh),
-    "atanh": _through(slopes.atanh),
+    "sinh": _through(jets.sinh),
+    "cosh": _through(jets.cosh),
+    "tanh": _through(jets.tanh),
+    "asinh": _through(jets.asinh),
+    "acosh": _through(jets.acosh),
+    "atanh": _through(jets.atanh),
 }
 """Every operation's rule for jets; a vector is a tuple of jets."""
 
 
 Nodes = tuple[Node, ...]
 Rate = Callable[[Name], Nodes | None]
-"""The derivative of what a name stands for; None where it does not move."""
-
-
-class _Moving(NamedTuple):
-    """A part of an expression and its derivative, None where it does not move."""
-
-    value: Nodes
-    rate: Nodes | None
-
+"""The derivative of a name; None where it does not move."""
+_Moving = tuple[Nodes, Nodes | None]
+"""A part of an expression and its derivative, None where it does not move."""
 
 TERMS: dict[str, tuple[str, ...]] = {
     "+": ("d", "d"),
@@ -345,7 +312,7 @@ TERMS: dict[str, tuple[str, ...]] = {
     "norm": ("dot(a, d)/norm(a)",),
     "unit_vector": ("(d - dot(a, d)/dot(a, a)*a)/norm(a)",),
 }
-"""What the derivative d of each operand a, b, c adds to an operation's."""
+"""The terms of an operation's derivative, for the derivative d of each operand a, b, c."""
 
 WHOLE = {
     "[]": "[da, db, dc]",
@@ -382,71 +349,62 @@ def differentiated(nodes: Sequence[Node], rate: Rate, unit: str, offset: int) ->
     stack: list[_Moving] = []
     for node in nodes:
         if isinstance(node, Name):
-            stack.append(_Moving((node,), rate(node)))
+            stack.append(((node,), rate(node)))
         elif isinstance(node, NumberNode):
-            stack.append(_Moving((node,), None))
+            stack.append(((node,), None))
         else:
             operands = stack[-node.arity :]
             del stack[-node.arity :]
             stack.append(_operated(node, operands, unit, offset))
-        refuse_large(len(stack[-1].value) + len(stack[-1].rate or ()), offset)
-    value, found = stack[-1].value, _rate_of(stack[-1], unit, offset)
-    if stack[-1].rate is None:
-        return found
+        refuse_large(len(stack[-1][0]) + len(stack[-1][1] or ()), offset)
+    value, derivative = stack[-1]
+    if derivative is None:
+        return _rate_of(stack[-1], unit, offset)
     # log(x) has none where x < 0, though 1/x has a value, and so for what does not move
-    return _filled(f"d + 0*a/(1 {unit})", {"a": value, "d": found}, offset)
+    return _filled(f"d + 0*a/(1 {unit})", {"a": value, "d": derivative}, offset)
 
 
 def _operated(node: OperationNode, operands: list[_Moving], unit: str, offset: int) -> _Moving:
     if node.symbol in _FOLDED and node.arity > 2:
         pair = node._replace(arity=2)
-        found = operands[0]
-        for operand in operands[1:]:
-            found = _operated(pair, [found, operand], unit, offset)
-        return found
-    value = (*(n for operand in operands for n in operand.value), node)
-    if node.symbol in STEPS or all(operand.rate is None for operand in operands):
-        return _Moving(value, None)
-    names = dict(zip("abc", (operand.value for operand in operands), strict=False))
+        return reduce(lambda a, b: _operated(pair, [a, b], unit, offset), operands)
+    values, rates = zip(*operands, strict=True)
+    value = (*chain.from_iterable(values), node)
+    if node.symbol in STEPS or all(rate is None for rate in rates):
+        return value, None
+    names = dict(zip("abc", values, strict=False))
     if node.symbol in WHOLE:
-        rates = [_rate_of(operand, unit, offset) for operand in operands]
-        names |= dict(zip(("da", "db", "dc"), rates, strict=False))
-        return _Moving(value, _filled(WHOLE[node.symbol], names, offset))
-    total: Nodes = ()
-    for operand, term in zip(operands, _terms_of(node, operands), strict=True):
-        if operand.rate is None:
-            continue
-        found_term = _filled(term, {**names, "d": operand.rate}, offset)
-        total = (*total, *found_term, OperationNode("+", 2, offset)) if total else found_term
-    return _Moving(value, total)
-
-
-def _terms_of(node: OperationNode, operands: list[_Moving]) -> Sequence[str]:
-    """The terms of an operation; of a power that is written, with the exponent below it."""
-    exponent = operands[-1].value[-1]
+        all_rates = [_rate_of(operand, unit, offset) for operand in operands]
+        names |= dict(zip(("da", "db", "dc"), all_rates, strict=False))
+        return value, _filled(WHOLE[node.symbol], names, offset)
+    terms: Sequence[str] = TERMS[node.symbol]
+    exponent = values[-1][-1]
     if node.symbol in ("^", "pow") and isinstance(exponent, NumberNode) and exponent.unit is None:
-        return (f"b*a^{float(exponent.value) - 1.0!r}*d", "d")
-    return TERMS[node.symbol]
+        # a literal exponent has its derivative's exponent as a literal, too
+        terms = (f"b*a^{float(exponent.value) - 1.0!r}*d", "d")
+    total: Nodes = ()
+    for rate, text in zip(rates, terms, strict=True):
+        if rate is not None:
+            term = _filled(text, {**names, "d": rate}, offset)
+            total = (*total, *term, OperationNode("+", 2, offset)) if total else term
+    return value, total
 
 
 def _rate_of(part: _Moving, unit: str, offset: int) -> Nodes:
     """The derivative, zero in its dimension where the part does not move."""
-    if part.rate is not None:
-        return part.rate
-    return _filled(f"0*a/(1 {unit})", {"a": part.value}, offset)
+    value, rate = part
+    return _filled(f"0*a/(1 {unit})", {"a": value}, offset) if rate is None else rate
 
 
-@cache
-def _template(text: str) -> Nodes:
-    return parse_nodes(text)
+_template = cache(parse_nodes)
 
 
 def _filled(text: str, parts: Mapping[str, Nodes], offset: int) -> Nodes:
     """A rule with parts of the expression in the places of its names."""
-    found: list[Node] = []
+    nodes: list[Node] = []
     for node in _template(text):
         if isinstance(node, Name):
-            found += parts[node.text]
+            nodes += parts[node.text]
         else:
-            found.append(node._replace(offset=offset))
-    return tuple(found)
+            nodes.append(node._replace(offset=offset))
+    return tuple(nodes)

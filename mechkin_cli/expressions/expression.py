@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mechkin_cli.exact import PI
-from mechkin_cli.expressions import operations as arithmetic, operations as conditions
+from mechkin_cli.expressions import operations
 from mechkin_cli.expressions.functions import (
     FORMS,
     FUNCTIONS,
@@ -37,33 +37,32 @@ from mechkin_cli.expressions.quantity import (
     OperationNode,
     Quantity,
     Resolve,
-    Scalar,
     Site,
     UnknownName,
-    Value,
     Vector,
+    components,
 )
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import DoubleDoubles, Recorded, as_recorded, is_finite, is_number, plain
 from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
 
-_NAMED = "names are those of parameters and directions, and of quantities such as J.theta"
+_NAMES_ARE = "names are those of parameters and directions, and of quantities such as J.theta"
 
 _OPERATIONS: dict[str, Callable[..., Quantity]] = {
-    "+": arithmetic.add_or_subtract,
-    "-": arithmetic.add_or_subtract,
-    "*": arithmetic.multiply,
-    "/": arithmetic.divide,
-    "^": arithmetic.raise_to_power,
-    "negate": arithmetic.negate,
-    "[]": arithmetic.vector,
-    ".x": arithmetic.component,
-    ".y": arithmetic.component,
-    ".z": arithmetic.component,
-    **dict.fromkeys(conditions.COMPARED, conditions.compare),
-    "and": conditions.join,
-    "or": conditions.join,
-    "not": conditions.deny,
+    "+": operations.add_or_subtract,
+    "-": operations.add_or_subtract,
+    "*": operations.multiply,
+    "/": operations.divide,
+    "^": operations.raise_to_power,
+    "negate": operations.negate,
+    "[]": operations.vector,
+    ".x": operations.component,
+    ".y": operations.component,
+    ".z": operations.component,
+    **dict.fromkeys(operations.COMPARED, operations.compare),
+    "and": operations.join,
+    "or": operations.join,
+    "not": operations.deny,
     **{name: function.apply for name, function in (FUNCTIONS | FORMS).items()},
 }
 _AXES = ("x", "y", "z")
@@ -78,12 +77,12 @@ class Expression(NamedTuple):
 
     @property
     def names(self) -> frozenset[str]:
-        """The dotted names used, as a resolver is asked for them.
+        """The dotted names that a resolver has to look up.
 
         A component of a name with a dot is left out: `pm1.position.x` counts as `pm1.position`.
-        `B.x` is kept: it is a coordinate x of a joint B, or else the component of a direction B.
+        `B.x` stays: it is a coordinate x of a joint B, or else the component of a direction B.
         """
-        return frozenset(_asked_for(node) for node in self.nodes if isinstance(node, Name))
+        return frozenset(_looked_up(node) for node in self.nodes if isinstance(node, Name))
 
     @property
     def number(self) -> NumberNode | None:
@@ -148,10 +147,10 @@ class Expression(NamedTuple):
 
         Values of names may be floats, rows of shape (rows,), or vectors of these. A row in which an
         operation has no finite value is nan from there on, one in which a name is infinite is
-            infinite or nan; a constant without a finite value is an error. To
-        check dimensions alone, resolve every name to rows of length one. `units` are only used to
-        write hints; `literal` gives numbers of the text (None: as doubles). `through_infinity` lets
-        functions take infinite rows, as the kernel's programs do: atan(1/x) is a quarter turn at 0.
+        infinite or nan; a constant without a finite value is an error. To check dimensions alone,
+        resolve every name to rows of length one. `units` are only used to write hints; `literal`
+        gives numbers of the text (None: as doubles). `through_infinity` lets functions take
+        infinite rows, as the kernel's programs do: atan(1/x) is a quarter turn at 0.
 
         Raises:
             ExpressionError: unknown name, dimensions that do not fit, a value outside a function's
@@ -175,22 +174,22 @@ class Expression(NamedTuple):
                 elif isinstance(node, NumberNode):
                     stack.append(Operand(literal(node), node.offset, node))
                 else:
-                    found = _look_up(node, resolve)
-                    some_infinite = some_infinite or is_infinite(found)
-                    stack.append(Operand(found, node.offset))
+                    quantity = _look_up(node, resolve)
+                    some_infinite = some_infinite or is_infinite(quantity)
+                    stack.append(Operand(quantity, node.offset))
         return stack[-1].quantity
 
 
 def parse(text: str) -> Expression:
-    """The expression that a text says.
+    """The expression of a text.
 
     Raises:
-        ExpressionError: the text is no expression, or exceeds a limit (`limits`).
+        ExpressionError: the text is not an expression, or exceeds a limit (`MAX_NODES`, ...).
     """
     return Expression(text, parse_nodes(text))
 
 
-def _asked_for(node: Name) -> str:
+def _looked_up(node: Name) -> str:
     prefix, _, axis = node.text.rpartition(".")
     if node.whole:
         return node.text
@@ -204,20 +203,14 @@ def _operate(node: OperationNode, operands: list[Operand], units: UnitSystem) ->
         raise site.error(
             f"the dimension {quantity.dimension} has an exponent above the limit {MAX_EXPONENT}"
         )
-    value = quantity.value
-    parts = value.components if isinstance(value, Vector) else (value,)
-    if any(is_number(item) and not is_finite(item) for item in parts):
-        raise _not_finite(site, operands)
+    if any(is_number(item) and not is_finite(item) for item in components(quantity.value)):
+        # an overflow, or a value outside a function's domain
+        numbers = [f"{item.value:.6g}" for item in operands if isinstance(item.value, float)]
+        of_numbers = f" for {', '.join(numbers)} (in SI units)" if numbers else ""
+        raise site.error(
+            f"{site.symbol} has no finite value{of_numbers}", "check the values of the parameters"
+        )
     return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
-
-
-def _not_finite(site: Site, operands: list[Operand]) -> ExpressionError:
-    """The error of a constant that overflows or leaves a function's domain."""
-    measured = [f"{item.value:.6g}" for item in operands if isinstance(item.value, float)]
-    given = f" for {', '.join(measured)} (in SI units)" if measured else ""
-    return site.error(
-        f"{site.symbol} has no finite value{given}", "check the values of the parameters"
-    )
 
 
 def _literal(number: NumberNode) -> Quantity:
@@ -227,47 +220,46 @@ def _literal(number: NumberNode) -> Quantity:
         value = conversion(number.unit.factor).apply(number.value)
     except UnitError as error:
         raise ExpressionError(error.message, number.offset, error.hint) from None
-    if not is_finite(value):
+    finite = is_finite(value)
+    if not finite or (value == 0.0 and number.value != 0.0):
         text = f"{number.text[:MAX_QUOTED]} {number.unit}"
+        if finite:
+            raise ExpressionError(f"{text} {VANISHES}", number.offset, WRITE_ZERO)
         raise ExpressionError(f"{text} is too large", number.offset)
-    if value == 0.0 and number.value != 0.0:
-        text = f"{number.text[:MAX_QUOTED]} {number.unit}"
-        raise ExpressionError(f"{text} {VANISHES}", number.offset, WRITE_ZERO)
     return Quantity(value, number.unit.dimension)
 
 
 def _look_up(node: Name, resolve: Resolve) -> Quantity:
     """The quantity of a name, or else the component of the quantity before its last dot."""
     prefix, _, axis = node.text.rpartition(".")
-    asked = _asked_for(node)
     try:
-        if asked == node.text:
+        if _looked_up(node) == node.text:
             try:
-                return _resolved(asked, resolve)
+                return _resolved(node.text, resolve)
             except KeyError:
                 if axis not in _AXES or not _exists(prefix, resolve):
                     raise
         vector = _resolved(prefix, resolve)
-    except KeyError as unknown:
-        raise _unknown(node, unknown) from None
+    except KeyError as error:
+        hint = error.hint if isinstance(error, UnknownName) else None
+        if node.text in UNITS:
+            hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
+        message = f"there is nothing named {node.text[:MAX_QUOTED]}"
+        raise ExpressionError(message, node.offset, hint or _NAMES_ARE) from None
     except ExpressionError as error:
         raise ExpressionError(error.message, node.offset, error.hint) from error
     site = Site("." + axis, node.offset + len(prefix), _DEFAULT_UNITS)
-    return arithmetic.component(site, Operand(vector, node.offset))
+    return operations.component(site, Operand(vector, node.offset))
 
 
 def _resolved(name: str, resolve: Resolve) -> Quantity:
     """The quantity of a name, its constants as plain floats."""
     quantity = resolve(name)
-    value: Value = quantity.value
-    if isinstance(value, Vector):
-        return replace(quantity, value=Vector(*map(_plain, value.components)))
-    number = _plain(value)
-    return quantity if number is value else replace(quantity, value=number)
-
-
-def _plain(value: Scalar) -> Scalar:
-    return value if isinstance(value, np.ndarray) else plain(value)
+    if not isinstance(quantity.value, Vector):
+        number = quantity.value if isinstance(quantity.value, np.ndarray) else plain(quantity.value)
+        return quantity if number is quantity.value else replace(quantity, value=number)
+    parts = [p if isinstance(p, np.ndarray) else plain(p) for p in quantity.value.components]
+    return replace(quantity, value=Vector(*parts))
 
 
 def _exists(name: str, resolve: Resolve) -> bool:
@@ -278,37 +270,28 @@ def _exists(name: str, resolve: Resolve) -> bool:
     return True
 
 
-def _unknown(node: Name, error: KeyError) -> ExpressionError:
-    hint = error.hint if isinstance(error, UnknownName) else None
-    if node.text in UNITS:
-        hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
-    name = node.text[:MAX_QUOTED]
-    return ExpressionError(f"there is nothing named {name}", node.offset, hint or _NAMED)
-
-
-# Named expressions: where a name of one stands in a text, its nodes stand in the expression.
-#
-# So whoever reads an expression knows only quantities of the mechanism and parameters, whatever a
-# file calls them; what grows beyond `MAX_EXPANDED` is refused.
-
 Differentiate = Callable[[tuple[Node, ...], Name, int], tuple[Node, ...]]
-"""The derivative of nodes by the coordinate of a name; the place is that of the whole."""
+"""The derivative of nodes by the coordinate of a name, with the offset of the whole."""
 
 
 @dataclass(frozen=True)
 class Definitions:
-    """What is named, each with all names of others replaced, and how derivatives are taken where
-    there are some."""
+    """Named expressions, whose nodes replace their names in other expressions, and how derivatives
+    are taken (None: not at all).
+
+    So whoever evaluates an expression knows only quantities of the mechanism and parameters,
+    whatever a file calls them. What grows beyond `MAX_EXPANDED` is refused.
+    """
 
     named: Mapping[str, Expression] = field(default_factory=dict)
     differentiate: Differentiate | None = field(default=None, compare=False)
 
     def adding(self, name: str, expression: Expression) -> Definitions:
-        """These and one more, in which what is named is replaced."""
+        """These and one more, which has no names of others."""
         return replace(self, named={**self.named, name: expression})
 
     def parse(self, text: str) -> Expression:
-        """The expression that a text says, in quantities of the mechanism.
+        """The expression of a text, in quantities of the mechanism.
 
         Raises:
             ExpressionError: as `parse`; or a derivative that is not known.
@@ -316,7 +299,7 @@ class Definitions:
         return self.expanded(parse(text))
 
     def expanded(self, expression: Expression) -> Expression:
-        """The expression with what is named in the places of names.
+        """The expression with the named expressions in the places of their names.
 
         Raises:
             ExpressionError: it grows too large, or a derivative is not known.
@@ -327,7 +310,7 @@ class Definitions:
         stack: list[list[Node]] = []
         for node in expression.nodes:
             if isinstance(node, Name):
-                stack.append(self._meant(node))
+                stack.append(self._replacement(node))
             elif isinstance(node, OperationNode):
                 operands = stack[-node.arity :]
                 del stack[-node.arity :]
@@ -342,7 +325,7 @@ class Definitions:
             return node.symbol == "derivative" and self.differentiate is not None
         return isinstance(node, Name) and node.text.partition(".")[0] in self.named
 
-    def _meant(self, name: Name) -> list[Node]:
+    def _replacement(self, name: Name) -> list[Node]:
         whole = self.named.get(name.text)
         if whole is not None:
             return _at(name.offset, whole.nodes)
@@ -350,7 +333,7 @@ class Definitions:
         vector = self.named.get(prefix)
         if vector is None:
             if name.text.partition(".")[0] in self.named:
-                text = f"{name.text[:MAX_QUOTED]} is no component of a quantity"
+                text = f"{name.text[:MAX_QUOTED]} is not a component of a quantity"
                 raise ExpressionError(text, name.offset, "components are .x, .y and .z")
             return [name]
         if axis not in _AXES:
@@ -369,18 +352,13 @@ class Definitions:
 
 
 def _at(offset: int, nodes: Sequence[Node]) -> list[Node]:
-    """The nodes with one place; those that have it are shared, as most are in a chain of names."""
+    """The nodes with one offset; those that have it are shared, as most are in a chain of names."""
     return [node if node.offset == offset else node._replace(offset=offset) for node in nodes]
 
 
-# Numbers of an expression as its text says them, in double-double.
-
-
 def exact_literal(number: NumberNode) -> Quantity:
-    """The number as written, so that a function of it has all its digits, too."""
-    if number.unit is None and number.text == "pi":
-        return Quantity(DoubleDoubles.of_fraction(PI))  # type: ignore[arg-type]
-    exact = Fraction(number.text)
+    """The number of a text in double-double, so that functions of it have all their digits, too."""
+    exact = PI if number.text == "pi" else Fraction(number.text)
     if number.unit is None:
         return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
     value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)

@@ -1,6 +1,7 @@
-"""Texts of scalar fields to numbers.
+"""Scalar fields and parameters of a file: from their texts to numbers.
 
 A text that is only a number takes the field's unit; anything else must have the field's dimension.
+Parameters are texts that may use one another in any order.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from mechkin_cli.expressions.quantity import (
     MAX_CHAIN,
     MAX_ERRORS,
     ExpressionError,
-    NumberNode,
     Operand,
     Quantity,
     Resolve,
@@ -97,18 +97,12 @@ def constant_in_file_units(
     expression = parse(text)
     value = _evaluated(expression, dimension, units, resolve)
     number = expression.number
-    if number is not None and number.unit is not None:
-        return _ratio(number, dimension, units)
-    return units.from_si(value, dimension)
-
-
-def _ratio(number: NumberNode, dimension: Dimension, units: UnitSystem) -> float:
-    assert number.unit is not None
+    if number is None or number.unit is None:
+        return units.from_si(value, dimension)
     try:
-        ratio = conversion(number.unit.factor / units.unit(dimension).factor)
+        return conversion(number.unit.factor / units.unit(dimension).factor).apply(number.value)
     except UnitError as error:
         raise ExpressionError(error.message, number.offset, error.hint) from None
-    return ratio.apply(number.value)
 
 
 def _evaluated(
@@ -150,23 +144,21 @@ def _start(expression: Expression) -> int:
     return len(expression.text) - len(expression.text.lstrip())
 
 
-# A file's parameters: texts that may use one another in any order.
-
-Names = dict[str, list[str]]
 Move = Callable[[str, Quantity], Quantity]
-"""Makes of a parameter and its value another value."""
+"""Changes the value of a parameter, of which it takes name and value."""
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
 
 
-def lookup(quantities: Mapping[str, Quantity]) -> Resolve:
-    """A resolver for the names of a mapping, with the nearest of them as hint for others."""
+def lookup(quantities: Mapping[str, Quantity], known: Iterable[str] | None = None) -> Resolve:
+    """A resolver for the names of a mapping; its hints for others are names of `known` (None: of
+    the mapping)."""
 
     def resolve(name: str) -> Quantity:
         try:
             return quantities[name]
         except KeyError:
-            raise UnknownName(name, quantities) from None
+            raise UnknownName(name, quantities if known is None else known) from None
 
     return resolve
 
@@ -182,82 +174,56 @@ def evaluate_parameters(
 
     A number without unit is dimensionless. With a list `errors`, every independent error (up to
     a little over `MAX_ERRORS`) is appended to it and the parameters that cannot be evaluated are
-    left out; without one the first is raised. `given` are values instead of some texts; each value
-    is taken as `moved` makes it, by those that depend on it, too.
+    left out; without one the first is raised. `given` are values instead of some texts. `moved`
+    changes each value, and so those that depend on it.
 
     Raises:
         ExpressionError: a text that is no constant, or parameters that depend on themselves; `name`
             is the parameter, `offset` counts within its text.
     """
-    found: list[ExpressionError] = [] if errors is None else errors
-    before = len(found)
-    expressions = _parsed({n: t for n, t in texts.items() if n not in given}, found)
+    all_errors: list[ExpressionError] = [] if errors is None else errors
+    before = len(all_errors)
+    expressions = {}
+    for name, text in texts.items():
+        if name not in given:
+            try:
+                expressions[name] = parse(text)
+            except ExpressionError as error:
+                all_errors.append(_named(error, name))
     needs = {
-        name: _unique(used.partition(".")[0] for used in expression.names)
+        name: sorted({used.partition(".")[0] for used in expression.names})
         for name, expression in expressions.items()
     }
-    move = moved or _unmoved
+    move = moved or (lambda _, value: value)
     values = {name: move(name, value) for name, value in given.items()}
-    for name in in_order(expressions, needs, found):
-        if len(found) - before > MAX_ERRORS:
+    resolve = lookup(values, texts)
+    for name in in_order(expressions, needs, all_errors):
+        if len(all_errors) - before > MAX_ERRORS:
             break
         if any(need in texts and need not in values for need in needs[name]):
             continue
         try:
-            value = _scalar(expressions[name], _resolver(values, texts), texts, units)
-            values[name] = move(name, value)
+            expressions[name].reject_ambiguous_units(texts.__contains__)
+            quantity = expressions[name].evaluate(resolve, units)
+            if isinstance(quantity.value, Vector):
+                hint = "take a component with .x, .y or .z"
+                raise ExpressionError("a parameter is one number, not a vector", 0, hint)
+            values[name] = move(name, quantity)
         except ExpressionError as error:
-            found.append(_named(error, name))
-    if errors is None and len(found) > before:
-        raise found[before]
+            all_errors.append(_named(error, name))
+    if errors is None and len(all_errors) > before:
+        raise all_errors[before]
     return {name: values[name] for name in texts if name in values}
-
-
-def _unmoved(name: str, value: Quantity) -> Quantity:
-    return value
-
-
-def _parsed(texts: Mapping[str, str], errors: list[ExpressionError]) -> dict[str, Expression]:
-    expressions = {}
-    for name, text in texts.items():
-        try:
-            expressions[name] = parse(text)
-        except ExpressionError as error:
-            errors.append(_named(error, name))
-    return expressions
-
-
-def _resolver(values: Mapping[str, Quantity], texts: Mapping[str, str]) -> Resolve:
-    """Values so far; hints may name every parameter."""
-
-    def resolve(name: str) -> Quantity:
-        if name in values:
-            return values[name]
-        raise UnknownName(name, texts)
-
-    return resolve
-
-
-def _scalar(
-    expression: Expression, resolve: Resolve, texts: Mapping[str, str], units: UnitSystem
-) -> Quantity:
-    expression.reject_ambiguous_units(texts.__contains__)
-    quantity = expression.evaluate(resolve, units)
-    if isinstance(quantity.value, Vector):
-        raise ExpressionError(
-            "a parameter is one number, not a vector", 0, "take a component with .x, .y or .z"
-        )
-    return quantity
 
 
 def in_order(
     expressions: Mapping[str, Expression],
-    needs: Names,
+    needs: Mapping[str, list[str]],
     errors: list[ExpressionError],
     kind: str = "parameters",
 ) -> list[str]:
     """Names with what they need before them; the members of a cycle are left out with one error,
-    which says of what `kind` they are."""
+    in which `kind` is the noun for them."""
     order: list[str] = []
     finished: set[str] = set()
     for root in expressions:
@@ -286,17 +252,9 @@ def _cycle(expression: Expression, chain: list[str], kind: str) -> ExpressionErr
     return ExpressionError(
         f"{kind} depend on themselves: {' -> '.join([*shown, chain[0]])}",
         expression.offset_of(chain[0]),
-        "give one of them a value"
-        if kind == "parameters"
-        else "give one of them a value"
-        if kind == "parameters"
-        else "write one without the others",
+        "give one of them a value" if kind == "parameters" else "write one without the others",
         chain[-1],
     )
-
-
-def _unique(names: Iterable[str]) -> list[str]:
-    return sorted(set(names))
 
 
 def _named(error: ExpressionError, name: str) -> ExpressionError:

@@ -1,6 +1,7 @@
-"""The functions of expressions: one table of what each takes and gives.
+"""The functions of expressions: one table of their arguments and results.
 
-A function is added by one entry of `FUNCTIONS`.
+A function is added by one entry of `FUNCTIONS`; the second section keeps rows in which something is
+infinite from becoming numbers again.
 """
 
 from __future__ import annotations
@@ -14,19 +15,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.expressions import (
-    operations as conditions,
-    operations as hyperbolic,
-    operations as scalar_functions,
-    operations as steps,
-)
+from mechkin_cli.expressions import operations
 from mechkin_cli.expressions.operations import (
     common_dimension,
-    divide,
-    raise_to_power,
+    dimension_of_all,
     require_alike,
 )
-from mechkin_cli.expressions.quantity import Operand, Quantity, Scalar, Site, Value, Vector
+from mechkin_cli.expressions.quantity import (
+    Operand,
+    Quantity,
+    Scalar,
+    Site,
+    Value,
+    Vector,
+    components,
+)
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.tape import is_number, of_one
 from mechkin_cli.tolerances import KNOWN_AT_DEAD_CENTRE
@@ -41,8 +44,8 @@ _BELOW_ONE = nextafter(1.0, 0.0)
 
 
 class Function(NamedTuple):
-    """A function of `fewest` arguments, or of any larger number where `variadic`; `alone` says
-    what to write where a single argument is given and another thing is meant."""
+    """A function of `fewest` arguments, or of any larger number where `variadic`; `alone` is the
+    hint for a call with a single argument, which probably means something else."""
 
     usage: str
     fewest: int
@@ -51,7 +54,7 @@ class Function(NamedTuple):
     alone: str = ""
 
     def accepts(self, count: int) -> bool:
-        """Whether the function takes so many arguments."""
+        """Whether the function takes this number of arguments."""
         return count == self.fewest or (self.variadic and count > self.fewest)
 
     @property
@@ -61,7 +64,7 @@ class Function(NamedTuple):
         return f"{'at least ' if self.variadic else ''}{self.fewest} {noun}"
 
     def cure(self, count: int) -> str:
-        """What to write in place of a call with so many arguments."""
+        """What to write in place of a call with this number of arguments."""
         return f"write {self.usage}{self.alone if count == 1 else ''}"
 
 
@@ -74,7 +77,7 @@ _OVER_ROWS = {
 
 def dot_product(a: Vector, b: Vector) -> Scalar:
     """The sum of the components' products, in order x, y, z."""
-    products = [one * other for one, other in zip(a.components, b.components, strict=True)]
+    products: list[Scalar] = [p * q for p, q in zip(a.components, b.components, strict=True)]
     return reduce(operator.add, products)
 
 
@@ -87,12 +90,12 @@ def cross_product(a: Vector, b: Vector) -> Value:
 
 
 def _elementary(
-    operation: str, takes: Dimension, gives: Dimension
+    operation: str, argument: Dimension, result: Dimension
 ) -> Callable[[Site, Operand], Quantity]:
     def apply(site: Site, operand: Operand) -> Quantity:
-        value = site.periodic(operand) if takes == ANGLE else site.scalar(operand)
-        site.require(operand, takes)
-        return Quantity(of_one(operation, value), gives)
+        value = site.periodic(operand) if argument == ANGLE else site.scalar(operand)
+        site.require(operand, argument)
+        return Quantity(of_one(operation, value), result)
 
     return apply
 
@@ -100,7 +103,7 @@ def _elementary(
 def _arctangent(site: Site, y: Operand, x: Operand) -> Quantity:
     sine, cosine = site.scalar(y), site.scalar(x)
     common_dimension(site, "take atan2 of {left} and {right}", y, x)
-    return Quantity(scalar_functions.angle_of(sine, cosine), ANGLE)
+    return Quantity(operations.angle_of(sine, cosine), ANGLE)
 
 
 def _square_root(site: Site, operand: Operand) -> Quantity:
@@ -114,24 +117,7 @@ def _square_root(site: Site, operand: Operand) -> Quantity:
     root = operand.dimension ** Fraction(1, 2)
     if any(Fraction(exponent).denominator > 2 for exponent in root.exponents):
         raise site.error(f"no square root of {operand.phrase}", None, operand)
-    return Quantity(scalar_functions.square_root(value), root)
-
-
-def _absolute(site: Site, operand: Operand) -> Quantity:
-    return Quantity(scalar_functions.magnitude(site.scalar(operand)), operand.dimension)
-
-
-def _sign(site: Site, operand: Operand) -> Quantity:
-    return Quantity(scalar_functions.sign(site.scalar(operand)))
-
-
-def _common_dimension_of(site: Site, action: str, operands: Sequence[Operand]) -> Dimension:
-    """The dimension of operands that must be of one kind."""
-    first, dimension = operands[0], operands[0].dimension
-    for operand in operands[1:]:
-        sofar = Operand(Quantity(first.value, dimension), first.offset, first.number)
-        dimension = common_dimension(site, action, sofar, operand)
-    return dimension
+    return Quantity(operations.square_root(value), root)
 
 
 def _extreme(
@@ -139,7 +125,7 @@ def _extreme(
 ) -> Callable[..., Quantity]:
     def apply(site: Site, *operands: Operand) -> Quantity:
         values = [site.scalar(operand) for operand in operands]
-        dimension = _common_dimension_of(site, "compare {left} and {right}", operands)
+        dimension = dimension_of_all(site, "compare {left} and {right}", operands)
         return Quantity(reduce(function, values), dimension)
 
     return apply
@@ -150,8 +136,8 @@ def _extreme_of(word: str, function: Callable[[Scalar, Scalar], Scalar]) -> Func
 
 
 def _clip(site: Site, operand: Operand, least: Operand, most: Operand) -> Quantity:
-    raised = Operand(_extreme(scalar_functions.larger)(site, operand, least), operand.offset)
-    return _extreme(scalar_functions.smaller)(site, raised, most)
+    raised = Operand(_extreme(operations.larger)(site, operand, least), operand.offset)
+    return _extreme(operations.smaller)(site, raised, most)
 
 
 def _of_number(
@@ -178,31 +164,28 @@ def _remainder(site: Site, operand: Operand, period: Operand) -> Quantity:
     dimension = common_dimension(site, "take mod of {left} and {right}", operand, period)
     if is_number(length) and length == 0.0:
         raise site.error("mod of zero", "check the values of the parameters", period)
-    return Quantity(steps.remainder(value, length), dimension)
+    return Quantity(operations.remainder(value, length), dimension)
 
 
 def _hypotenuse(site: Site, *operands: Operand) -> Quantity:
     squares = [site.scalar(operand) * site.scalar(operand) for operand in operands]
-    dimension = _common_dimension_of(site, "take hypot of {left} and {right}", operands)
-    return Quantity(scalar_functions.square_root(reduce(operator.add, squares)), dimension)
+    dimension = dimension_of_all(site, "take hypot of {left} and {right}", operands)
+    return Quantity(operations.square_root(reduce(operator.add, squares)), dimension)
 
 
 def _wrap(site: Site, operand: Operand) -> Quantity:
     value = site.periodic(operand)
     site.require(operand, ANGLE)
-    return Quantity(scalar_functions.wrap(value), ANGLE)
+    return Quantity(operations.wrap(value), ANGLE)
 
 
-def _dot(site: Site, a: Operand, b: Operand) -> Quantity:
-    one, other = site.vector(a), site.vector(b)
-    require_alike(site, a, b)
-    return Quantity(dot_product(one, other), a.dimension * b.dimension)
+def _product(function: Callable[[Vector, Vector], Value]) -> Callable[..., Quantity]:
+    def apply(site: Site, a: Operand, b: Operand) -> Quantity:
+        left, right = site.vector(a), site.vector(b)
+        require_alike(site, a, b)
+        return Quantity(function(left, right), a.dimension * b.dimension)
 
-
-def _cross(site: Site, a: Operand, b: Operand) -> Quantity:
-    one, other = site.vector(a), site.vector(b)
-    require_alike(site, a, b)
-    return Quantity(cross_product(one, other), a.dimension * b.dimension)
+    return apply
 
 
 def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
@@ -215,25 +198,25 @@ def _determinant(site: Site, a: Operand, b: Operand, c: Operand) -> Quantity:
 
 def _norm(site: Site, operand: Operand) -> Quantity:
     value = site.vector(operand)
-    found = scalar_functions.square_root(dot_product(value, value))
-    return Quantity(scalar_functions.infinite_with(value.components, found), operand.dimension)
+    length = operations.square_root(dot_product(value, value))
+    return Quantity(operations.infinite_with(value.components, length), operand.dimension)
 
 
 def _unit_vector(site: Site, operand: Operand) -> Quantity:
     site.vector(operand)
-    return divide(site, operand, Operand(_norm(site, operand), operand.offset))
+    return operations.divide(site, operand, Operand(_norm(site, operand), operand.offset))
 
 
 def _angle_between(site: Site, a: Operand, b: Operand) -> Quantity:
     """By atan2, whose digits do not get lost where the vectors are parallel."""
-    one, other = site.vector(a), site.vector(b)
+    left, right = site.vector(a), site.vector(b)
     require_alike(site, a, b)
-    normal, cosine = cross_product(one, other), dot_product(one, other)
+    normal, cosine = cross_product(left, right), dot_product(left, right)
     if isinstance(normal, Vector):
-        sine = scalar_functions.square_root(dot_product(normal, normal))
+        sine = operations.square_root(dot_product(normal, normal))
     else:
-        sine = scalar_functions.magnitude(normal)
-    angle = scalar_functions.angle_of(sine, cosine)
+        sine = operations.magnitude(normal)
+    angle = operations.angle_of(sine, cosine)
     return Quantity(angle + (_zero_of(site, a) + _zero_of(site, b)), ANGLE)
 
 
@@ -242,8 +225,8 @@ def _zero_of(site: Site, operand: Operand) -> Scalar:
     vector = site.vector(operand)
     square = dot_product(vector, vector)
     if is_number(square) and square == 0.0:
-        words = f"{site.symbol} of a zero vector, which has no direction"
-        raise site.error(words, "check the values of the parameters", operand)
+        message = f"{site.symbol} of a zero vector, which has no direction"
+        raise site.error(message, "check the values of the parameters", operand)
     return 0.0 / square
 
 
@@ -258,27 +241,35 @@ FUNCTIONS: dict[str, Function] = {
     "sqrt": Function("sqrt(x)", 1, _square_root),
     "exp": Function("exp(x)", 1, _elementary("EXP", DIMENSIONLESS, DIMENSIONLESS)),
     "log": Function("log(x)", 1, _elementary("LOG", DIMENSIONLESS, DIMENSIONLESS)),
-    "pow": Function("pow(x, n)", 2, raise_to_power),
-    "abs": Function("abs(x)", 1, _absolute),
-    "sign": Function("sign(x)", 1, _sign),
-    "min": _extreme_of("min", scalar_functions.smaller),
-    "max": _extreme_of("max", scalar_functions.larger),
+    "pow": Function("pow(x, n)", 2, operations.raise_to_power),
+    "abs": Function(
+        "abs(x)", 1, lambda site, x: Quantity(operations.magnitude(site.scalar(x)), x.dimension)
+    ),
+    "sign": Function("sign(x)", 1, lambda site, x: Quantity(operations.sign(site.scalar(x)))),
+    "min": _extreme_of("min", operations.smaller),
+    "max": _extreme_of("max", operations.larger),
     "clip": Function("clip(x, least, most)", 3, _clip),
-    "if": Function("if(condition, a, b)", 3, conditions.choose),
+    "if": Function("if(condition, a, b)", 3, operations.choose),
     "hypot": Function("hypot(a, b)", 2, _hypotenuse, variadic=True),
-    "floor": Function("floor(x)", 1, _of_number(steps.below, -steps.LARGEST, steps.LARGEST)),
-    "ceil": Function("ceil(x)", 1, _of_number(steps.above, -steps.LARGEST, steps.LARGEST)),
-    "round": Function("round(x)", 1, _of_number(steps.nearest, -steps.LARGEST, steps.LARGEST)),
+    "floor": Function(
+        "floor(x)", 1, _of_number(operations.below, -operations.LARGEST, operations.LARGEST)
+    ),
+    "ceil": Function(
+        "ceil(x)", 1, _of_number(operations.above, -operations.LARGEST, operations.LARGEST)
+    ),
+    "round": Function(
+        "round(x)", 1, _of_number(operations.nearest, -operations.LARGEST, operations.LARGEST)
+    ),
     "mod": Function("mod(x, period)", 2, _remainder),
-    "sinh": Function("sinh(x)", 1, _of_number(hyperbolic.sinh)),
-    "cosh": Function("cosh(x)", 1, _of_number(hyperbolic.cosh)),
-    "tanh": Function("tanh(x)", 1, _of_number(hyperbolic.tanh)),
-    "asinh": Function("asinh(x)", 1, _of_number(hyperbolic.asinh)),
-    "acosh": Function("acosh(x)", 1, _of_number(hyperbolic.acosh, 1.0)),
-    "atanh": Function("atanh(x)", 1, _of_number(hyperbolic.atanh, -_BELOW_ONE, _BELOW_ONE)),
+    "sinh": Function("sinh(x)", 1, _of_number(operations.sinh)),
+    "cosh": Function("cosh(x)", 1, _of_number(operations.cosh)),
+    "tanh": Function("tanh(x)", 1, _of_number(operations.tanh)),
+    "asinh": Function("asinh(x)", 1, _of_number(operations.asinh)),
+    "acosh": Function("acosh(x)", 1, _of_number(operations.acosh, 1.0)),
+    "atanh": Function("atanh(x)", 1, _of_number(operations.atanh, -_BELOW_ONE, _BELOW_ONE)),
     "wrap": Function("wrap(angle)", 1, _wrap),
-    "dot": Function("dot(a, b)", 2, _dot),
-    "cross": Function("cross(a, b)", 2, _cross),
+    "dot": Function("dot(a, b)", 2, _product(dot_product)),
+    "cross": Function("cross(a, b)", 2, _product(cross_product)),
     "det": Function("det(a, b, c)", 3, _determinant),
     "norm": Function("norm(a)", 1, _norm),
     "unit_vector": Function("unit_vector(a)", 1, _unit_vector),
@@ -293,7 +284,7 @@ def _no_derivative(site: Site, *operands: Operand) -> Quantity:
 
 
 FORMS = {"derivative": Function("derivative(expression, input)", 2, _no_derivative)}
-"""What is written as a function, and replaced before it is evaluated (`definitions`)."""
+"""Forms written as functions, which `Definitions` replace before an expression is evaluated."""
 
 INSTEAD = {
     "ln": "the natural logarithm is log(x)",
@@ -313,14 +304,12 @@ INSTEAD = {
     "length": "write norm(a)",
     "normalize": "write unit_vector(a)",
 }
-"""What to write for functions that go by another name elsewhere."""
+"""What to write for functions that have another name elsewhere."""
 
 
-# What becomes of rows in which something is infinite.
-#
-# A quantity may be: what grows without bound towards a row at a dead centre. What is made of it is
-# infinite, too, or has no value. An operation that has no finite value by itself, as 1/x at zero,
-# gives none, so that no function makes a number of it again.
+# Rows in which something is infinite: a quantity that grows without bound towards a dead centre.
+# What is computed from it is infinite, too, or nan. An operation that has no finite value by
+# itself, as 1/x at zero, gives nan, so that no function makes a number of it again.
 
 _KEEPS_INFINITE = frozenset({"+", "-", "negate", "max", "min", "abs"})
 """Operations that are infinite where one operand is, whatever the others are."""
@@ -330,32 +319,33 @@ _TAKES_PARTS = frozenset({"[]", ".x", ".y", ".z"})
 
 def is_infinite(quantity: Quantity) -> bool:
     """Whether a quantity is infinite in some row."""
-    return any(map(_somewhere, _parts(quantity)))
+    return any(map(_somewhere, components(quantity.value)))
 
 
 def without_new(operand: Operand) -> Operand:
-    """Rows with nan for what is infinite, of operations on what is finite."""
+    """An operand computed from finite ones, with nan for what is infinite."""
     if not is_infinite(operand.quantity):
         return operand
     return _each(operand, lambda part: np.where(np.isinf(part), np.nan, part))
 
 
 def of_infinite(symbol: str, operand: Operand, operands: Sequence[Operand]) -> Operand:
-    """The same where operands may be infinite: what is finite in such a row is none of it."""
+    """The result of an operation whose operands may be infinite: nan where it is finite although
+    one of them is infinite, or the other way round."""
     if symbol in _TAKES_PARTS:
         return operand
     rows: Bools | np.bool_ = np.False_
-    for given in operands:
-        for part in _parts(given.quantity):
+    for each in operands:
+        for part in components(each.value):
             if isinstance(part, np.ndarray):
                 rows = rows | np.isinf(part)
-    told = _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
+    result = _each(operand, lambda part: np.where(np.isinf(part) == rows, part, np.nan))
     if symbol in _KEEPS_INFINITE:
-        return told
+        return result
     lost: Bools | np.bool_ = np.False_
-    for given in operands:
-        lost = lost | _may_vanish(given.quantity)
-    return _each(told, lambda part: np.where(rows & lost, np.nan, part))
+    for each in operands:
+        lost = lost | _may_vanish(each.quantity)
+    return _each(result, lambda part: np.where(rows & lost, np.nan, part))
 
 
 def _may_vanish(quantity: Quantity) -> Bools | np.bool_:
@@ -363,7 +353,7 @@ def _may_vanish(quantity: Quantity) -> Bools | np.bool_:
     product with what is infinite may have any limit."""
     rows: Bools | np.bool_ = np.True_
     plain = 1.0 if quantity.dimension in (ANGLE, DIMENSIONLESS) else 0.0
-    for part in _parts(quantity):
+    for part in components(quantity.value):
         size = np.abs(np.asarray(part, dtype=np.float64))
         scale = max(plain, float(size.max(where=np.isfinite(size), initial=0.0)))
         rows = rows & (size <= KNOWN_AT_DEAD_CENTRE * scale)
@@ -377,13 +367,7 @@ def _somewhere(part: Scalar) -> bool:
     return bool(np.logical_or.reduce(np.isinf(part)))
 
 
-def _parts(quantity: Quantity) -> Sequence[Scalar]:
-    value = quantity.value
-    return value.components if isinstance(value, Vector) else (value,)
-
-
 def _each(operand: Operand, change: Callable[[Floats], Floats]) -> Operand:
-    value = operand.quantity.value
-    kept = [change(p) if isinstance(p, np.ndarray) else p for p in _parts(operand.quantity)]
-    found = Vector(*kept) if isinstance(value, Vector) else kept[0]
-    return replace(operand, quantity=replace(operand.quantity, value=found))
+    parts = [change(p) if isinstance(p, np.ndarray) else p for p in components(operand.value)]
+    value = Vector(*parts) if isinstance(operand.value, Vector) else parts[0]
+    return replace(operand, quantity=replace(operand.quantity, value=value))

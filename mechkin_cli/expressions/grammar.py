@@ -1,10 +1,20 @@
-"""Text of an expression to tokens."""
+"""From the text of an expression to its nodes: tokens, then a precedence-climbing parser.
+
+From weakest to strongest: `or`, `and`, `not`, comparisons, `+ -`, `* /`, sign, `^` (right to left;
+`**` is the same), then calls, `.x .y .z`, parentheses and `[a, b, c]`. So `-a^2` is `-(a^2)`,
+`2^-1` is one half and `not a < b and c < d` is `(not (a < b)) and (c < d)`. Source: V. Pratt, Top
+down operator precedence, 1973; size and depth are limited.
+
+Units stand only behind numbers: `0.5 in`, `10 N*m`, `3 lbm*in/s^2`. The word right after a number
+is a unit, with or without a space between. `*` or `/` and another unit word continue the unit only
+when no space surrounds the sign, so `2 N * m` is two newtons times a parameter m. `^` and a whole
+number right behind a unit word is its exponent.
+"""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Literal
 
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions.functions import FORMS, FUNCTIONS, INSTEAD
@@ -24,19 +34,17 @@ from mechkin_cli.expressions.quantity import (
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import UNITS, CompoundUnit, UnitError, bounded_exponent, compound, named_unit
 
-Kind = Literal["number", "name", "component", "symbol", "end"]
-
+_SPACE = " \t\r\n"
 _TOKEN = re.compile(
     r"""
-    (?P<number>    (?: [0-9]+ \.? [0-9]* | \. [0-9]+ ) (?: [eE] [+-]? [0-9]+ )? )
+  ( (?P<number>    (?: [0-9]+ \.? [0-9]* | \. [0-9]+ ) (?: [eE] [+-]? [0-9]+ )? )
   | (?P<word>      (?: and | or | not ) (?! [A-Za-z0-9_.] ) )
   | (?P<name>      [A-Za-z_][A-Za-z0-9_]* (?: \. [A-Za-z_][A-Za-z0-9_]* )* )
   | (?P<component> \. [A-Za-z_][A-Za-z0-9_]* )
-  | (?P<symbol>    \*\* | [<>=!]= | [-+*/^()\[\],<>] )
+  | (?P<symbol>    \*\* | [<>=!]= | [-+*/^()\[\],<>] ) ) [ \t\r\n]*
     """,
     re.VERBOSE,
 )
-_SPACE = re.compile(r"[ \t\r\n]*")
 
 _INSTEAD = {
     "−": "write the minus sign as -",
@@ -70,18 +78,19 @@ _INSTEAD = {
 
 VANISHES = "is too small: in SI units it would be zero"
 WRITE_ZERO = "check its exponent and unit, or write 0"
-"""What is said of a number that a change of unit makes zero."""
+"""Message and hint for a number that a change of unit makes zero."""
 
 
 def vanishes(text: str, value: float) -> bool:
-    """Whether a number was written that is not zero, and none of its digits are left."""
+    """Whether the number of a text is not zero although its double is."""
     return value == 0.0 and any(digit in "123456789" for digit in text.lower().partition("e")[0])
 
 
 class Token(NamedTuple):
-    """A piece of text from `start` to `end` (exclusive), both counted from the text's start."""
+    """A piece of text from `start` to `end` (exclusive), both counted from the text's start; `kind`
+    is number, name, component, word, symbol or end."""
 
-    kind: Kind
+    kind: str
     text: str
     start: int
     end: int
@@ -100,139 +109,29 @@ def tokenize(text: str) -> list[Token]:
             "split it into parameters",
         )
     tokens: list[Token] = []
-    position = _skip_space(text, 0)
+    position = len(text) - len(text.lstrip(_SPACE))
     while position < len(text):
         match = _TOKEN.match(text, position)
         if match is None:
-            raise _unexpected(text[position], position)
-        tokens.append(Token(_kind(match), match[0], match.start(), match.end()))
-        position = _skip_space(text, match.end())
+            character = text[position]
+            shown = character if character.isprintable() else f"U+{ord(character):04X}"
+            hint = "an expression has numbers, names, + - * / ^ ( ) [ ], comparisons and commas"
+            raise ExpressionError(
+                f"unexpected character '{shown}'", position, _INSTEAD.get(character, hint)
+            )
+        kind = next(kind for kind, piece in match.groupdict().items() if piece is not None)
+        tokens.append(Token(kind, match[1], match.start(), match.end(1)))
+        position = match.end()
     tokens.append(Token("end", "", len(text), len(text)))
     return tokens
 
 
-def _kind(match: re.Match[str]) -> Kind:
-    for kind in ("number", "name", "component"):
-        if match[kind] is not None:
-            return kind
-    return "symbol"
-
-
-def _skip_space(text: str, position: int) -> int:
-    match = _SPACE.match(text, position)
-    return match.end() if match else position
-
-
-def _unexpected(character: str, offset: int) -> ExpressionError:
-    shown = character if character.isprintable() else f"U+{ord(character):04X}"
-    return ExpressionError(
-        f"unexpected character '{shown}'",
-        offset,
-        _INSTEAD.get(
-            character, "an expression has numbers, names, + - * / ^ ( ) [ ], comparisons and commas"
-        ),
-    )
-
-
-# The unit behind a number literal: `0.5 in`, `10 N*m`, `3 lbm*in/s^2`.
-#
-# Units stand only here. The word right after a number is a unit, with or without a space between.
-# `*` or `/` and another unit word continue the unit only when no space surrounds the sign, so `2 N
-# * m` is two newtons times a parameter m. `^` and a whole number right behind a unit word is its
-# exponent.
-
-_POWERS = ("^", "**")
-
-
-class UnitReader:
-    """Reads the unit whose first word is `tokens[position]`; `position` ends behind the unit."""
-
-    def __init__(self, tokens: list[Token], position: int) -> None:
-        self.tokens = tokens
-        self.position = position
-        self.number = tokens[position - 1].text[:MAX_QUOTED]
-        self.terms: list[tuple[str, int]] = []
-        self.joined: list[tuple[str, int]] = []
-
-    def read(self) -> CompoundUnit:
-        """The unit.
-
-        Raises:
-            ExpressionError: the word is no unit, or an exponent is not a whole number.
-        """
-        first = self.tokens[self.position]
-        try:
-            self._term(1)
-            while self._continues():
-                sign = -1 if self.tokens[self.position].text == "/" else 1
-                self.position += 1
-                word = self.tokens[self.position]
-                self.joined.append((word.text, word.start))
-                self._term(sign)
-            self._end()
-            return compound(self.terms)
-        except UnitError as error:
-            hint = error.hint or f"a product is written {self.number}*{first.text[:MAX_QUOTED]}"
-            raise ExpressionError(error.message, max(error.offset, first.start), hint) from None
-
-    def _term(self, sign: int) -> None:
-        word = self.tokens[self.position]
-        unit = named_unit(word.text, word.start)
-        self.position += 1
-        self.terms.append((unit.symbol, sign * self._exponent(word)))
-
-    def _exponent(self, word: Token) -> int:
-        caret = self.tokens[self.position]
-        if caret.text not in _POWERS:
-            return 1
-        last = self.position + 1
-        sign = 1
-        if self.tokens[last].text == "-":
-            sign, last = -1, last + 1
-        number = self.tokens[last]
-        together = number.end - word.end == sum(
-            token.end - token.start for token in self.tokens[self.position : last + 1]
-        )
-        if not (together and number.kind == "number" and number.text.isdigit()):
-            raise _ambiguous(caret)
-        self.position = last + 1
-        return sign * bounded_exponent(number.text, number.start)
-
-    def _end(self) -> None:
-        caret = self.tokens[self.position]
-        if caret.text in _POWERS:
-            raise _ambiguous(caret)
-
-    def _continues(self) -> bool:
-        before, sign = self.tokens[self.position - 1], self.tokens[self.position]
-        if sign.text not in ("*", "/"):
-            return False
-        word = self.tokens[self.position + 1]
-        if word.text not in UNITS or not before.end == sign.start == word.start - 1:
-            return False
-        return self.tokens[self.position + 2].text != "("
-
-
-def _ambiguous(caret: Token) -> ExpressionError:
-    return ExpressionError(
-        "ambiguous power behind a unit",
-        caret.start,
-        "write the exponent of a unit as a whole number without spaces, 5 in^2, "
-        "or the power of a value in parentheses, (5 in)^2",
-    )
-
-
-# Tokens to nodes: a precedence-climbing parser (Pratt 1973) with limits on size and depth.
-#
-# From weakest to strongest: `or`, `and`, `not`, comparisons, `+ -`, `* /`, sign, `^` (right to
-# left; `**` is the same), then calls, `.x .y .z`, parentheses and `[a, b, c]`. So `-a^2` is
-# `-(a^2)`, `2^-1` is one half and `not a < b and c < d` is `(not (a < b)) and (c < d)`.
-
 _COMPARING = dict.fromkeys(COMPARED, 5)
 _BINDING = {"or": 1, "and": 2, **_COMPARING, "+": 10, "-": 10, "*": 20, "/": 20, "^": 40, "**": 40}
 _NOT_BINDING = 3
-_CALLED = FUNCTIONS | FORMS
 _SIGN_BINDING = 30
+_POWERS = ("^", "**")
+_CALLED = FUNCTIONS | FORMS
 _COMPONENTS = (".x", ".y", ".z")
 
 
@@ -285,7 +184,7 @@ class _Parser:
         self.operand()
         while _BINDING.get(self.token.text, 0) > binding:
             operator = self.take()
-            power = operator.text in ("^", "**")
+            power = operator.text in _POWERS
             strength = _BINDING[operator.text]
             self.expression(strength - 1 if power else strength)
             self.emit(OperationNode("^" if power else operator.text, 2, operator.start))
@@ -334,12 +233,54 @@ class _Parser:
             )
         value = read(value, token.text)
         if self.token.kind == "name":
-            reader = UnitReader(self.tokens, self.position)
-            unit = reader.read()
-            self.position = reader.position
-            self.emit(NumberNode(value, unit, token.text, token.start, tuple(reader.joined)))
+            unit, joined = self.unit(token.text[:MAX_QUOTED])
+            self.emit(NumberNode(value, unit, token.text, token.start, joined))
         else:
             self.emit(NumberNode(value, None, token.text, token.start))
+
+    def unit(self, number: str) -> tuple[CompoundUnit, tuple[tuple[str, int], ...]]:
+        """Read the unit behind a number; also the words joined to its first, with offsets."""
+        first = self.token
+        joined = []
+        try:
+            terms = [self.unit_term(1)]
+            while self.unit_continues():
+                sign = -1 if self.take().text == "/" else 1
+                joined.append((self.token.text, self.token.start))
+                terms.append(self.unit_term(sign))
+            if self.token.text in _POWERS:
+                raise _ambiguous_power(self.token)
+            return compound(terms), tuple(joined)
+        except UnitError as error:
+            hint = error.hint or f"a product is written {number}*{first.text[:MAX_QUOTED]}"
+            raise ExpressionError(error.message, max(error.offset, first.start), hint) from None
+
+    def unit_term(self, sign: int) -> tuple[str, int]:
+        word = self.take()
+        unit = named_unit(word.text, word.start)
+        caret = self.token
+        if caret.text not in _POWERS:
+            return unit.symbol, sign
+        last = self.position + 1
+        if self.tokens[last].text == "-":
+            sign, last = -sign, last + 1
+        number = self.tokens[last]
+        together = number.end - word.end == sum(
+            token.end - token.start for token in self.tokens[self.position : last + 1]
+        )
+        if not (together and number.kind == "number" and number.text.isdigit()):
+            raise _ambiguous_power(caret)
+        self.position = last + 1
+        return unit.symbol, sign * bounded_exponent(number.text, number.start)
+
+    def unit_continues(self) -> bool:
+        before, sign = self.tokens[self.position - 1], self.token
+        if sign.text not in ("*", "/"):
+            return False
+        word = self.tokens[self.position + 1]
+        if word.text not in UNITS or not before.end == sign.start == word.start - 1:
+            return False
+        return self.tokens[self.position + 2].text != "("
 
     def name(self, token: Token) -> None:
         if self.token.text == "(":
@@ -443,3 +384,12 @@ class _Parser:
             hint = "multiplication is written with *"
         quoted = token.text[:MAX_QUOTED]
         return ExpressionError(f"'{quoted}' stands where {expected}", token.start, hint)
+
+
+def _ambiguous_power(caret: Token) -> ExpressionError:
+    return ExpressionError(
+        "ambiguous power behind a unit",
+        caret.start,
+        "write the exponent of a unit as a whole number without spaces, 5 in^2, "
+        "or the power of a value in parentheses, (5 in)^2",
+    )

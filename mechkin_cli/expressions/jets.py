@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.expressions import operations as hyperbolic
-from mechkin_cli.kernel import functions as kernel
+from mechkin_cli.expressions import operations
 from mechkin_cli.show import Floats
 
 Jet = NDArray[np.float64]
@@ -67,78 +66,17 @@ def of(outer: Sequence[Floats], inner: Jet) -> Jet:
     )
 
 
-def chosen(condition: NDArray[np.bool_], a: Jet, b: Jet) -> Jet:
-    """a in the rows where the condition holds, b in the others."""
-    return np.where(condition, a, b)
-
-
-def is_constant(jet: Jet) -> bool:
-    """Whether no row moves."""
-    return not jet[1:].any()
-
-
 def _stacked(orders: list[Floats]) -> Jet:
     return np.stack(np.broadcast_arrays(*orders))
 
 
-# Elementary functions of rows with their first three derivatives, each of shape (rows,).
-
-
-def sin(x: Floats) -> tuple[Floats, ...]:
-    """Sine."""
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return sine, cosine, -sine, -cosine
-
-
-def cos(x: Floats) -> tuple[Floats, ...]:
-    """Cosine."""
-    sine, cosine = kernel.sin(x), kernel.cos(x)
-    return cosine, -sine, -cosine, sine
-
-
-def tan(x: Floats) -> tuple[Floats, ...]:
-    """Tangent."""
-    tangent = kernel.tan(x)
-    square = tangent * tangent
-    return (
-        tangent,
-        1.0 + square,
-        2.0 * tangent * (1.0 + square),
-        (1.0 + square) * (2.0 + 6 * square),
-    )
-
-
-def asin(x: Floats) -> tuple[Floats, ...]:
-    """Arcsine."""
-    slope = 1.0 / np.sqrt((1.0 - x) * (1.0 + x))
-    cube = slope * slope * slope
-    return kernel.asin(x), slope, x * cube, cube * (1.0 + 3.0 * (x * slope) * (x * slope))
-
-
-def acos(x: Floats) -> tuple[Floats, ...]:
-    """Arccosine."""
-    _, first, second, third = asin(x)
-    return kernel.acos(x), -first, -second, -third
-
-
-def atan(x: Floats) -> tuple[Floats, ...]:
-    """Arctangent."""
-    slope = 1.0 / (1.0 + x * x)
-    square = slope * slope
-    return kernel.atan(x), slope, -2.0 * x * square, (6.0 * x * x - 2.0) * (square * slope)
-
-
-def sqrt(x: Floats) -> tuple[Floats, ...]:
-    """Square root."""
-    root = np.sqrt(x)
-    first = 0.5 / root
-    second = -0.5 * first / x
-    return root, first, second, -1.5 * second / x
+# Hyperbolic functions of rows with their first three derivatives, each of shape (rows,). Those of
+# other elementary functions are `tape.SLOPES`.
 
 
 def sinh(x: Floats) -> tuple[Floats, ...]:
     """Hyperbolic sine."""
-    sine, cosine = hyperbolic.sinh(x), hyperbolic.cosh(x)
+    sine, cosine = operations.sinh(x), operations.cosh(x)
     return sine, cosine, sine, cosine  # type: ignore[return-value]
 
 
@@ -150,14 +88,10 @@ def cosh(x: Floats) -> tuple[Floats, ...]:
 
 def tanh(x: Floats) -> tuple[Floats, ...]:
     """Hyperbolic tangent."""
-    tangent: Any = hyperbolic.tanh(x)
+    tangent: Any = operations.tanh(x)
     slope = 1.0 / (cosh(x)[0] * cosh(x)[0])
-    return (
-        tangent,
-        slope,
-        -2.0 * tangent * slope,
-        slope * (4.0 * tangent * tangent - 2.0 * slope),
-    )
+    third = slope * (4.0 * tangent * tangent - 2.0 * slope)
+    return tangent, slope, -2.0 * tangent * slope, third
 
 
 def asinh(x: Floats) -> tuple[Floats, ...]:
@@ -165,7 +99,7 @@ def asinh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / np.sqrt(x * x + 1.0)
     cube = slope * slope * slope
     third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
-    return hyperbolic.asinh(x), slope, -x * cube, third  # type: ignore[return-value]
+    return operations.asinh(x), slope, -x * cube, third  # type: ignore[return-value]
 
 
 def acosh(x: Floats) -> tuple[Floats, ...]:
@@ -173,7 +107,7 @@ def acosh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / np.sqrt((x - 1.0) * (x + 1.0))
     cube = slope * slope * slope
     third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
-    return hyperbolic.acosh(x), slope, -x * cube, third  # type: ignore[return-value]
+    return operations.acosh(x), slope, -x * cube, third  # type: ignore[return-value]
 
 
 def atanh(x: Floats) -> tuple[Floats, ...]:
@@ -181,16 +115,4 @@ def atanh(x: Floats) -> tuple[Floats, ...]:
     slope = 1.0 / ((1.0 - x) * (1.0 + x))
     square = slope * slope
     third = (6.0 * x * x + 2.0) * (square * slope)
-    return hyperbolic.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]
-
-
-def exp(x: Floats) -> tuple[Floats, ...]:
-    """Exponential function."""
-    value = kernel.exp(x)
-    return value, value, value, value
-
-
-def log(x: Floats) -> tuple[Floats, ...]:
-    """Natural logarithm."""
-    slope = 1.0 / x
-    return kernel.log(x), slope, -(slope * slope), 2.0 * (slope * slope * slope)
+    return operations.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]

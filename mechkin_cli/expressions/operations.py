@@ -1,7 +1,8 @@
-"""Functions of scalars, each for a float or for rows, with the same bits for both.
+"""The arithmetic of expressions: functions of scalars, truth values, operations with dimensions.
 
-Transcendental functions come from the kernel. Selections are written with comparisons, because the
-zero and nan rules of numpy's own minimum and maximum depend on the processor.
+Each function takes a float or rows, with the same bits for both. Transcendental functions come from
+the kernel. Selections are written with comparisons, because the zero and nan rules of numpy's own
+minimum and maximum depend on the processor.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import math
 import operator
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import accumulate
+from itertools import accumulate, repeat
 from math import nan
 from typing import Any
 
@@ -27,9 +28,10 @@ from mechkin_cli.expressions.quantity import (
     Site,
     Value,
     Vector,
+    components,
 )
 from mechkin_cli.tape import Recorded, Undecided, as_recorded, is_number, of_one, scalars
-from mechkin_cli.units import DIMENSIONLESS, POWER, Dimension
+from mechkin_cli.units import POWER, Dimension
 
 Condition = NDArray[np.bool_] | np.bool_
 
@@ -76,35 +78,28 @@ def angle_of(y: Scalar, x: Scalar) -> Scalar:
 
 def smaller(left: Scalar, right: Scalar) -> Scalar:
     """The smaller of two; nan if one is nan."""
-    if scalars.is_row(left) or scalars.is_row(right):
-        return _unless_nan(right, scalars.of_two("SMALLER", left, right))
-    if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
-        return scalars.smallest(left, right)
-    return _select(np.less(right, left) | np.isnan(right), right, left)
+    return _extreme("SMALLER", scalars.smallest, np.less, left, right)
 
 
 def larger(left: Scalar, right: Scalar) -> Scalar:
     """The larger of two; nan if one is nan."""
+    return _extreme("LARGER", scalars.largest, np.greater, left, right)
+
+
+def _extreme(operation: str, of_numbers: Any, precedes: Any, left: Any, right: Any) -> Scalar:
     if scalars.is_row(left) or scalars.is_row(right):
-        return _unless_nan(right, scalars.of_two("LARGER", left, right))
+        result = scalars.of_two(operation, left, right)
+        found: Scalar = (right == right).choose(result, right) if scalars.is_row(right) else result
+        return found
     if not isinstance(left, np.ndarray) and not isinstance(right, np.ndarray):
-        return scalars.largest(left, right)
-    return _select(np.greater(right, left) | np.isnan(right), right, left)
-
-
-def _unless_nan(right: Any, chosen: Any) -> Scalar:
-    """What was chosen of two recorded rows, or the second where that one is nan."""
-    if not scalars.is_row(right):
-        return chosen  # type: ignore[no-any-return]
-    found: Scalar = (right == right).choose(chosen, right)
-    return found
+        return of_numbers(left, right)  # type: ignore[no-any-return]
+    return _select(precedes(right, left) | np.isnan(right), right, left)
 
 
 def wrap(angle: Scalar) -> Scalar:
     """The angle in (-pi, pi] that differs by whole turns; an angle already there is unchanged."""
     if isinstance(angle, Recorded):
-        wrapped: Scalar = _wrapped(angle)
-        return wrapped
+        return _wrap_recorded(angle)  # type: ignore[no-any-return]
     turns = np.rint(np.divide(angle, math.tau))
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     turned = np.where(turned > math.pi, turned - math.tau, turned)
@@ -113,8 +108,7 @@ def wrap(angle: Scalar) -> Scalar:
     return _select(inside, angle, turned)
 
 
-def _wrapped(angle: Any) -> Any:
-    """As `wrap`, for a recorded number."""
+def _wrap_recorded(angle: Any) -> Any:
     turns = scalars.whole(angle / TURN)
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     turned = (turned > math.pi).choose(turned - TURN, turned)
@@ -123,11 +117,10 @@ def _wrapped(angle: Any) -> Any:
 
 
 def branch(condition: Any, value: Scalar, other: Scalar) -> Scalar:
-    """`value` where a comparison holds, else `other`: two ways to compute one thing, so that nobody
+    """`value` where a comparison holds, else `other`: two formulas of one function, so that nobody
     needs to find where they meet."""
     if isinstance(condition, Undecided):
-        found: Scalar = condition.choose(value, other)
-        return found
+        return condition.choose(value, other)  # type: ignore[no-any-return]
     if scalars.is_row(value) or scalars.is_row(other):
         return np.where(condition, value, other)
     return _select(condition, value, other)
@@ -148,11 +141,9 @@ def _paired(operation: str, left: Scalar, right: Scalar) -> Scalar:
 
 
 # Truth values of scalars and rows: 1 where something holds, 0 where it does not, nan where that is
-# not known.
-#
-# A comparison is arithmetic on the sign of a difference, so that whoever looks for the place at
-# which it changes (an integrator, a course of inputs) finds a sign, as of `sign(x)`. The difference
-# of two doubles is zero only where they are equal, so nothing is lost by it.
+# not known. A comparison is arithmetic on the sign of a difference, so that an integrator or a path
+# of inputs finds the place at which it changes as that of `sign(x)`. The difference of two doubles
+# is zero only where they are equal, so nothing is lost.
 
 
 def more(left: Scalar, right: Scalar) -> Scalar:
@@ -193,30 +184,27 @@ def chosen(truth: Scalar, value: Scalar, other: Scalar) -> Scalar:
     return _unless_false(truth, _where_known(truth, value), other)
 
 
-# Truths are told apart half way between two: in intervals they come with a rounding.
+# limits half way between two truths, which in intervals come with a rounding
 
 
 def _unless_false(truth: Any, value: Scalar, other: Scalar) -> Scalar:
-    if isinstance(truth, np.ndarray):
-        return np.where(truth < 0.5, other, value)
-    return _branch(truth < 0.5, other, value)
+    return _where(truth < 0.5, other, value)
 
 
 def _where_known(truth: Any, value: Scalar) -> Scalar:
-    if isinstance(truth, np.ndarray):
-        return np.where(truth < 1.5, value, truth)
-    return _branch(truth < 1.5, value, truth)
+    return _where(truth < 1.5, value, truth)
 
 
-def _branch(condition: Any, value: Scalar, other: Scalar) -> Scalar:
+def _where(condition: Any, value: Scalar, other: Scalar) -> Scalar:
+    if isinstance(condition, np.ndarray):
+        return np.where(condition, value, other)
     if isinstance(condition, bool | np.bool_):
         return value if condition else other
-    found: Scalar = condition.choose(value, other)
-    return found
+    return condition.choose(value, other)  # type: ignore[no-any-return]
 
 
 # Whole numbers next to a scalar: a staircase whose steps are those of `rint` and of signs, so that
-# they are found as these are.
+# they are located as these are.
 
 LARGEST = float(2**51)
 """From here on a double has no room for quarters, and its nearest whole number is not computed."""
@@ -224,14 +212,12 @@ LARGEST = float(2**51)
 
 def nearest(value: Scalar) -> Scalar:
     """The nearest whole number, of two the even one; nan from 2^51 on."""
-    given: Any = value
-    is_small = given * given < LARGEST * LARGEST
-    if not isinstance(given, Recorded):
-        return branch(is_small, np.rint(given), nan)
-    whole = given.apply("WHOLE")
+    is_small = value * value < LARGEST * LARGEST
+    if not isinstance(value, Recorded):
+        return branch(is_small, np.rint(value), nan)
+    whole = value.apply("WHOLE")
     # a recorded nan is a quotient of zeros
-    found: Scalar = whole + (whole - whole) / branch(is_small, 1.0, 0.0)
-    return found
+    return whole + (whole - whole) / branch(is_small, 1.0, 0.0)
 
 
 def below(value: Scalar) -> Scalar:
@@ -247,14 +233,12 @@ def above(value: Scalar) -> Scalar:
 
 
 def remainder(value: Scalar, period: Scalar) -> Scalar:
-    """What is left of the value above a whole number of periods: from 0 up to the period."""
+    """The excess of the value over a whole number of periods: from 0 up to the period."""
     return value - period * below(value / period)
 
 
-# Arithmetic on operands: sums need one dimension, products multiply dimensions.
-#
-# Every formula is elementwise IEEE arithmetic in a fixed order, for scalars, rows and vectors
-# alike.
+# Arithmetic on operands: sums need one dimension, products multiply dimensions. Every formula is
+# elementwise IEEE arithmetic in a fixed order, for scalars, rows and vectors alike.
 
 _SUM_WORDS = {
     "+": ("add {left} and {right}", operator.add),
@@ -273,13 +257,12 @@ def common_dimension(site: Site, action: str, left: Operand, right: Operand) -> 
     elif left.dimension.compatible(right.dimension):
         dimension = left.dimension.reduced()
     else:
-        bare = left if left.dimension.dimensionless else right
-        other = right if bare is left else left
-        hint = None
+        bare, other = (left, right) if left.dimension.dimensionless else (right, left)
+        hint = "both must be of one kind"
         if bare.dimension.dimensionless:
             hint = site.unit_hint(bare, other.dimension)
         words = action.format(left=left.phrase, right=right.phrase)
-        raise site.error(f"cannot {words}", hint or "both must be of one kind", bare)
+        raise site.error(f"cannot {words}", hint, bare)
     if isinstance(left.value, Vector) is not isinstance(right.value, Vector):
         words = action.format(left=left.phrase, right=right.phrase)
         raise site.error(f"cannot {words}", "take a component with .x, .y or .z, or norm(...)")
@@ -293,11 +276,8 @@ def require_alike(site: Site, left: Operand, right: Operand) -> None:
     Raises:
         ExpressionError: one is of a plane and the other of space.
     """
-    one, other = left.value, right.value
-    if not isinstance(one, Vector) or not isinstance(other, Vector):
-        return
-    counts = len(one.components), len(other.components)
-    if counts[0] != counts[1]:
+    counts = len(components(left.value)), len(components(right.value))
+    if 1 not in counts and counts[0] != counts[1]:
         words = f"a vector of {counts[0]} components and one of {counts[1]}"
         hint = "with plane: xy all vectors have two, in space three"
         raise site.error(f"{site.symbol} does not take {words}", hint, right)
@@ -321,27 +301,22 @@ def multiply(site: Site, left: Operand, right: Operand) -> Quantity:
 def divide(site: Site, left: Operand, right: Operand) -> Quantity:
     """Quotient of a scalar or vector and a scalar."""
     divisor = site.scalar(right)
-    constant = any(is_number(item) for item in _components(left.value))
+    constant = any(is_number(item) for item in components(left.value))
     if constant and is_number(divisor) and divisor == 0.0:
         raise site.error("division by zero", "check the values of the parameters", right)
     quotient = elementwise(operator.truediv, left.value, divisor)
-    return Quantity(quotient, _quotient(left.dimension, right.dimension))
-
-
-def _quotient(left: Dimension, right: Dimension) -> Dimension:
-    """What a quotient measures. A torque times an angular rate is a power, and as one divided by
-    a power it is a number; a length times an angle, divided by a length, is an angle again."""
-    if left.reduced() == right.reduced() == POWER:
-        return DIMENSIONLESS
-    return left / right
+    # a torque times an angular rate is a power, and so divided by a power a number; a length times
+    # an angle, divided by a length, is an angle again
+    if left.dimension.reduced() == right.dimension.reduced() == POWER:
+        return Quantity(quotient)
+    return Quantity(quotient, left.dimension / right.dimension)
 
 
 def negate(site: Site, operand: Operand) -> Quantity:
     """The opposite scalar or vector."""
-    value = operand.value
-    if isinstance(value, Vector):
-        return Quantity(Vector(*(-item for item in value.components)), operand.dimension)
-    return Quantity(-value, operand.dimension)
+    negative = [-item for item in components(operand.value)]
+    value = Vector(*negative) if isinstance(operand.value, Vector) else negative[0]
+    return Quantity(value, operand.dimension)
 
 
 def raise_to_power(site: Site, base: Operand, exponent: Operand) -> Quantity:
@@ -382,40 +357,45 @@ def component(site: Site, operand: Operand) -> Quantity:
             f"{site.symbol} takes a component of a vector, not of {operand.phrase}",
             f"leave out {site.symbol}",
         )
-    found = getattr(operand.value, site.symbol[1])
-    if found is None:
+    value = getattr(operand.value, site.symbol[1])
+    if value is None:
         raise site.error(
             f"a vector of a plane file has no {site.symbol}",
             "it has .x and .y; what the plane holds, forces along z and moments about x and y, is "
             "not computed",
         )
-    return Quantity(found, operand.dimension)
+    return Quantity(value, operand.dimension)
 
 
 def vector(site: Site, x: Operand, *others: Operand) -> Quantity:
     """A vector of two or three scalars of one dimension."""
-    components = [site.scalar(operand) for operand in (x, *others)]
-    dimension = x.dimension
-    for operand in others:
-        partial = Operand(Quantity(x.value, dimension), x.offset, x.number)
-        action = "make a vector of {left} and {right}"
-        dimension = common_dimension(site, action, partial, operand)
-    return Quantity(Vector(*components), dimension)
+    operands = (x, *others)
+    value = Vector(*(site.scalar(operand) for operand in operands))
+    return Quantity(value, dimension_of_all(site, "make a vector of {left} and {right}", operands))
+
+
+def dimension_of_all(site: Site, action: str, operands: Sequence[Operand]) -> Dimension:
+    """The dimension of operands that must be of one kind.
+
+    Raises:
+        ExpressionError: as `common_dimension`.
+    """
+    first, dimension = operands[0], operands[0].dimension
+    for operand in operands[1:]:
+        so_far = Operand(Quantity(first.value, dimension), first.offset, first.number)
+        dimension = common_dimension(site, action, so_far, operand)
+    return dimension
 
 
 def elementwise(function: Callable[[Scalar, Scalar], Scalar], left: Value, right: Value) -> Value:
     """The function on two scalars, or on components; a scalar goes with every component."""
     if not isinstance(left, Vector) and not isinstance(right, Vector):
         return function(left, right)
-    count = min(len(_components(left)), len(_components(right)))
-    return Vector(*map(function, _components(left)[:count], _components(right)[:count]))
+    pair = (v.components if isinstance(v, Vector) else repeat(v) for v in (left, right))
+    return Vector(*map(function, *pair))
 
 
-def _components(value: Value) -> tuple[Scalar, ...]:
-    return value.components if isinstance(value, Vector) else (value, value, value)
-
-
-# Comparisons of operands, what is made of them, and the choice between two values.
+# Comparisons of operands, conditions joined, and the choice between two values.
 
 COMPARED: dict[str, Callable[[Scalar, Scalar], Scalar]] = {
     "<": less,
@@ -427,39 +407,31 @@ COMPARED: dict[str, Callable[[Scalar, Scalar], Scalar]] = {
 }
 """The truth of each comparison, by its sign."""
 
-_JOINED: dict[str, Callable[[Scalar, Scalar], Scalar]] = {
-    "and": both,
-    "or": either,
-}
-
 
 def compare(site: Site, left: Operand, right: Operand) -> Quantity:
     """Whether a comparison of two scalars of one dimension holds."""
     values = site.scalar(left), site.scalar(right)
     common_dimension(site, "compare {left} with {right}", left, right)
-    return _truth(COMPARED[site.symbol](*values))
+    return Quantity(COMPARED[site.symbol](*values), truth=True)
 
 
 def join(site: Site, left: Operand, right: Operand) -> Quantity:
     """Whether both conditions hold, or at least one."""
-    return _truth(_JOINED[site.symbol](_condition(site, left), _condition(site, right)))
+    joined = both if site.symbol == "and" else either
+    return Quantity(joined(_condition(site, left), _condition(site, right)), truth=True)
 
 
 def deny(site: Site, operand: Operand) -> Quantity:
     """Whether a condition does not hold."""
-    return _truth(opposite(_condition(site, operand)))
+    return Quantity(opposite(_condition(site, operand)), truth=True)
 
 
 def choose(site: Site, condition: Operand, value: Operand, other: Operand) -> Quantity:
     """One of two values of one dimension, scalars or vectors; both are computed."""
     truth = _condition(site, condition)
     dimension = common_dimension(site, "choose between {left} and {right}", value, other)
-    found = elementwise(lambda a, b: chosen(truth, a, b), value.value, other.value)
-    return Quantity(found, dimension, truth=value.quantity.truth and other.quantity.truth)
-
-
-def _truth(value: Scalar) -> Quantity:
-    return Quantity(value, truth=True)
+    result = elementwise(lambda a, b: chosen(truth, a, b), value.value, other.value)
+    return Quantity(result, dimension, truth=value.quantity.truth and other.quantity.truth)
 
 
 def _condition(site: Site, operand: Operand) -> Scalar:
@@ -478,10 +450,8 @@ def _condition(site: Site, operand: Operand) -> Scalar:
 
 
 # Hyperbolic functions and their inverses, of exponentials and logarithms; near zero, where these
-# cancel, by their series.
-#
-# The series are as long as double-double numbers need them, their coefficients exact. Source: M.
-# Abramowitz and I. Stegun, Handbook of Mathematical Functions, 4.5 and 4.6.
+# cancel, by their series, as long as double-double numbers need them, with exact coefficients.
+# Source: M. Abramowitz and I. Stegun, Handbook of Mathematical Functions, 4.5 and 4.6.
 
 _NEAR_ZERO = 0.5
 """Up to here sinh goes by its series; the 13 terms leave 0.5^26/27! = 1e-36 of it."""

@@ -39,6 +39,11 @@ class Vector:
 Value = Scalar | Vector
 
 
+def components(value: Value) -> tuple[Scalar, ...]:
+    """The components of a vector, or the one scalar."""
+    return value.components if isinstance(value, Vector) else (value,)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Quantity:
     """A value in SI and its dimension; of an angle that has turned, `rest` is the same without
@@ -58,14 +63,11 @@ class Quantity:
         return f"a vector ({phrase})" if isinstance(self.value, Vector) else phrase
 
 
-# What can be wrong with an expression.
-
-
 class ExpressionError(MechkinError):
     """An expression that cannot be read or evaluated.
 
     `offset` counts characters from the start of the expression's text; `hint` says what to do;
-    `name` is the parameter whose text it is, where it is one's.
+    `name` is the parameter whose text it is, if it is that of a parameter.
     """
 
     def __init__(
@@ -125,9 +127,8 @@ MAX_QUOTED = 40
 """Characters of the user's text repeated in a message."""
 
 
-# Nodes of a parsed expression, kept in postfix order: operands before their operation.
-#
-# Postfix order makes evaluation a loop over a stack, so long sums need no recursion.
+# Nodes of a parsed expression are in postfix order, operands before their operation: evaluation
+# is a loop over a stack, so long sums need no recursion.
 
 
 class NumberNode(NamedTuple):
@@ -160,8 +161,6 @@ class OperationNode(NamedTuple):
 
 Node = NumberNode | Name | OperationNode
 
-
-# What operations work on: operands with their origin, and the site that knows how to complain.
 
 Resolve = Callable[[str], Quantity]
 """A quantity by its dotted name; raises `UnknownName` for a name that it does not have."""
@@ -255,14 +254,16 @@ class Site(NamedTuple):
             )
 
     def unit_hint(self, operand: Operand, dimension: Dimension) -> str:
-        """How to give an operand a wanted dimension."""
+        """How to give an operand a dimension."""
         label = self.units.label(dimension)
         number = operand.number
         bare = number is not None and number.unit is None and number.text != "pi"
         if number is not None and bare and label and len(number.text) <= MAX_QUOTED:
             return f"write the number with a unit: {number.text} {label}"
+        if operand.dimension.dimensionless and dimension == ANGLE:
+            return "multiply it by 1 deg if it is in degrees, by 1 rad if it is in radians"
         if operand.dimension.dimensionless:
-            return _multiply_hint(dimension, label)
+            return f"multiply it by 1 {label}"
         if (operand.dimension / ANGLE).compatible(dimension):
             return f"it is per angle: write its unit as {label}"
         if dimension.dimensionless:
@@ -270,26 +271,18 @@ class Site(NamedTuple):
         return f"give a value such as 1 {label}"
 
 
-def _multiply_hint(dimension: Dimension, label: str) -> str:
-    if dimension == ANGLE:
-        return "multiply it by 1 deg if it is in degrees, by 1 rad if it is in radians"
-    return f"multiply it by 1 {label}"
-
-
-# How a number that is written becomes one to compute with: as a double, or on a recording.
-#
 # While a file is recorded with all its numbers, each digit string becomes a recorded number that
-# knows the decimal it says; else nothing of this is felt.
+# knows its decimal; otherwise it becomes a double.
 
 Reader = Callable[[str], Any]
-"""The number that digits (or the word `pi`) say."""
+"""From digits (or the word `pi`) to a number to compute with."""
 
 _READER: ContextVar[Reader | None] = ContextVar("reader of written numbers", default=None)
 
 
 @contextmanager
 def numbers_read_by(reader: Reader) -> Iterator[None]:
-    """Numbers read in this context are what `reader` makes of their digits."""
+    """Numbers in this context are read by `reader`."""
     token = _READER.set(reader)
     try:
         yield
@@ -298,6 +291,6 @@ def numbers_read_by(reader: Reader) -> Iterator[None]:
 
 
 def read(value: float, digits: str) -> Any:
-    """The number that digits say, whose double is `value`."""
+    """The number of these digits, whose double is `value`."""
     reader = _READER.get()
     return value if reader is None else reader(digits)

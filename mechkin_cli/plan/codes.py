@@ -1,4 +1,4 @@
-"""The kernel's enumerations; they are bound from its sources and said only there."""
+"""The kernel's enumerations, bound from its sources and defined only there."""
 
 from __future__ import annotations
 

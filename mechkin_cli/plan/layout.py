@@ -1,4 +1,5 @@
-"""How a mechanism lies in the kernel: numbering, scaled lengths, link frames, reversed joints.
+"""The layout of a mechanism in the kernel: numbers, scaled lengths, link frames, reversed joints;
+axes of coordinates; states and inputs of the home drawing.
 
 The kernel's length unit is a power of two near the mechanism's size, so scaling never rounds. Its
 origin is the ground origin unless the drawing lies far from it.
@@ -17,7 +18,6 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     ZERO,
     Attached,
-    Coordinate,
     Drives,
     Frame,
     Joint,
@@ -79,25 +79,28 @@ class Layout:
         if self.drawn_about is not None:
             return self.drawn_about
         points = [at.vector for _, at in self.mechanism.joint_points()]
-        centre = scale(1.0 / len(points), _sum(points)) if points else ZERO
+        total = ZERO
+        for point in points:
+            total = subtract(total, scale(-1.0, point))
+        centre = scale(1.0 / len(points), total) if points else ZERO
         near = tolerances.FAR_DRAWING * self.mechanism.box_diagonal()
         return centre if norm(centre) > near else ZERO
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The kernel's tree joints; bodies between the parts of a joint have no name."""
-        found: list[Carrier] = []
+        carriers: list[Carrier] = []
         body = {GROUND_NAME: -1}
         column = state = 0
         for number, edge in enumerate(self.graph.edges):
             parent = body[edge.parent]
             for part, first_freedom in _hung(edge) if edge.hung else _outward(edge):
-                found.append(Carrier(number, part, parent, first_freedom, column, state))
-                parent = len(found) - 1
+                carriers.append(Carrier(number, part, parent, first_freedom, column, state))
+                parent = len(carriers) - 1
                 column += len(part.type.freedoms)
                 state += part.type.states
             body[edge.child] = parent
-        return tuple(found)
+        return tuple(carriers)
 
     @cached_property
     def link_number(self) -> dict[str, int]:
@@ -141,7 +144,7 @@ class Layout:
 
     @cached_property
     def axis_number(self) -> dict[tuple[str, str], int]:
-        """Number of the axis of each coordinate (joint, name) that something may act along."""
+        """Number of the axis of each coordinate (joint, name) along which loads may act."""
         pairs = [
             (joint.name, coordinate)
             for joint in self.mechanism.joints.values()
@@ -153,10 +156,10 @@ class Layout:
     @cached_property
     def parts_of(self) -> tuple[tuple[int, ...], ...]:
         """The kernel joints of each tree edge, outward."""
-        found: list[list[int]] = [[] for _ in self.graph.edges]
+        joints: list[list[int]] = [[] for _ in self.graph.edges]
         for k, carrier in enumerate(self.carriers):
-            found[carrier.edge].append(k)
-        return tuple(tuple(parts) for parts in found)
+            joints[carrier.edge].append(k)
+        return tuple(tuple(parts) for parts in joints)
 
     def carrier_of(self, edge: int, freedom: int) -> tuple[int, int]:
         """The kernel joint that has a user's freedom of a tree edge, and its freedom there."""
@@ -197,8 +200,8 @@ class Layout:
 
     @cached_property
     def drives(self) -> Drives | None:
-        """What drives the inputs, where those of the graph are the mechanism's own and some of them
-        have no drive of their own."""
+        """The drives of the inputs, where those of the graph are the mechanism's own and some of
+        them have no drive of their own."""
         drives = self.mechanism.drives
         if drives is None or drives.are_plain:
             return None
@@ -223,51 +226,30 @@ def _hung(edge: TreeEdge) -> list[tuple[Part, int]]:
     return [(Part("L", upright(parent.o), upright(body.o)), 0)]
 
 
-def _sum(points: list[Vector]) -> Vector:
-    total = ZERO
-    for p in points:
-        total = subtract(total, scale(-1.0, p))
-    return total
+def coordinate_axis(joint: Joint, coordinate: str) -> tuple[bool, Attached, Attached]:
+    """The axis of one of a joint's coordinates: the unit wrench that works on it and on no other of
+    its joint.
 
-
-# The axis of a coordinate: the unit wrench that works on it and on no other of its joint's.
-#
-# A couple (or, for a slide, a force through the joint's point) along a sum of two vectors that ride
-# on links. The sum is only needed for two turns, whose axes may be oblique: their dual basis is
-# (z1 - c z2) / (1 - c^2) with c = z1 . z2.
-
-
-class CoordinateAxis(NamedTuple):
-    """`terms`: the two vectors, in the home drawing."""
-
-    slide: bool
-    terms: tuple[Attached, Attached]
-
-
-def coordinate_axis(joint: Joint, coordinate: str) -> CoordinateAxis:
-    """The axis of one of a joint's coordinates."""
+    It is a couple (or, for a slide, as the first value shows, a force through the joint's point)
+    along a sum of two vectors that ride on links, in the home drawing. The sum is only needed for
+    two turns, whose axes may be oblique: their dual basis is (z1 - c z2) / (1 - c^2) with c =
+    z1 . z2.
+    """
     known = joint.type.coordinate[coordinate]
     if known.axis is not None:
-        terms = joint.drawn(known.axis), Attached(joint.second, ZERO)
-        return CoordinateAxis(not known.is_angle, terms)
-    own = Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)
-    turn, other = own if known == _turns_of(joint)[0] else own[::-1]
+        return not known.is_angle, joint.drawn(known.axis), Attached(joint.second, ZERO)
+    axes = Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)
+    is_first = known == next(each for each in joint.type.named if each.axis is None)
+    turn, other = axes if is_first else axes[::-1]
     c = dot(joint.on_first.z, joint.on_second.z)
     dual = 1.0 / (1.0 - c * c)
     along = Attached(turn.link, scale(dual, turn.vector))
-    return CoordinateAxis(False, (along, Attached(other.link, scale(-c * dual, other.vector))))
-
-
-def _turns_of(joint: Joint) -> list[Coordinate]:
-    return [coordinate for coordinate in joint.type.named if coordinate.axis is None]
-
-
-# The home drawing as states of the kernel: every coordinate is zero there but those of guided
-# points (`building.point_inputs`).
+    return False, along, Attached(other.link, scale(-c * dual, other.vector))
 
 
 def home_state(layout: Layout) -> Floats:
-    """States of the home drawing (states,)."""
+    """States of the home drawing (states,): every coordinate is zero there but those of guided
+    points (`building.motion`)."""
     state = np.zeros(layout.states)
     for carrier in layout.carriers:
         if carrier.part.type.is_ball:
@@ -280,8 +262,8 @@ def home_state(layout: Layout) -> Floats:
 def home_inputs(layout: Layout) -> Floats:
     """The inputs of the home drawing (inputs,)."""
     state = home_state(layout)
-    found = [
+    inputs = [
         state[layout.state(edge, freedom)] if edge >= 0 else 0.0
         for edge, freedom in layout.graph.inputs
     ]
-    return np.array(found, dtype=np.float64)
+    return np.array(inputs, dtype=np.float64)

@@ -1,17 +1,18 @@
-"""Loads in the plan: what each gives to the kernel's columns, constant or by a law."""
+"""The columns of varying loads in the kernel: one of a load along a coordinate, three of one on a
+link, in the order of the mechanism's loads."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, is_angle, varying
+from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle, varying
 from mechkin_cli.plan.layout import Layout
 
 
 def kernel_columns(layout: Layout, values: Mapping[int, Any]) -> list[Any]:
     """The columns of the loads from the values in SI of laws, by their numbers: rows or recorded
-    numbers."""
+    numbers. Those of a link are components in the axes of the load, in the kernel's units."""
     return [
         column
         for load in layout.mechanism.loads
@@ -27,16 +28,12 @@ def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]
         return [_amount(load.value, values) / per]
     assert isinstance(load, LinkLoad)
     per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
-    given = [_amount(amount, values) for amount in load.value]
+    components: Any = [_amount(amount, values) for amount in load.value]
     if load.axes == "link":
         frame = layout.link_frame[load.link]
-        given = [_along(axis, given) for axis in (frame.x, frame.y, frame.z)]
-    return [per * component for component in given]
+        components = [dot(axis, components) for axis in (frame.x, frame.y, frame.z)]
+    return [per * component for component in components]
 
 
 def _amount(amount: Amount, values: Mapping[int, Any]) -> Any:
     return values[amount.number] if isinstance(amount, Varying) else amount
-
-
-def _along(axis: Sequence[float], given: Sequence[Any]) -> Any:
-    return axis[0] * given[0] + axis[1] * given[1] + axis[2] * given[2]

@@ -1,4 +1,4 @@
-"""The demand plan: from the quantities asked for to what the kernel has to compute.
+"""The demand plan: from the requested quantities to what the kernel has to compute.
 
 Positions only read no mass; reactions need accelerations unless no link has mass, velocities only
 where something is damped or a load reads rates; an effort needs no joint reactions
@@ -20,7 +20,6 @@ from mechkin_cli.mechanism import (
     ZERO,
     Attached,
     Damper,
-    Load,
     Mechanism,
     Vector,
     Wanted,
@@ -60,7 +59,7 @@ _ENERGY_KINDS = {"kinetic_energy", "potential_energy"}
 
 
 def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
-    """What has to be computed for some quantities."""
+    """The computation that some quantities need."""
     demand = Demand.POSITION
     for quantity in wanted:
         if quantity.order == 1 or quantity.kind == "omega":
@@ -83,13 +82,14 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
 
 
 def forces_demand(mechanism: Mechanism) -> Demand:
-    """What forces need: accelerations if a link has mass or a joint rubs, velocities if something
-    is damped or a load reads rates."""
+    """The computation that forces need: accelerations if a link has mass or a joint rubs,
+    velocities if something is damped or a load reads rates."""
     demand = Demand.FORCES
     if mechanism.frictions or any(link.has_mass for link in mechanism.links.values()):
-        demand |= Demand.VELOCITY | Demand.ACCELERATION
-    elif any(isinstance(load, Damper) or _reads_rates(load) for load in mechanism.loads):
-        demand |= Demand.VELOCITY
+        return demand | Demand.VELOCITY | Demand.ACCELERATION
+    for load in mechanism.loads:
+        if isinstance(load, Damper) or any(amount.moving for amount in varying(load)):
+            return demand | Demand.VELOCITY
     return demand
 
 
@@ -100,20 +100,15 @@ def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:
     return energies or bool(demand_of(mechanism, wanted) & Demand.FORCES)
 
 
-def _reads_rates(load: Load) -> bool:
-    return any(amount.moving for amount in varying(load))
-
-
 class Slot(NamedTuple):
-    """Where a quantity stands in the kernel's output array: first column, and how many."""
+    """The columns of a quantity in the kernel's output array: the first, and how many."""
 
     first: int
     width: int
 
 
 class Readout(NamedTuple):
-    """Outputs of a plan: where each quantity that is wanted stands, and the first columns of
-    points."""
+    """Outputs of a plan: the slot of each requested quantity, and the first columns of points."""
 
     outputs: Outputs
     slots: Mapping[str, Slot]
@@ -124,16 +119,14 @@ class Readout(NamedTuple):
 class OutputPlan:
     """Collects the quantities that runs of a plan write, and their slots.
 
-    `plan` serves them (None: only their records are wanted); `outputs` are what a run takes.
-    Another `OutputPlan` on the same plan reads other quantities.
+    `plan` serves them (None: only their records are needed); a run takes the `outputs`. Another
+    `OutputPlan` on the same plan reads other quantities.
     """
 
     def __init__(
         self, layout: Layout, plan: Plan | None, inputs: Sequence[tuple[str, str]]
     ) -> None:
-        self.layout = layout
-        self.plan = plan
-        self.inputs = inputs
+        self.layout, self.plan, self.inputs = layout, plan, inputs
         self.slots: dict[str, Slot] = {}
         self.records: list[Output] = []
         self._width = 0
@@ -141,7 +134,7 @@ class OutputPlan:
 
     @property
     def outputs(self) -> Outputs:
-        """What was collected, checked against the plan."""
+        """The collected outputs, checked against the plan."""
         if self._outputs is None:
             assert self.plan is not None
             self._outputs = hand_over_outputs(self.plan, self.records)
@@ -151,11 +144,8 @@ class OutputPlan:
         """Plans one quantity; those of the row itself and derived ones need no slot."""
         if wanted.name in self.slots or wanted.owner == "row" or wanted.kind in DERIVED_KINDS:
             return
-        if wanted.kind == "coordinate":
-            first = self._add_coordinate(wanted)
-        else:
-            first = self._add_other(wanted)
-        self.slots[wanted.name] = Slot(first, 3 if wanted.vector else 1)
+        add = self._add_coordinate if wanted.kind == "coordinate" else self._add_other
+        self.slots[wanted.name] = Slot(add(wanted), 3 if wanted.vector else 1)
 
     def _output(
         self,
@@ -247,8 +237,8 @@ class OutputPlan:
         return self._output(code, names.index(wanted.owner), factor)
 
     def _wrench_code(self, joint: str, kind: str) -> OutputCode:
-        """What gives a joint's wrench. A pair that holds nothing has only what its drives exert,
-        and where actuators act instead nothing."""
+        """The output of a joint's wrench. A pair that holds nothing has only the wrench of its
+        drives, or none where actuators act instead."""
         if self.layout.mechanism.joints[joint].type.is_free:
             drives, force = self.layout.drives, kind.endswith("force")
             if kind in _TOTAL_KINDS and (drives is None or not drives.actuators):
@@ -263,7 +253,8 @@ class OutputPlan:
         }[kind]
 
     def _motor(self, joint: str, coordinate: str) -> int:
-        """The effort where it acts: at an input with what it carries of others, or at actuators."""
+        """The effort where it acts: at an input with what it carries of others, or at an
+        actuator."""
         drives = self.layout.drives
         if drives is None or not drives.actuators:
             code = OutputCode.EFFORT if drives is None else OutputCode.MOTOR

@@ -1,5 +1,8 @@
 """From the layout to the records of the kernel's plan: joints, closures, places, blocks, inputs,
-inertias, loads and the points that tell the size.
+inertias, loads, friction and the points that define the size.
+
+Lengths are in the kernel's unit: a force goes with 1 / length, a moment with 1 / length squared
+(length: the unit in m). The values of loads that vary are computed row by row (`plan.programs`).
 """
 
 from __future__ import annotations
@@ -11,7 +14,6 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     ZERO,
     Attached,
-    Constraint,
     Damper,
     JointLoad,
     LinkLoad,
@@ -24,30 +26,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan.codes import ContactCode, FreeCode, LoadCode
 from mechkin_cli.plan.layout import Layout, coordinate_axis
-from mechkin_cli.plan.records import (
-    Actuator,
-    AppliedLoad,
-    ClosingJoint,
-    Driven,
-    FreeDirections,
-    Friction,
-    HungLinks,
-    Inertia,
-    Input,
-    JointAxis,
-    JointPlace,
-    PlanBlock,
-    PlanContact,
-    PlanGravity,
-    PlanRecord,
-    Program,
-    Rest,
-    SizePoint,
-    Transmission,
-    TreeJoint,
-    Units,
-    hand_over,
-)
+from mechkin_cli.plan.records import PlanRecord, hand_over, record
 from mechkin_cli.structure import CutJoint
 
 if TYPE_CHECKING:
@@ -55,23 +34,17 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Motion, Rubbing
 
 
-# The friction of joints as records of the kernel's plan, lengths in the kernel's unit.
-
 NO_MOTION = -1
-"""Stands for turns or slides that do not rub."""
+"""For turns or slides that do not rub."""
 
 
-def friction_records(layout: Layout) -> Iterator[Friction | PlanContact]:
-    """Each friction, followed by its contacts."""
-    for rubbing in layout.mechanism.frictions:
-        yield from _records(layout, rubbing)
-
-
-def _records(layout: Layout, rubbing: Rubbing) -> Iterator[Friction | PlanContact]:
+def _friction(layout: Layout, rubbing: Rubbing) -> Iterator[PlanRecord]:
+    """A friction, followed by its contacts."""
     joint, unit = layout.mechanism.joints[rubbing.joint], layout.length
     law, axis = joint.type.friction, joint.axis
     assert law is not None
-    yield Friction(
+    yield record(
+        "add_friction",
         layout.place_number[joint.name],
         _code(law.turns),
         _code(law.slides),
@@ -85,7 +58,8 @@ def _records(layout: Layout, rubbing: Rubbing) -> Iterator[Friction | PlanContac
         1.0 if rubbing.speed is None else rubbing.speed / unit,
     )
     for contact in law.contacts(rubbing, axis.vector, joint.pitch):
-        yield PlanContact(
+        yield record(
+            "add_contact",
             ContactCode[contact.kind.upper()],
             # a couple goes with one length more than a force
             contact.weight,
@@ -100,13 +74,7 @@ def _code(motion: Motion | None) -> int:
     return NO_MOTION if motion is None else FreeCode[motion.upper()]
 
 
-# The loads of a mechanism as records of the kernel's plan: codes, links or coordinates, values.
-#
-# A force goes with 1 / length, a moment with 1 / length squared (length: the kernel's unit in m).
-# The values of loads that vary are given row by row (`varying_loads`).
-
-
-def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) -> AppliedLoad:
+def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) -> PlanRecord:
     """The record of one load; of a varying one without its value."""
     unit = layout.length
     if isinstance(load, LinkLoad):
@@ -117,7 +85,7 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         constant = 0.0 if isinstance(load.value, Varying) else load.value
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
         code = LoadCode.COORDINATE
-        return AppliedLoad(code, axis, reference, freedom, ZERO, ZERO, value, varies)
+        return record("add_load", code, axis, reference, freedom, ZERO, ZERO, value, varies)
     if load.between:
         p, q = load.between
         if isinstance(load, Spring):
@@ -126,25 +94,23 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         else:
             data, code = (load.damping, 0.0, 0.0), LoadCode.DAMPER
         links = layout.link_number[p.link], layout.link_number[q.link]
-        return AppliedLoad(code, *links, 0, layout.point(p), layout.point(q), data)
+        return record("add_load", code, *links, 0, layout.point(p), layout.point(q), data)
     return _joint_spring(layout, load)
 
 
-def _link_load(layout: Layout, load: LinkLoad) -> AppliedLoad:
+def _link_load(layout: Layout, load: LinkLoad) -> PlanRecord:
     own_axes = load.axes == "link"
     x, y, z = (0.0 if isinstance(amount, Varying) else amount for amount in load.value)
     value = layout.vector(Attached(load.link, (x, y, z))) if own_axes else (x, y, z)
     if load.kind == "force":
         code = LoadCode.FORCE_LINK if own_axes else LoadCode.FORCE_GROUND
-        value, point = (
-            scale(1.0 / layout.length, value),
-            layout.point(Attached(load.link, load.point)),
-        )
+        value = scale(1.0 / layout.length, value)
+        point = layout.point(Attached(load.link, load.point))
     else:
         code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
         value, point = scale(1.0 / (layout.length * layout.length), value), ZERO
     link, varies = layout.link_number[load.link], bool(varying(load))
-    return AppliedLoad(code, link, -1, 0, point, ZERO, value, varies)
+    return record("add_load", code, link, -1, 0, point, ZERO, value, varies)
 
 
 def load_coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, int, int, bool]:
@@ -160,10 +126,9 @@ def load_coordinate(layout: Layout, name: str, coordinate: str) -> tuple[int, in
     return axis, layout.joint_reference[name], freedom, slide
 
 
-def _joint_spring(layout: Layout, load: Spring | Damper) -> AppliedLoad:
-    axis, reference, freedom, slide = load_coordinate(
-        layout, load.joint or "", load.coordinate or ""
-    )
+def _joint_spring(layout: Layout, load: Spring | Damper) -> PlanRecord:
+    place = load_coordinate(layout, load.joint or "", load.coordinate or "")
+    axis, reference, freedom, slide = place
     per = 1.0 if slide else (layout.length * layout.length)
     if isinstance(load, Spring):
         code = LoadCode.COORDINATE_SPRING
@@ -173,27 +138,32 @@ def _joint_spring(layout: Layout, load: Spring | Damper) -> AppliedLoad:
     else:
         code = LoadCode.COORDINATE_DAMPER
         data = (load.damping / per, 0.0, 0.0)
-    return AppliedLoad(code, axis, reference, freedom, ZERO, ZERO, data)
+    return record("add_load", code, axis, reference, freedom, ZERO, ZERO, data)
 
 
 NO_AXIS = -1
-"""Stands for the axis of a coordinate that no user knows, which is driven only while a dead centre
-is looked for, and of the coordinates of a pose, which holds nothing."""
+"""For the axis of a coordinate that no user knows, which is driven only while a dead centre is
+searched for, and of the coordinates of a pose, which holds nothing."""
 
 
 def build_plan(layout: Layout, size: float | None = None) -> Plan:
-    """As `Layout.build`."""
+    """The plan of a layout; `size` of the mechanism in m (None: that of its drawing).
+
+    Raises:
+        ValueError: numbers that are not finite.
+    """
     return hand_over(plan_records(layout, size))
-
-
-def _drawn_size(layout: Layout) -> float:
-    return layout.mechanism.box_diagonal()
 
 
 def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
     """The records of a plan in the order in which its constants are numbered."""
     return [
-        Units(layout.length, layout.origin, _drawn_size(layout) if size is None else size),
+        record(
+            "units",
+            layout.length,
+            layout.origin,
+            layout.mechanism.box_diagonal() if size is None else size,
+        ),
         *_tree_joints(layout),
         *(_closing(layout, closing) for closing in layout.graph.closings),
         *_places(layout),
@@ -201,19 +171,20 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         *_free_motions(layout),
         *_blocks(layout),
         *_inputs(layout),
-        PlanGravity(scale(1.0 / layout.length, layout.mechanism.gravity)),
+        record("set_gravity", scale(1.0 / layout.length, layout.mechanism.gravity)),
         *_inertias(layout),
         *(load_record(layout, load) for load in layout.mechanism.loads),
-        *friction_records(layout),
+        *(each for rubbing in layout.mechanism.frictions for each in _friction(layout, rubbing)),
         *_load_program(layout),
         *_drives(layout),
         *_size_points(layout),
     ]
 
 
-def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
+def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
     for carrier in layout.carriers:
-        yield TreeJoint(
+        yield record(
+            "add_tree_joint",
             carrier.part.type.code,
             carrier.parent,
             layout.graph.edges[carrier.edge].joint.pitch / layout.length,
@@ -221,7 +192,7 @@ def _tree_joints(layout: Layout) -> Iterator[TreeJoint]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
+def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
     constraint = closing.constraint
     loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
     first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
@@ -229,8 +200,10 @@ def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
     frames = layout.frame_on(first, one), layout.frame_on(second, other)
     hung = constraint.hung
     if hung is None or constraint.length is None:
-        return ClosingJoint(constraint.code, first, second, *frames, constraint.parameter, loop)
-    return HungLinks(
+        code, parameter = constraint.code, constraint.parameter
+        return record("add_closing_joint", code, first, second, *frames, parameter, loop)
+    return record(
+        "add_leg",
         layout.link_number[hung.body],
         layout.link_number[hung.rod] if hung.rod else -1,
         first,
@@ -243,12 +216,13 @@ def _closing(layout: Layout, closing: CutJoint) -> ClosingJoint | HungLinks:
     )
 
 
-def _places(layout: Layout) -> Iterator[JointPlace]:
+def _places(layout: Layout) -> Iterator[PlanRecord]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
     # the multipliers push the second link, whether that is the joint's second or first
     backward |= {c.name for c in layout.graph.closings if c.constraint.is_reversed}
     for name, joint in layout.mechanism.joints.items():
-        yield JointPlace(
+        yield record(
+            "add_place",
             layout.joint_reference[name],
             layout.link_number[joint.first],
             layout.link_number[joint.second],
@@ -258,13 +232,13 @@ def _places(layout: Layout) -> Iterator[JointPlace]:
         )
 
 
-def _axes(layout: Layout) -> Iterator[JointAxis]:
+def _axes(layout: Layout) -> Iterator[PlanRecord]:
     for name, coordinate in layout.axis_number:
-        axis = coordinate_axis(layout.mechanism.joints[name], coordinate)
-        (one, two) = axis.terms
-        yield JointAxis(
+        slide, one, two = coordinate_axis(layout.mechanism.joints[name], coordinate)
+        yield record(
+            "add_axis",
             layout.place_number[name],
-            axis.slide,
+            slide,
             layout.link_number[one.link],
             layout.vector(one),
             layout.link_number[two.link],
@@ -272,13 +246,13 @@ def _axes(layout: Layout) -> Iterator[JointAxis]:
         )
 
 
-def _free_motions(layout: Layout) -> Iterator[FreeDirections]:
+def _free_motions(layout: Layout) -> Iterator[PlanRecord]:
     """Of every joint: a slide or a turn along one direction, or square to one, or every one."""
     for name, joint in layout.mechanism.joints.items():
         place = layout.place_number[name]
         for slide, free in ((True, joint.free_slides), (False, joint.free_turns)):
             if free is None or len(free) > 2:
-                yield FreeDirections(place, slide, FreeCode.ALL, -1, ZERO)
+                yield record("add_free_motion", place, slide, FreeCode.ALL, -1, ZERO)
             elif slide and len(free) == 2:
                 one, two = free
                 normal = Attached(one.link, cross(one.vector, two.vector))
@@ -288,51 +262,39 @@ def _free_motions(layout: Layout) -> Iterator[FreeDirections]:
                     yield _free(layout, place, slide, FreeCode.ALONG, at)
 
 
-def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached) -> FreeDirections:
-    return FreeDirections(place, slide, code, layout.link_number[at.link], layout.vector(at))
+def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached) -> PlanRecord:
+    return record(
+        "add_free_motion", place, slide, code, layout.link_number[at.link], layout.vector(at)
+    )
 
 
-def _blocks(layout: Layout) -> Iterator[PlanBlock | Rest]:
+def _blocks(layout: Layout) -> Iterator[PlanRecord]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
         constraints = [layout.graph.closings[c].constraint for c in block.closings]
-        needed = _new_on_ways(layout, constraints, placed)
+        links = [link for constraint in constraints for link in constraint.placed]
+        needed = _new_on_paths(layout, [layout.link_number[link] for link in links], placed)
         if block.charts:
-            needed |= _new_carrying(layout, block.unknowns, placed | needed)
+            ends = [layout.carrier_of(*unknown)[0] for unknown in block.unknowns]
+            needed |= _new_on_paths(layout, ends, placed | needed)
         unknown = [layout.column(k, f) for k, f in block.unknowns]
-        yield PlanBlock(len(block.closings), sorted(needed), unknown, block.charts)
+        yield record("add_block", len(block.closings), sorted(needed), unknown, block.charts)
         placed |= needed
-    yield Rest([k for k in range(len(layout.carriers)) if k not in placed])
+    yield record("set_rest", [k for k in range(len(layout.carriers)) if k not in placed])
 
 
-def _new_on_ways(layout: Layout, constraints: Iterable[Constraint], placed: set[int]) -> set[int]:
-    """Kernel joints on the ways from ground to what some constraints place that are not placed yet.
-
-    What carries a placed one is placed too.
-    """
-    found: set[int] = set()
-    for link in (link for constraint in constraints for link in constraint.placed):
-        k = layout.link_number[link]
-        while k >= 0 and k not in placed and k not in found:
-            found.add(k)
+def _new_on_paths(layout: Layout, ends: Iterable[int], placed: set[int]) -> set[int]:
+    """Kernel joints on the paths from ground to some that are not placed yet; the joints before a
+    placed one are placed, too."""
+    new: set[int] = set()
+    for k in ends:
+        while k >= 0 and k not in placed and k not in new:
+            new.add(k)
             k = layout.carriers[k].parent
-    return found
+    return new
 
 
-def _new_carrying(
-    layout: Layout, unknowns: Iterable[tuple[int, int]], placed: set[int]
-) -> set[int]:
-    """Kernel joints with some freedoms, and what carries them, that are not placed yet."""
-    found: set[int] = set()
-    for edge, freedom in unknowns:
-        k, _ = layout.carrier_of(edge, freedom)
-        while k >= 0 and k not in placed and k not in found:
-            found.add(k)
-            k = layout.carriers[k].parent
-    return found
-
-
-def _inputs(layout: Layout) -> Iterator[Input]:
+def _inputs(layout: Layout) -> Iterator[PlanRecord]:
     graph = layout.graph
     for (edge, freedom), (name, coordinate) in zip(graph.inputs, graph.driven, strict=True):
         joint = graph.edges[edge].joint
@@ -341,10 +303,10 @@ def _inputs(layout: Layout) -> Iterator[Input]:
         on_thread = known is not None and known.on_thread
         force_per_torque = layout.length / joint.pitch if on_thread else 1.0
         axis = layout.axis_number.get((name, coordinate), NO_AXIS)
-        yield Input(layout.column(edge, freedom), axis, force_per_torque)
+        yield record("add_input", layout.column(edge, freedom), axis, force_per_torque)
 
 
-def _inertias(layout: Layout) -> Iterator[Inertia]:
+def _inertias(layout: Layout) -> Iterator[PlanRecord]:
     for name, link in layout.mechanism.links.items():
         if name == GROUND_NAME or not link.has_mass:
             continue
@@ -353,35 +315,29 @@ def _inertias(layout: Layout) -> Iterator[Inertia]:
             i / (layout.length * layout.length)
             for i in turned_tensor(link.inertia, layout.link_frame[name])
         ]
-        yield Inertia(layout.link_number[name], link.mass, centre, tensor)
+        yield record("set_inertia", layout.link_number[name], link.mass, centre, tensor)
 
 
-def _load_program(layout: Layout) -> list[Program]:
+def _load_program(layout: Layout) -> Iterator[PlanRecord]:
     if layout.laws is None:
-        return []
+        return
     from mechkin_cli.plan.programs import load_program
 
-    return load_program(layout)
+    yield from (record("set_load_program", *program) for program in load_program(layout))
 
 
-def _drives(layout: Layout) -> Iterator[Driven | Actuator | Transmission]:
+def _drives(layout: Layout) -> Iterator[PlanRecord]:
     drives = layout.drives
     if drives is None:
         return
-    yield Driven(len(drives.inputs))
+    yield record("set_driven", len(drives.inputs))
     for joint, coordinate in drives.actuators:
         axis, reference, freedom, _ = load_coordinate(layout, joint, coordinate)
-        yield Actuator(axis, reference, freedom)
-    yield from (Transmission(*constraint) for constraint in drives.constraints)
+        yield record("add_actuator", axis, reference, freedom)
+    yield from (record("add_tie", *constraint) for constraint in drives.constraints)
 
 
-def _size_points(layout: Layout) -> Iterator[SizePoint]:
+def _size_points(layout: Layout) -> Iterator[PlanRecord]:
     for _, at in layout.mechanism.joint_points():
-        ground = at.link == GROUND_NAME
-        yield SizePoint(layout.link_number[at.link], at.vector if ground else layout.point(at))
-
-
-# Values of varying loads as the kernel takes them.
-#
-# A load along a coordinate has one column, a load on a link three: its components in the axes that
-# it is given in, in the kernel's units, in the order of the mechanism's loads.
+        point = at.vector if at.link == GROUND_NAME else layout.point(at)
+        yield record("add_size_point", layout.link_number[at.link], point)

@@ -35,17 +35,10 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "data": ["document_from_data"],
-        "document": ["Document", "KeyPath", "document_from_text", "read_document"],
-        "messages": ["explain", "is_mechanism", "is_study"],
-        "text": [
-            "MOST_BYTES",
-            "MOST_DIAGNOSTICS",
-            "MOST_TABLE_BYTES",
-            "NotRegular",
-            "decoded",
-            "read_regular",
-        ],
-        "yaml": ["CORRECT_FIRST", "in_order"],
+        "data": "document_from_data",
+        "document": "Document KeyPath document_from_text read_document",
+        "messages": "explain is_mechanism is_study",
+        "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
+        "yaml": "CORRECT_FIRST in_order",
     },
 )

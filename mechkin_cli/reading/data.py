@@ -1,7 +1,7 @@
 """A document from the plain data of a program: a mapping of texts, numbers, lists and mappings.
 
-The data is written down as text (JSON, which is YAML), so that nothing behind the reader knows the
-difference; but a message names the way of keys to a value instead of a line that nobody has seen.
+The data is written as text (JSON, which is YAML), so that nothing after the reader knows the
+difference; but a message names the path of keys to a value instead of a line that nobody has seen.
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ from mechkin_cli.record import replace
 def document_from_data(data: Mapping[Any, Any], name: str, folder: Path | None) -> Document:
     """The document that data describes; `name` stands for the file in messages.
 
-    Numbers count with their shortest decimals, arrays and numbers of numpy as lists and numbers.
+    Numbers are written with their shortest decimals, arrays and numbers of numpy as lists and
+    numbers.
 
     Raises:
-        InvalidFile: a value that no mechanism file can hold, with the way of keys to it.
+        InvalidFile: a value that no mechanism file can hold, with the path of keys to it.
     """
     plain = _DataReader(name).plain(data, ())
     document = document_from_text(json.dumps(plain, indent=1, ensure_ascii=False), name)
@@ -33,7 +34,7 @@ def document_from_data(data: Mapping[Any, Any], name: str, folder: Path | None) 
 
 
 class _DataReader:
-    """Turns values into texts, lists and mappings; `_above` are those on the way to a value."""
+    """Turns values into texts, lists and mappings; `_above` are the containers of a value."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -47,10 +48,10 @@ class _DataReader:
         if not isinstance(value, str | Mapping | list | tuple | Real) and hasattr(value, "tolist"):
             value = value.tolist()
         if isinstance(value, Mapping | list | tuple):
-            return self._inside(value, path)
+            return self._container(value, path)
         return self._text(value, path)
 
-    def _inside(self, value: Any, path: KeyPath) -> Any:
+    def _container(self, value: Any, path: KeyPath) -> Any:
         if id(value) in self._above:
             raise self._refused(path, "a value that holds itself", "write it out")
         if len(self._above) >= MOST_LEVELS:
@@ -65,7 +66,7 @@ class _DataReader:
 
     def _key(self, key: Any, path: KeyPath) -> str:
         if not isinstance(key, str):
-            what = f"a key that is no text ({type(key).__name__})"
+            what = f"a key that is not a text ({type(key).__name__})"
             raise self._refused(path, what, "keys are names such as joints")
         return self._checked(key, path)
 

@@ -1,7 +1,11 @@
-"""What was written, with its places: one mechanism file as plain data and as positions in the text.
+"""One mechanism file as plain data, and the place in its text of every value and character.
 
 A path leads into the file from the top, by keys and by the numbers of list items from 0:
 `("tables", 0, "columns", 2, "value")`.
+
+The place of a character of a scalar is found behind quotes, escapes and folds. In plain and block
+style only white space is folded, so the n-th visible character of the text is the n-th visible
+character of the source. In quoted style an escape sequence stands for one character.
 """
 
 from __future__ import annotations
@@ -39,11 +43,11 @@ class Document:
     """A mechanism file as written.
 
     `file` is the name that messages show, `text` the source, `root` the top-level mapping;
-    `overrides` holds the parameters set from outside, by name; `folder` is where files are sought
-    that it names, None for a text that comes from no file. `is_data` says that the text was made
-    from a program's data: places are then ways of keys. `tables` are the contents of files that it
-    names, by name, as they were when they were first read: what is built of a document again, here
-    or in another process, is built of the same.
+    `overrides` holds the parameters set from outside, by name; `folder` is that of the files it
+    names, None for a text that does not come from a file. With `is_data` the text was made from a
+    program's data, and places are paths of keys. `tables` are the contents of files that it names,
+    by name, as they were when they were first read, so that building a document again, here or in
+    another process, builds the same.
     """
 
     file: str
@@ -56,7 +60,7 @@ class Document:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The file that it is, and those of the tables read so far; none of a text or of data."""
+        """The file itself and those of the tables read so far; none for a text or for data."""
         if self.folder is None:
             return ()
         return (Path(self.file), *(self.folder / name for name in self.tables))
@@ -92,13 +96,12 @@ class Document:
         that exists, stands in the source."""
         if override := self._override(path):
             return self._outside(override, offset)
-        # of a number that stands for several, the text is the number's
+        # a number that stands for several has one text
         node = self._reach(path)[0].value
         if not isinstance(node, ScalarNode):
             return self.place(path)
         if self.is_data:
             return self.place(path)._replace(column=offset + 1)
-
         return Place(self.file, *source_mark(node, offset, self._lines))
 
     def with_parameters(self, parameters: collections.abc.Mapping[str, str]) -> Document:
@@ -120,7 +123,7 @@ class Document:
         return lines_of(self.text)
 
     def _reach(self, path: KeyPath) -> tuple[Entry, int]:
-        """The last entry on the path that exists, and how many steps of the path lead to it."""
+        """The last entry on the path that exists, and the number of steps that lead to it."""
         entry = Entry(self.root.mark, self.root)
         for depth, step in enumerate(path):
             child = _child(entry.value, step)
@@ -133,12 +136,9 @@ class Document:
         return entry, len(path)
 
     def _at(self, path: KeyPath, mark: Mark) -> Place:
-        """A place that the text has, or the way of keys to it."""
-        return (
-            Place(f"{self.file} at {key_words(path)}", 0, 1)
-            if self.is_data
-            else Place(self.file, *mark)
-        )
+        if self.is_data:
+            return Place(f"{self.file} at {key_words(path)}", 0, 1)
+        return Place(self.file, *mark)
 
     def _override(self, path: KeyPath) -> str | None:
         if len(path) == 2 and path[0] == _PARAMETERS and path[1] in self.overrides:
@@ -166,7 +166,7 @@ def document_from_text(text: str, name: str) -> Document:
 
 
 def key_words(path: KeyPath) -> str:
-    """A way of keys as messages show it.
+    """A path of keys as messages show it.
 
     >>> key_words(("joints", "A", "point", 2)), key_words(())
     ('joints.A.point[2]', 'the top')
@@ -192,12 +192,6 @@ def _unknown_parameter(name: str, defined: list[str], file: str) -> str:
     return f"{message}; it has {', '.join(defined[:10])}{', ...' if len(defined) > 10 else ''}"
 
 
-# Where a character of a scalar's text stands in the source, behind quotes, escapes and folds.
-#
-# In plain and block style only white space is folded, so the n-th visible character of the text is
-# the n-th visible character of the source. In quoted style an escape sequence stands for one
-# character.
-
 _ESCAPE = re.compile(r"\\(x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.|$)")
 
 _ESCAPES_OF_BLANKS = ("", *" \tntrvfNLP_")
@@ -218,16 +212,13 @@ def source_mark(scalar: ScalarNode, offset: int, lines: list[str]) -> Mark:
     position = scalar.mark
     for seen, (mark, width) in enumerate(_visible(scalar, lines)):
         if at_blank and seen + 1 == visible_before:
-            return _after(mark, width, scalar.text, offset)
+            before = scalar.text[:offset]
+            blanks = len(before) - len(before.rstrip())
+            return Mark(mark.line, mark.column + width + blanks)
         if not at_blank and seen == visible_before:
             return mark
         position = mark
     return position
-
-
-def _after(mark: Mark, width: int, text: str, offset: int) -> Mark:
-    blanks = len(text[:offset]) - len(text[:offset].rstrip())
-    return Mark(mark.line, mark.column + width + blanks)
 
 
 def _visible(scalar: ScalarNode, lines: list[str]) -> Iterator[tuple[Mark, int]]:
@@ -255,8 +246,8 @@ def _is_visible(source: str, index: int, style: Style) -> bool:
 
 def _width(source: str, index: int, style: Style) -> int:
     if style is Style.DOUBLE_QUOTED and source[index] == "\\":
-        found = _ESCAPE.match(source, index)
-        return len(found[0]) if found else 1
+        escape = _ESCAPE.match(source, index)
+        return len(escape[0]) if escape else 1
     if style is Style.SINGLE_QUOTED and source.startswith("''", index):
         return 2
     return 1

@@ -1,11 +1,14 @@
 """Errors of a validation -> diagnostics with file, line and column.
 
-An error is a plain record: `type` (its kind), `loc` (the way to the value), `ctx` (numbers and
-words for the message). Three conventions let a rule say more than where the validator stood:
+An error is a plain record: `type` (its kind, by the names that validators use: `missing`,
+`too_short`, ...), `loc` (the path to the value), `ctx` (numbers and words for the message). Three
+conventions let a rule refer to another place than that of the validator:
 
-- a step of `loc` in parentheses that is no key of the file names one of several forms;
+- a step of `loc` in parentheses that is not a key of the file names one of several forms;
 - a last step `[key]` means the key itself and not its value;
 - `ctx["at"]` leads on from `loc`, `ctx["text"]` is the whole message, `ctx["hint"]` what to do.
+
+Messages name what is written in the file, never the validator's types.
 """
 
 from __future__ import annotations
@@ -16,16 +19,12 @@ from typing import Any
 
 from mechkin_cli.diagnostics import Diagnostic, Place, nearest
 from mechkin_cli.reading.document import Document, KeyPath
+from mechkin_cli.reading.text import shortened
 from mechkin_cli.reading.yaml import Mapping, Node, ScalarNode, Sequence, in_order
 from mechkin_cli.record import NamedTuple
 
-# What is wrong with one value, in words: a phrase per kind of validation error.
-#
-# The kinds are the names that validators give (`missing`, `too_short`, ...). The phrases speak of
-# what is written in the file, never of the validator's types.
-
 _LONGEST_LIST = 16
-"""A message lists the known words up to this many."""
+"""Known words up to this number are listed in a message."""
 
 
 class Wording(NamedTuple):
@@ -44,37 +43,38 @@ def missing_key(key: str, context: dict[str, Any]) -> Wording:
 
 
 def unknown_key(key: str, context: dict[str, Any]) -> Wording:
-    """A mapping has a key that it cannot have; `context` may hold the `known` keys and `advice`."""
+    """A key is not known; `context` may hold the `known` keys and `advice`."""
     known = context.get("known") or []
     hint = context.get("advice") or choice_hint(key, known, "keys") or "remove it"
     return Wording("unknown-key", f"there is no key {shown(key)} here", hint)
 
 
-def unknown_word(found: Node | None, known: list[str], advice: str | None = None) -> Wording:
-    """A value is none of the words possible at its place; `advice` says what to do instead."""
-    if not isinstance(found, ScalarNode):
-        text = f"expected one of the words {', '.join(known)}, found {kind(found)}"
+def unknown_word(node: Node | None, known: list[str], advice: str | None = None) -> Wording:
+    """A value is not a known word of its place; `advice` is what to do instead."""
+    if not isinstance(node, ScalarNode):
+        text = f"expected one of the words {', '.join(known)}, found {kind(node)}"
         return Wording("unknown-word", text, None)
-    hint = advice or choice_hint(found.text, known, "words")
-    return Wording("unknown-word", f"{shown(found.text)} is none of the words possible here", hint)
+    hint = advice or choice_hint(node.text, known, "words")
+    return Wording("unknown-word", f"{shown(node.text)} is not one of the words allowed here", hint)
 
 
-def wrong_value(error: dict[str, Any], found: Node | None) -> Wording:
-    """A value that is of the wrong kind, too long, too short, or not of the form wanted."""
+def wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
+    """A value is of the wrong kind, too long, too short, or not of the expected form."""
     name, context = str(error["type"]), error.get("ctx") or {}
     if name in ("too_short", "too_long"):
-        return _wrong_length(context, found)
+        return _wrong_length(context, node)
     if name in _KINDS:
         expected, hint = _KINDS[name]
-        return Wording("wrong-kind", f"expected {expected}, found {kind(found)}", hint)
+        return Wording("wrong-kind", f"expected {expected}, found {kind(node)}", hint)
     if name == "string_pattern_mismatch":
-        return _wrong_form(context, found)
+        expected = context.get("expected") or f"of the form {context.get('pattern')}"
+        return Wording("wrong-form", f"{kind(node)} is not {expected}", context.get("hint"))
     if name in _BOUNDS:
         key, relation, direction = _BOUNDS[name]
         limit = context.get(key)
-        message = f"{kind(found)} is {relation} the limit {limit}"
+        message = f"{kind(node)} is {relation} the limit {limit}"
         return Wording("out-of-range", message, f"write {limit} or {direction}")
-    return Wording("invalid-value", f"{kind(found)} cannot stand here", None)
+    return Wording("invalid-value", f"{kind(node)} cannot stand here", None)
 
 
 def choice_hint(word: str, known: list[str], what: str) -> str | None:
@@ -88,7 +88,7 @@ def choice_hint(word: str, known: list[str], what: str) -> str | None:
 
 
 def kind(node: Node | None) -> str:
-    """What is written at a place, in words."""
+    """The value of a node in words."""
     if isinstance(node, ScalarNode):
         return shown(node.text)
     if isinstance(node, Sequence):
@@ -99,9 +99,8 @@ def kind(node: Node | None) -> str:
 
 
 def shown(text: str) -> str:
-    """A text of the file as messages quote it: on one line, not too long."""
-    text = re.sub(r"\s+", " ", text)
-    return f"'{text if len(text) <= 40 else text[:37] + '...'}'"
+    """A text of the file as messages quote it."""
+    return f"'{shortened(text)}'"
 
 
 _LIST = ("a list [...]", "write it in brackets: [x, y, z]")
@@ -120,21 +119,16 @@ _BOUNDS = {
 }
 
 
-def _wrong_length(context: dict[str, Any], found: Node | None) -> Wording:
+def _wrong_length(context: dict[str, Any], node: Node | None) -> Wording:
     least, most = context.get("min_length"), context.get("max_length")
-    count = len(found.items) if isinstance(found, Sequence) else context.get("actual_length")
-    if isinstance(found, Mapping):
-        count = len(found.entries)
+    count = len(node.items) if isinstance(node, Sequence) else context.get("actual_length")
+    if isinstance(node, Mapping):
+        count = len(node.entries)
     what = "entry" if count == 1 else "entries"
     limit = f"at least {least}" if most is None else f"at most {most}"
     is_vector = 3 in (least, most)
     hint = "a vector has three: [x, y, z]; with plane: xy two" if is_vector else None
     return Wording("wrong-length", f"found {count} {what}, expected {limit}", hint)
-
-
-def _wrong_form(context: dict[str, Any], found: Node | None) -> Wording:
-    expected = context.get("expected") or f"of the form {context.get('pattern')}"
-    return Wording("wrong-form", f"{kind(found)} is not {expected}", context.get("hint"))
 
 
 def _lower_first(text: str) -> str:
@@ -148,29 +142,24 @@ _KEY = "[key]"
 def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagnostic]:
     """One diagnostic per error, in the order of the file."""
     errors = list(errors)
-    misspelt = _misspelt(errors)
-    told = (
+    # keys that are missing only because they are misspelt, which has its own message
+    misspelt = set()
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            *mapping, key = error["loc"]
+            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
+            misspelt.add((*mapping, close or ""))
+    diagnostics = (
         _diagnostic(error, document)
         for error in errors
         if not _is_echo(error, document)
         and not (error["type"] == "missing" and tuple(error["loc"]) in misspelt)
     )
-    return in_order(list(dict.fromkeys(told)))
-
-
-def _misspelt(errors: list[dict[str, Any]]) -> set[tuple[str | int, ...]]:
-    """The ways to keys that are missing only because they are misspelt, which is told."""
-    found = set()
-    for error in errors:
-        if error["type"] == "extra_forbidden":
-            *mapping, key = error["loc"]
-            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
-            found.add((*mapping, close or ""))
-    return found
+    return in_order(list(dict.fromkeys(diagnostics)))
 
 
 def _is_echo(error: dict[str, Any], document: Document) -> bool:
-    """Whether a list counts as too short only because items of it were refused for themselves."""
+    """Whether a list counts as too short only because some of its items were refused."""
     if error["type"] != "too_short":
         return False
     node = document.node(_path(error["loc"], document))
@@ -183,7 +172,7 @@ def _is_echo(error: dict[str, Any], document: Document) -> bool:
 
 def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
     """The steps without the names of forms, and without the number of an item where one value
-    stands for a list; a key that somebody wrote in parentheses stays."""
+    stands for a list; a key in parentheses stays."""
     path: KeyPath = ()
     for step in steps:
         if isinstance(step, int) and isinstance(document.node(path), ScalarNode | Mapping):
@@ -196,59 +185,51 @@ def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
 def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
     context = error.get("ctx") or {}
     path = _path([*error["loc"], *context.get("at", ())], document)
-    kind = str(error["type"])
-    if kind == "missing":
+    code = str(error["type"])
+    if code == "missing":
         words = missing_key(str(path[-1]), context)
-        return _told(words, path[:-1], document.place(path[:-1]))
-    if kind == "extra_forbidden":
+        return _at_path(words, path[:-1], document.place(path[:-1]))
+    if code == "extra_forbidden":
         words = unknown_key(str(path[-1]), context)
-        return _told(words, path[:-1], document.key_place(path))
-    if kind in ("unknown-word", "literal_error"):
-        return _unknown_word(kind, path, context, document)
+        return _at_path(words, path[:-1], document.key_place(path))
+    if code in ("unknown-word", "literal_error"):
+        return _unknown_word(code, path, context, document)
     at_key = path[-1:] == (_KEY,)
     path = path[:-1] if at_key else path
     place = document.key_place(path) if at_key else document.place(path)
     if "text" in context:
-        words = _own_words(kind, context, path, document)
+        text = str(context["text"])
+        if text.startswith("expected"):
+            text += f", found {kind(document.node(path))}"
+        words = Wording(code, text, context.get("hint"))
     elif at_key:
         text = f"{shown(str(path[-1]))} is not {context.get('expected', 'a key')}"
         words = Wording("wrong-form", text, context.get("hint"))
     else:
         words = wrong_value(error, document.node(path))
-    return _told(words, path[:-1] if at_key else path, place)
+    return _at_path(words, path[:-1] if at_key else path, place)
 
 
 def _unknown_word(
-    kind: str, path: KeyPath, context: dict[str, Any], document: Document
+    code: str, path: KeyPath, context: dict[str, Any], document: Document
 ) -> Diagnostic:
-    if kind == "literal_error":
+    if code == "literal_error":
         known = re.findall(r"'([^']*)'", str(context.get("expected")))
     else:
         known = str(context["words"]).split(", ")
-        if not _is_mapping(path, document):
+        if not isinstance(document.node(path), Mapping):
             words = wrong_value({"type": "model_type"}, document.node(path))
-            return _told(words, path, document.place(path))
+            return _at_path(words, path, document.place(path))
         key = str(context["key"])
         if document.node((*path, key)) is None:
             words = missing_key(key, {"purpose": f"one of {', '.join(known)}"})
-            return _told(words, path, document.place(path))
+            return _at_path(words, path, document.place(path))
         path = (*path, key)
     words = unknown_word(document.node(path), known, context.get("advice"))
-    return _told(words, path, document.place(path))
+    return _at_path(words, path, document.place(path))
 
 
-def _is_mapping(path: KeyPath, document: Document) -> bool:
-    return isinstance(document.node(path), Mapping)
-
-
-def _own_words(code: str, context: dict[str, Any], path: KeyPath, document: Document) -> Wording:
-    text = str(context["text"])
-    if text.startswith("expected"):
-        text += f", found {kind(document.node(path))}"
-    return Wording(code, text, context.get("hint"))
-
-
-def _told(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
+def _at_path(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
     where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
     message = f"{where[1:]}: {words.message}" if where else words.message
     return Diagnostic(words.code, "error", message, place, hint=words.hint)
@@ -256,19 +237,19 @@ def _told(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
 
 def is_study(document: Document) -> list[Diagnostic]:
     """One message where a mechanism is needed and the file is a study; none where it is not."""
-    if not _begins(document, "study", "format"):
+    if "study" not in document.data or "format" in document.data:
         return []
     text = "this is a study, and a mechanism file is needed"
     hint = f"run it with mechkin study {document.file}"
-    named = document.data.get("mechanism")
-    if isinstance(named, str):
-        hint += f", or give its mechanism, {named}"
+    mechanism = document.data.get("mechanism")
+    if isinstance(mechanism, str):
+        hint += f", or give its mechanism, {mechanism}"
     return [Diagnostic("a-study", "error", text, document.place(("study",)), hint=hint)]
 
 
 def is_mechanism(document: Document) -> list[Diagnostic]:
     """One message where a study is needed and the file is a mechanism; none where it is not."""
-    if not _begins(document, "format", "study"):
+    if "format" not in document.data or "study" in document.data:
         return []
     text = "this is a mechanism file, and a study is needed"
     hint = (
@@ -276,13 +257,3 @@ def is_mechanism(document: Document) -> list[Diagnostic]:
         f"(docs/studies.md), or run this one with mechkin analyze {document.file}"
     )
     return [Diagnostic("a-mechanism", "error", text, document.place(("format",)), hint=hint)]
-
-
-def _begins(document: Document, key: str, other: str) -> bool:
-    return key in document.data and other not in document.data
-
-
-# Errors of YAML's own grammar in plain words, the same for the C parser and for the Python parser.
-#
-# Both parsers name the rule that failed in slightly different words; the table below knows the part
-# they have in common. Whatever it doesn't know gets one general message, never the parser's own.

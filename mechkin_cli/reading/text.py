@@ -1,4 +1,9 @@
-"""From a path to text: size, encoding and invisible characters, settled before any YAML."""
+"""From a path to text: limits, size, encoding and invisible characters, checked before any YAML.
+
+The limits keep bad input from exhausting time or memory. The largest mechanism file written by hand
+has some thousand lines; each limit leaves a factor of ten or more above that and still keeps the
+work of the slowest parser within seconds.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +16,6 @@ from pathlib import Path
 from typing import Final
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError, nearest
-
-# How large a mechanism file may be: limits that keep bad input from exhausting time or memory.
-#
-# The largest mechanism file written by hand has some thousand lines; each limit leaves a factor of
-# ten or more above that and still keeps the work of the slowest parser within seconds.
 
 MOST_BYTES: Final = 1 << 20
 """Size of the file in bytes."""
@@ -35,12 +35,8 @@ LONGEST_EXPRESSION: Final = 4000
 MOST_DIAGNOSTICS: Final = 50
 """Messages shown for one file; the rest is counted in one more message."""
 
-
-# The bytes of a regular file: whatever stands at a path, reading it neither waits nor goes on for
-# ever.
-
 MOST_TABLE_BYTES: Final = 1 << 30
-"""Size of a table on disk that is compared; kept tables have some kilobytes."""
+"""Size of a table on disk that is compared; committed tables have some kilobytes."""
 
 _PIECE = 1 << 20
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
@@ -58,10 +54,10 @@ class NotRegular(OSError):
 def read_regular(path: Path, most: int) -> bytes:
     """The content of a file, of which no more than `most` + 1 bytes are read.
 
-    Files of the system (`/proc`) that wait for news are read without waiting.
+    Whatever stands at the path, reading neither waits nor goes on for ever.
 
     Raises:
-        NotRegular: it is no regular file.
+        NotRegular: it is not a regular file.
         OSError: it cannot be read.
         ValueError: the path holds a NUL character.
     """
@@ -86,11 +82,11 @@ def _check(path: Path, mode: int) -> None:
 _LINE_BREAK = re.compile(r"\r\n|\r|\n")
 _TAB_IN_INDENTATION = re.compile(r"^ *(\t)[ \t]*[^ \t\r\n#]", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^%", re.MULTILINE)
-# said by what is refused: compiling the complement takes some milliseconds of every run
+# the refused characters: compiling the complement takes some milliseconds of every run
 INVISIBLE = re.compile(
     "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufeff\ufffe\uffff]"
 )
-"""What YAML does not allow, and what would make editors and parsers count lines differently."""
+"""Characters that YAML does not allow, or at which editors and parsers count lines differently."""
 _OTHER_ENCODINGS = (codecs.BOM_UTF32_LE, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
@@ -100,17 +96,32 @@ def read_text(path: str | Path) -> str:
     Raises `UsageError` where there is no file to read, `InvalidFile` where its content cannot be a
     mechanism file.
     """
-    return decoded(_read_bytes(Path(path)), str(path))
+    path = Path(path)
+    try:
+        content = read_regular(path, MOST_BYTES)
+        if len(content) > MOST_BYTES:
+            check_size(max(len(content), path.stat().st_size), str(path))
+    except NotRegular as error:
+        if error.is_folder:
+            cure = f"is a directory; name a mechanism file in it{_example(path)}"
+            raise UsageError(f"{path} {cure}") from None
+        raise UsageError(f"{path} is not a regular file; save the mechanism in a file") from None
+    except FileNotFoundError:
+        raise UsageError(f"there is no file {path}{_similar(path)}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        message = f"{path} cannot be read: {reason}; check the path and its rights"
+        raise UsageError(message) from None
+    return decoded(content, str(path))
 
 
 def decoded(content: bytes, file: str) -> str:
     """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`."""
     check_size(len(content), file)
     try:
-        text = content.decode("utf-8")
+        text = content.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         raise _not_utf8(content, error, file) from None
-    text = text.removeprefix("\ufeff")
     check_characters(text, file)
     return text
 
@@ -118,7 +129,17 @@ def decoded(content: bytes, file: str) -> str:
 def check_size(size: int, file: str) -> None:
     """Raise `InvalidFile` where a text has more bytes than a mechanism file may have."""
     if size > MOST_BYTES:
-        raise _too_large(size, file)
+        diagnostic = Diagnostic(
+            "file-too-large",
+            "error",
+            "the file is too large for a mechanism file",
+            Place(file, 1, 1),
+            measured=f"{size} bytes",
+            limit=f"{MOST_BYTES} bytes",
+            hint="keep long tables of numbers in CSV files",
+            numbers=(Number("bytes", size, limit=MOST_BYTES),),
+        )
+        raise InvalidFile([diagnostic])
 
 
 def check_characters(text: str, file: str) -> None:
@@ -141,7 +162,7 @@ def check_characters(text: str, file: str) -> None:
 
 
 def character_name(character: str) -> str:
-    """How messages call a character that cannot be shown."""
+    """The name in messages of a character that cannot be shown."""
     code = ord(character)
     return "a NUL character" if code == 0 else f"the invisible character U+{code:04X}"
 
@@ -159,24 +180,10 @@ def lines_of(text: str) -> list[str]:
     return _LINE_BREAK.split(text)
 
 
-def _read_bytes(path: Path) -> bytes:
-    try:
-        content = read_regular(path, MOST_BYTES)
-        if len(content) > MOST_BYTES:
-            raise _too_large(max(len(content), path.stat().st_size), str(path))
-        return content
-    except NotRegular as found:
-        if found.is_folder:
-            cure = f"is a directory; name a mechanism file in it{_example(path)}"
-            raise UsageError(f"{path} {cure}") from None
-        raise UsageError(f"{path} is not a regular file; save the mechanism in a file") from None
-    except FileNotFoundError:
-        raise UsageError(f"there is no file {path}{_similar(path)}") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(
-            f"{path} cannot be read: {reason}; check the path and its rights"
-        ) from None
+def shortened(text: str) -> str:
+    """A text of the file as messages show it: on one line, not too long."""
+    text = re.sub(r"\s+", " ", text)
+    return text if len(text) <= 40 else text[:37] + "..."
 
 
 def _example(folder: Path) -> str:
@@ -201,20 +208,6 @@ def _not_utf8(content: bytes, error: UnicodeDecodeError, file: str) -> InvalidFi
         place = place_at(before, len(before), file)
         message = f"the byte 0x{content[error.start]:02X} is not UTF-8 text"
     return _invalid("encoding", message, place, "save the file as UTF-8")
-
-
-def _too_large(size: int, file: str) -> InvalidFile:
-    diagnostic = Diagnostic(
-        "file-too-large",
-        "error",
-        "the file is too large for a mechanism file",
-        Place(file, 1, 1),
-        measured=f"{size} bytes",
-        limit=f"{MOST_BYTES} bytes",
-        hint="keep long tables of numbers in CSV files",
-        numbers=(Number("bytes", size, limit=MOST_BYTES),),
-    )
-    return InvalidFile([diagnostic])
 
 
 def _invalid(code: str, message: str, place: Place, hint: str) -> InvalidFile:

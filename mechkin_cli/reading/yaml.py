@@ -1,7 +1,9 @@
-"""YAML text -> nodes, by a walk over the parser's events.
+"""YAML text -> nodes, by a walk over the parser's events, with a message for every mistake.
 
 The tree is never built by YAML itself: a composer recurses, and a file of two hundred thousand open
 brackets would overflow the stack of the C library. Limits are tested while the events come in.
+Scalars, sequences and mappings know their places. Scalars stay text, so that `1e-3`, `on` and `010`
+mean what the schema defines and not what YAML guesses.
 """
 
 from __future__ import annotations
@@ -27,13 +29,9 @@ from mechkin_cli.reading.text import (
     character_name,
     check_characters,
     lines_of,
+    shortened,
 )
 from mechkin_cli.record import NamedTuple, dataclass, field
-
-# What the reader makes of a YAML text: scalars, sequences and mappings that know where they stand.
-#
-# Scalars stay text, so that `1e-3`, `on` and `010` mean what the schema says and not what YAML
-# guesses.
 
 
 class Mark(NamedTuple):
@@ -98,10 +96,9 @@ def plain_data(node: Node) -> PlainData:
     return {key: plain_data(entry.value) for key, entry in node.entries.items()}
 
 
-# The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes.
-#
-# Inside braces and brackets YAML ends an unquoted scalar at the comma, so the example has the keys
-# `value`, `b` and `c)`. A scalar with an open parenthesis gives the mistake away.
+# The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes. Inside braces
+# and brackets YAML ends an unquoted scalar at the comma, so the example has the keys `value`, `b`
+# and `c)`. A scalar with an open parenthesis gives the mistake away.
 
 _OPENING, _CLOSING = "([{", ")]}"
 _ENDS_AN_EXPRESSION = ",}]"
@@ -109,9 +106,7 @@ _ENDS_AN_EXPRESSION = ",}]"
 
 def is_cut_off(node: Node) -> bool:
     """Whether the node is an unquoted scalar in which a parenthesis stays open."""
-    return (
-        isinstance(node, ScalarNode) and node.style is Style.PLAIN and _open_parentheses(node) > 0
-    )
+    return _open_parentheses(node) > 0
 
 
 def pieces_of_mapping(pairs: list[tuple[Node, Node]], first: int) -> int:
@@ -151,7 +146,7 @@ def cut_at_comma(scalar: ScalarNode, line: str, file: str) -> Diagnostic:
     return Diagnostic(
         "comma-without-quotes",
         "error",
-        f"YAML ends the value {_shortened(scalar.text)} at the comma or bracket that follows",
+        f"YAML ends the value {shortened(scalar.text)} at the comma or bracket that follows",
         Place(file, *scalar.mark),
         hint=hint,
     )
@@ -176,8 +171,8 @@ def _whole_expression(line: str, start: int) -> str | None:
 
 @lru_cache(maxsize=1)
 def _nesting(line: str) -> tuple[list[int], dict[int, list[int]]]:
-    """How deep each character of a line stands in brackets, and the end's depth; and by depth where
-    an expression could end. A line may have thousands of values that ask."""
+    """The depth in brackets of each character of a line and of its end; and by depth the places
+    where an expression could end. Remembered, since a line may have thousands of values."""
     steps = ((c in _OPENING) - (c in _CLOSING) for c in line)
     depths = list(accumulate(steps, initial=0))
     ends: dict[int, list[int]] = {}
@@ -187,21 +182,12 @@ def _nesting(line: str) -> tuple[list[int], dict[int, list[int]]]:
     return depths, ends
 
 
-def _shortened(text: str) -> str:
-    return text if len(text) <= 40 else text[:37] + "..."
-
-
-# From YAML events to nodes, with every problem that is not a matter of YAML's grammar.
-#
-# A stack holds the lists and mappings that are still open; their children are gathered in one flat
-# list (key, value, key, value for a mapping) and judged when the collection closes. No recursion,
-# so that deep nesting ends in a message and not in a full stack.
-
+_WRITE_OUT = "write the value out, or use a parameter; put a text that starts with {} in quotes"
 _STYLES = {"'": Style.SINGLE_QUOTED, '"': Style.DOUBLE_QUOTED, "|": Style.BLOCK, ">": Style.BLOCK}
 
 
 class TooDeepError(Exception):
-    """Raised when the nesting exceeds `MOST_LEVELS`; the diagnostic is already noted."""
+    """Raised when the nesting exceeds `MOST_LEVELS`; the diagnostic exists already."""
 
 
 @dataclass(slots=True)
@@ -214,7 +200,10 @@ class _Open:
 class TreeBuilder:
     """Takes the events of one document in order; afterwards `root` is its node.
 
-    `diagnostics` holds what was wrong; the tree is meant to be used only where it stayed empty.
+    `diagnostics` has every problem that is not one of YAML's grammar; without any the tree is
+    valid. A stack holds the lists and mappings that are still open; their children are gathered in
+    one flat list (key, value, key, value for a mapping) and judged when the collection closes.
+    Without recursion deep nesting ends in a message and not in a full stack.
     """
 
     def __init__(self, lines: list[str], file: str) -> None:
@@ -238,11 +227,13 @@ class TreeBuilder:
             self._check_properties(event)
             self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
         elif isinstance(event, (events.SequenceEndEvent, events.MappingEndEvent)):
-            self._add(self._close(self._stack.pop()))
-        elif isinstance(event, events.AliasEvent):
-            hint = (
-                "write the value out, or use a parameter; put a text that starts with * in quotes"
+            collection = self._stack.pop()
+            node = (
+                self._mapping(collection) if collection.is_mapping else self._sequence(collection)
             )
+            self._add(node)
+        elif isinstance(event, events.AliasEvent):
+            hint = _WRITE_OUT.format("*")
             self._report("alias", "aliases (*) are not used here", mark_of(event), hint)
             self._add(ScalarNode(f"*{event.anchor}", mark_of(event), Style.SINGLE_QUOTED))
 
@@ -270,18 +261,13 @@ class TreeBuilder:
         else:
             self.root = node
 
-    def _close(self, collection: _Open) -> Node:
-        if collection.is_mapping:
-            return self._mapping(collection)
-        return self._sequence(collection)
-
     def _sequence(self, collection: _Open) -> Sequence:
         items = collection.children
         index = 0
         while index < len(items):
             item = items[index]
             if is_empty(item):
-                # the parsers disagree on where nothing stands, but not on where the list starts
+                # the parsers disagree on the place of nothing, but not on that of the list
                 hint = "write a value or remove the item"
                 message = f"item {index + 1} of this list is empty"
                 self._report("empty-value", message, collection.mark, hint)
@@ -322,7 +308,7 @@ class TreeBuilder:
             hint = "write the keys out"
             self._report("merge-key", "merge keys (<<) are not used here", key.mark, hint)
         elif key.text in entries:
-            message = f"the key {_quoted(key.text)} is written twice in one mapping"
+            message = f"the key '{shortened(key.text)}' is written twice in one mapping"
             first = entries[key.text].mark
             hint = f"keep one of them; the first is at line {first.line}, column {first.column}"
             self._report("duplicate-key", message, key.mark, hint)
@@ -336,16 +322,14 @@ class TreeBuilder:
             hint = f"write a blank after the colon: {name}: {rest}"
         else:
             hint = "write a value, {} for an empty mapping, or remove the key"
-        message = f"the key {_quoted(key.text)} has no value"
+        message = f"the key '{shortened(key.text)}' has no value"
         self._report("empty-value", message, key.mark, hint)
 
     def _check_properties(
         self, event: events.ScalarEvent | events.SequenceStartEvent | events.MappingStartEvent
     ) -> bool:
         if event.anchor is not None:
-            hint = (
-                "write the value out, or use a parameter; put a text that starts with & in quotes"
-            )
+            hint = _WRITE_OUT.format("&")
             self._report("anchor", "anchors (&) are not used here", mark_of(event), hint)
         if event.tag is not None:
             hint = "remove it, or put a text that starts with ! in quotes"
@@ -353,7 +337,7 @@ class TreeBuilder:
         return event.anchor is not None or event.tag is not None
 
     def _check_escapes(self, event: events.ScalarEvent) -> None:
-        """Escape sequences must not bring in what a text cannot hold as it stands."""
+        """Escape sequences must not bring in characters that a text cannot hold directly."""
         if event.style == '"' and (found := INVISIBLE.search(event.value)):
             message = f"an escape sequence stands for {character_name(found[0])}"
             hint = "remove it; names and titles are plain text"
@@ -373,10 +357,6 @@ def mark_of(event: events.Event) -> Mark:
     return Mark(start.line + 1, start.column + 1) if start else Mark(1, 1)
 
 
-def _quoted(text: str) -> str:
-    return f"'{text if len(text) <= 40 else text[:37] + '...'}'"
-
-
 FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """PyYAML's wrapper of libyaml where it was built, else the parser in Python."""
 
@@ -388,8 +368,8 @@ _START_OF_A_FILE = "a mechanism file starts with the line format: 1, a study wit
 
 
 class _BeyondLibraryError(Exception):
-    """The parser in C gives up at its own depth, before it tells of the brackets that lead there;
-    that in Python tells at which one the limit is passed."""
+    """The parser in C gives up at its own depth, before it reports the brackets that lead there;
+    that in Python reports the one at which the limit is passed."""
 
 
 def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
@@ -413,11 +393,11 @@ def parse(text: str, file: str, *, loader: Any = FASTEST_LOADER) -> Mapping:
         return builder.root
     if not diagnostics:
         diagnostics = [_not_a_mapping(builder, file)]
-    raise InvalidFile(in_order([_inside(found, lines) for found in diagnostics]))
+    raise InvalidFile(in_order([_inside(diagnostic, lines) for diagnostic in diagnostics]))
 
 
 def _inside(diagnostic: Diagnostic, lines: list[str]) -> Diagnostic:
-    """The diagnostic at the end of the text, where a parser complains behind it."""
+    """The diagnostic at the end of the text, where a parser's place lies behind it."""
     place = diagnostic.place
     if place is None or place.line <= len(lines):
         return diagnostic
@@ -427,17 +407,12 @@ def _inside(diagnostic: Diagnostic, lines: list[str]) -> Diagnostic:
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
     """The diagnostics by place: at most `MOST_DIAGNOSTICS`, and one that counts the rest."""
-    first = Place("", 0, 0)
-    ordered = sorted(diagnostics, key=lambda found: _position(found.place or first))
+    ordered = sorted(diagnostics, key=lambda each: each.place[1:3] if each.place else (0, 0))
     rest = len(ordered) - MOST_DIAGNOSTICS
     if rest <= 0:
         return ordered
     message = f"{rest} more problems are not shown"
     return [*ordered[:MOST_DIAGNOSTICS], Diagnostic("more", "note", message, hint=CORRECT_FIRST)]
-
-
-def _position(place: Place) -> tuple[int, int]:
-    return place.line, place.column
 
 
 def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
@@ -456,7 +431,6 @@ def _walk(text: str, file: str, loader: Any, builder: TreeBuilder) -> None:
     except yaml.YAMLError as error:
         if _LIBRARY_DEPTH in str(error) and loader is not yaml.SafeLoader:
             raise _BeyondLibraryError from None
-
         builder.diagnostics.append(builder.cut_off_value() or syntax_diagnostic(error, file, text))
 
 
@@ -479,23 +453,18 @@ def _not_a_mapping(builder: TreeBuilder, file: str) -> Diagnostic:
     return Diagnostic("not-a-mapping", "error", message, place, hint=_START_OF_A_FILE)
 
 
+# Errors of YAML's own grammar in plain words, the same for the parsers in C and in Python: both
+# name the rule that failed in slightly different words, of which a pattern has the common part.
+
 _QUOTE = "put the text in quotes"
-
-
 _COLON = "a ':' cannot stand here"
-
-
 _NO_COLON = "a ':' is missing after this key"
-
-
 _WITH_COLON = "write key: value, with a blank after the colon"
-
-
 _INDENT = "indent keys of one mapping equally, and put a value that holds ': ' in quotes"
 
 
 class _Rule(NamedTuple):
-    pattern: re.Pattern[str]
+    pattern: str
     message: str
     hint: str
     at_start: bool = False
@@ -504,68 +473,57 @@ class _Rule(NamedTuple):
     """The message at the start of the construct, for when the parser gave up on a later line."""
 
 
-def _rule(
-    pattern: str, message: str, hint: str, at_start: bool = False, open_message: str | None = None
-) -> _Rule:
-    return _Rule(re.compile(pattern), message, hint, at_start, open_message)
-
-
 _RULES = (
-    _rule(
+    _Rule(
         r"quoted scalar.*(end of stream|document)",
         "this quoted text is never closed",
         "add the closing quote",
         at_start=True,
     ),
-    _rule(
+    _Rule(
         r"(double-)?quoted scalar",
         "an unknown escape sequence in a double-quoted text",
         "write \\\\ for a backslash, or use single quotes",
         at_start=True,
     ),
-    _rule(r"cannot start any token", "this character cannot start a value", _QUOTE),
-    _rule(
+    _Rule(r"cannot start any token", "this character cannot start a value", _QUOTE),
+    _Rule(
         r"flow sequence",
         "',' or ']' was expected here",
         "close the list with ], and put an expression with commas or brackets in quotes",
         open_message="this list is not closed on its line and goes wrong further down",
     ),
-    _rule(
+    _Rule(
         r"flow mapping",
         "',' or '}' was expected here",
         "close the mapping with }, and put an expression with commas or brackets in quotes",
         open_message="this mapping is not closed on its line and goes wrong further down",
     ),
-    _rule(r"mapping values are not allowed", _COLON, _INDENT),
-    _rule(
+    _Rule(r"mapping values are not allowed", _COLON, _INDENT),
+    _Rule(
         r"sequence entries are not allowed",
         "a '-' cannot start a list here",
         "start the list on a new line, or put the text in quotes",
     ),
-    _rule(r"mapping keys are not allowed", "a '?' cannot stand here", _QUOTE),
-    _rule(
-        r"simple key",
-        _NO_COLON,
-        _WITH_COLON,
-        at_start=True,
-    ),
-    _rule(
+    _Rule(r"mapping keys are not allowed", "a '?' cannot stand here", _QUOTE),
+    _Rule(r"simple key", _NO_COLON, _WITH_COLON, at_start=True),
+    _Rule(
         r"block mapping",
         "a key was expected here",
         "give all keys of a mapping the same indentation, and check brackets and quotes before it",
     ),
-    _rule(
+    _Rule(
         r"block (collection|sequence)",
         "an item of the list ('- ') was expected here",
         "give all items of a list the same indentation",
     ),
-    _rule(r"block scalar", "a block text (| or >) cannot start or continue like this", _QUOTE),
-    _rule(r"(anchor|alias|tag)", "anchors, aliases and tags (& * !) are not used here", _QUOTE),
-    _rule(
+    _Rule(r"block scalar", "a block text (| or >) cannot start or continue like this", _QUOTE),
+    _Rule(r"(anchor|alias|tag)", "anchors, aliases and tags (& * !) are not used here", _QUOTE),
+    _Rule(
         r"plain scalar.*':'", "a blank is missing after this ':'", "write key: value, or use quotes"
     ),
-    _rule(r"node", "a value is missing here", "write the value, or remove the comma or colon"),
-    _rule(
+    _Rule(r"node", "a value is missing here", "write the value, or remove the comma or colon"),
+    _Rule(
         r"document start",
         "the file goes on after its mapping has ended",
         "check indentation and brackets before this place",
@@ -573,7 +531,7 @@ _RULES = (
 )
 
 
-_GENERAL = _rule("", "the text is not valid YAML here", "check indentation, quotes and brackets")
+_GENERAL = _Rule("", "the text is not valid YAML here", "check indentation, quotes and brackets")
 
 
 def syntax_diagnostic(error: YAMLError, file: str, text: str) -> Diagnostic:
@@ -581,7 +539,7 @@ def syntax_diagnostic(error: YAMLError, file: str, text: str) -> Diagnostic:
     if not isinstance(error, MarkedYAMLError):
         return Diagnostic("yaml", "error", _GENERAL.message, Place(file, 1, 1), hint=_GENERAL.hint)
     words = f"{error.context} {error.problem}"
-    rule = next((rule for rule in _RULES if rule.pattern.search(words)), _GENERAL)
+    rule = next((rule for rule in _RULES if re.search(rule.pattern, words)), _GENERAL)
     start, stop = error.context_mark, error.problem_mark or error.context_mark
     message, mark = rule.message, stop
     if start and stop and rule.open_message and start.line != stop.line:

@@ -1,6 +1,7 @@
-"""Keys of other programs, at a wrong place, or of what mechkin leaves out: what to write instead.
+"""Advice on unknown keys and types: those of other programs, misplaced ones, missing features.
 
-Looked up for an unknown key before the nearest known one is.
+Looked up before the nearest known word is. `known_keys` finds the keys that a mapping may have by
+following an error's location through the sections.
 """
 
 from __future__ import annotations
@@ -9,10 +10,7 @@ from collections.abc import Iterator
 from types import UnionType
 from typing import Annotated, Any, Final, Union, get_args, get_origin
 
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema.base import Section, Tag, field_descriptions, fields_of
-
-# What to write instead of words of other programs, and of what mechkin leaves out.
+from mechkin_cli.schema.base import Section, field_descriptions, fields_of, tagged
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
@@ -78,7 +76,7 @@ OUTSIDE: Final = {
     **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
     "friction": FRICTION,
 }
-"""What is asked for at any place."""
+"""Keys and types that people try at any place."""
 
 
 TOP_KEYS: Final = {
@@ -252,10 +250,6 @@ def advice_for_key(section: str, key: str) -> str | None:
     return _SECTIONS.get(section, known).get(key.casefold())
 
 
-# Types of loads and joints in the words of other programs, each with what to write instead.
-#
-# Looked up before the nearest known word is.
-
 LOAD_TYPES: Final = {
     **OUTSIDE,
     "moment": "a moment is a torque: {type: torque, ...}",
@@ -309,28 +303,16 @@ PLANE_JOINT_TYPES: Final = {
 def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
     """What to do instead of a type that `loads` or `joints` do not have."""
     joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
-    found = {"loads": LOAD_TYPES, "joints": joints}.get(section, {})
-    return found.get(word.casefold())
+    return {"loads": LOAD_TYPES, "joints": joints}.get(section, {}).get(word.casefold())
 
 
-# What a mapping of the file may hold, found by following an error's location through the models.
-#
-# Used only on the way to a message: the validation reports an unknown key, but not the known ones.
+def known_keys(
+    top: type[Section], location: tuple[str | int, ...]
+) -> tuple[type[Section], dict[str, str]] | None:
+    """The section at a validation error's location (which includes the tags of forms), and its keys
+    with their help texts.
 
-
-class KnownKeys(NamedTuple):
-    """The keys of one kind of mapping: what each is for, answers for keys it doesn't have, and the
-    name of its class."""
-
-    descriptions: dict[str, str]
-    advice: dict[str, str]
-    section: str
-
-
-def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys | None:
-    """The keys of the mapping at a validation error's location (which includes the tags of forms).
-
-    None where the location is no mapping with fixed keys.
+    None where no mapping with fixed keys is there.
     """
     current: Any = top
     for step in location:
@@ -341,8 +323,7 @@ def known_keys(top: type[Section], location: tuple[str | int, ...]) -> KnownKeys
     if section is None:
         return None
     texts = field_descriptions(section)
-    descriptions = {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
-    return KnownKeys(descriptions, section.advice, section.__name__)
+    return section, {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
 
 
 def _step_into(annotation: Any, step: str | int) -> Any:
@@ -360,10 +341,8 @@ def _step_into(annotation: Any, step: str | int) -> Any:
 
 
 def _alternatives(annotation: Any) -> Iterator[Any]:
-    """The annotation without aliases and metadata, each member of a union by itself."""
-    if hasattr(annotation, "__value__"):
-        yield from _alternatives(annotation.__value__)
-    elif get_origin(annotation) is Annotated:
+    """The annotation without metadata, each member of a union by itself."""
+    if get_origin(annotation) is Annotated:
         yield from _alternatives(get_args(annotation)[0])
     elif get_origin(annotation) in (Union, UnionType):
         for member in get_args(annotation):
@@ -373,15 +352,11 @@ def _alternatives(annotation: Any) -> Iterator[Any]:
 
 
 def _tagged(annotation: Any) -> Iterator[tuple[str, Any]]:
-    if hasattr(annotation, "__value__"):
-        yield from _tagged(annotation.__value__)
-    elif get_origin(annotation) is Annotated:
-        form, *metadata = get_args(annotation)
-        tags = [item.tag for item in metadata if isinstance(item, Tag)]
-        if tags:
-            yield tags[0], form
-        else:
-            yield from _tagged(form)
+    tag, form, _ = tagged(annotation)
+    if tag:
+        yield tag, form
+    elif form is not annotation:
+        yield from _tagged(form)
     elif get_origin(annotation) in (Union, UnionType):
         for member in get_args(annotation):
             yield from _tagged(member)

@@ -1,17 +1,18 @@
-"""What all sections share: frozen, no unknown keys; and how a rule of ours refuses a value.
+"""Sections and the rules of their values; how annotations become validators and help texts.
 
-A section is declared by its annotations; `reader` turns them into functions when the first value
-of that section is met, so that a run pays only for what its file uses, and `validator` tells what
-is wrong with a value.
+A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. Of them, `reader`
+makes functions when the first value of that section is met, so that a run pays only for the
+sections that its file uses, and `validator` finds the errors of a value. Both obey `Limits`,
+`BeforeRule`, `After` and `FormChoice`; the JSON Schema shows them, and the other rules, too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 from inspect import get_annotations
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar, get_args, get_origin
 
 from mechkin_cli.record import NamedTuple
 
@@ -23,11 +24,12 @@ NOTHING: Any = {}
 
 
 class Section:
-    """A mapping of the file with fixed keys.
+    """A mapping of the file with fixed keys; frozen.
 
     The text below a field is its help text. `advice` answers keys that people are likely to try and
-    that the format does not have; `editors` is what the JSON Schema says of the mapping beside its
-    keys.
+    that the format does not have; `editors` is added to the mapping in the JSON Schema. `tag` names
+    the section among several forms of a value: by default its word at `type` or `law`. It starts
+    with a parenthesis, which no key does, so that an error's location shows which steps are tags.
     """
 
     __slots__ = (
@@ -38,9 +40,16 @@ class Section:
     )
     advice: ClassVar[dict[str, str]] = {}
     editors: ClassVar[dict[str, Any]] = {}
+    tag: ClassVar[str] = ""
+
+    def __init_subclass__(cls) -> None:
+        annotations = get_annotations(cls)
+        word = get_args(annotations.get("type") or annotations.get("law"))
+        if len(word) == 1 and "tag" not in cls.__dict__:
+            cls.tag = f"({word[0]})"
 
     def check(self) -> None:
-        """Raises what `refuse` makes where valid fields do not go together."""
+        """Raises an error of `refuse` where valid fields do not go together."""
 
     def __setattr__(self, name: str, value: object) -> None:
         raise AttributeError(f"{type(self).__name__}.{name} is frozen")
@@ -51,16 +60,16 @@ AnySection = TypeVar("AnySection", bound=Section)
 
 def section_of(kind: type[AnySection], **values: Any) -> AnySection:
     """A section made of values that are known to be valid, and of the defaults of the others."""
-    found = object.__new__(kind)
+    section = object.__new__(kind)
     for key, field in fields_of(kind).items():
-        found.__dict__[field.name] = values.pop(key) if key in values else field.default
+        section.__dict__[field.name] = values.pop(key) if key in values else field.default
     if values:
         raise TypeError(f"{kind.__name__} has no {', '.join(values)}")
-    return found
+    return section
 
 
 class Key(NamedTuple):
-    """The key in the file, where it is no name for a field of Python."""
+    """The key in the file, where it cannot be the name of a field in Python."""
 
     key: str
 
@@ -81,7 +90,7 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
     """The fields of a section by key, those of its base classes first."""
     if section in _FIELDS:
         return _FIELDS[section]
-    found: dict[str, FieldOfSection] = {}
+    fields: dict[str, FieldOfSection] = {}
     for model in reversed(section.__mro__):
         for name, annotation in get_annotations(model).items():
             if name in Section.__annotations__:
@@ -89,9 +98,9 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
             metadata = getattr(annotation, "__metadata__", ())
             key = next((item.key for item in metadata if isinstance(item, Key)), name)
             default = getattr(section, name, _REQUIRED)
-            found[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
-    _FIELDS[section] = found
-    return found
+            fields[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
+    _FIELDS[section] = fields
+    return fields
 
 
 _REQUIRED = object()
@@ -108,22 +117,45 @@ def refuse(code: str, message: str, hint: str | None = None, *at: str | int) -> 
     return PydanticCustomError(code, "{text}", context)
 
 
-# Values that come in several forms: which form is meant is told by one look at the value.
-#
-# Each form carries a tag. Tags start with a parenthesis, which no key of the format does, so that
-# they can be told apart from keys in the location of an error.
+def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
+    """The names, if no two are the same."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise refuse("named-twice", f"{name} is named twice", "name it once", index)
+    return names
+
+
+STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
+"""For editors, of sections with `from` and `to`."""
+
+
+def check_step_or_count(step: Any, count: Any, what: str) -> None:
+    """Raises an error unless exactly one of the two is there; `what` they count is for messages."""
+    if step is None and count is None:
+        raise refuse("missing-key", "from and to need a step or a count", "add one of them")
+    if step is not None and count is not None:
+        text = f"step and count both define the number of {what}"
+        raise refuse("two-choices", text, "keep one of them", "count")
 
 
 class Tag(NamedTuple):
-    """The tag of one form."""
+    """The tag of one form that is not a section."""
 
     tag: str
 
 
-class FormChoice(NamedTuple):
-    """Which form a value has: `choose` gives its tag, None where the word is none of `words`.
+def tagged(member: Any) -> tuple[str, Any, tuple[Any, ...]]:
+    """The tag of a form (empty: none), the form, and its rules."""
+    form, *rules = get_args(member) if get_origin(member) is Annotated else (member,)
+    tags = [rule.tag for rule in rules if isinstance(rule, Tag)]
+    return (tags[0] if tags else getattr(form, "tag", "")), form, tuple(rules)
 
-    `key` is the key that holds the word; both are None where every value has a form.
+
+class FormChoice(NamedTuple):
+    """How the form of a value is chosen among several: `choose` gives its tag, or None if the word
+    at `key` is not one of `words`.
+
+    `key` and `words` are None where every value has a form.
     """
 
     choose: Callable[[Any], str | None]
@@ -131,34 +163,30 @@ class FormChoice(NamedTuple):
     words: str | None = None
 
 
-def by_word(key: str, choose: Callable[[dict[str, Any]], str | None], words: str) -> FormChoice:
-    """The choice for mappings in which the value of `key` says the form.
+def by_word(
+    key: str,
+    words: Collection[str],
+    choose: Callable[[dict[str, Any]], str | None] | None = None,
+) -> FormChoice:
+    """The choice for mappings whose form is defined by the word at `key`, one of `words`.
 
-    `choose` is shown the mapping and gives the tag, None where the word is unknown; the error then
-    names the `words` possible.
+    `choose` gives the tag of a mapping, None where the word is unknown (None: the word itself in
+    parentheses); the error then names the `words`.
     """
 
     def tag(value: Any) -> str | None:
-        return choose(_as_mapping(value))
+        # Python callers may pass a section that is already built
+        mapping = value if isinstance(value, dict) else getattr(value, "__dict__", {})
+        if choose is not None:
+            return choose(mapping)
+        word = mapping.get(key)
+        return f"({word})" if isinstance(word, str) and word in words else None
 
-    return FormChoice(tag, key, words)
-
-
-def _as_mapping(value: Any) -> dict[str, Any]:
-    if isinstance(value, dict):
-        return value
-    # a section that is already built, as Python callers may pass
-    return getattr(value, "__dict__", {})
-
-
-# What an annotation may say of a value beside its Python type: `Annotated[str, Before(...), ...]`.
-#
-# Reader and validator obey `Limits`, `BeforeRule`, `After` and `FormChoice`; the JSON Schema shows
-# them, and `SchemaName` and `Shown`, too.
+    return FormChoice(tag, key, ", ".join(words))
 
 
 class SchemaName(NamedTuple):
-    """The definition of the JSON Schema that the type and the rules before it make up."""
+    """The name in the JSON Schema of the type with the rules before it."""
 
     name: str
 
@@ -174,19 +202,19 @@ class Limits(NamedTuple):
 
 
 class BeforeRule(NamedTuple):
-    """A function that is shown the value as it was given, and returns what is validated."""
+    """A function from the value as written to the value to validate."""
 
     function: Callable[[Any], Any]
 
 
 class After(NamedTuple):
-    """A function that is shown the valid value, and returns or refuses it."""
+    """A function that returns or refuses the valid value."""
 
     function: Callable[[Any], Any]
 
 
 class Shown(NamedTuple):
-    """What editors are told about a scalar: the JSON types it may have, a help text, examples."""
+    """For editors, of a scalar: the JSON types it may have, a help text, examples."""
 
     types: tuple[str, ...]
     description: str
@@ -194,14 +222,16 @@ class Shown(NamedTuple):
 
 
 class DimensionRule(NamedTuple):
-    """The dimension an expression must have, in words, with examples: for readers and editors."""
+    """The dimension of an expression in words, with examples, and the name of its definition in
+    the JSON Schema: for readers and editors."""
 
     name: str
     examples: tuple[str | float, ...]
+    schema_name: str
 
 
 class ShortForm(NamedTuple):
-    """Tells editors that a section may be written as a single value."""
+    """For editors: a section may be written as a single value."""
 
     types: tuple[str, ...]
     description: str
@@ -214,13 +244,9 @@ class Barred(NamedTuple):
     pattern: str
 
 
-# The help text of each key: the string that stands below the field in the model's source.
-#
-# Read only for messages and for the JSON Schema; reading the sources costs more than a validation.
-
-
 def field_descriptions(section: type[Section]) -> dict[str, str]:
-    """Help texts by field name, those of base classes included."""
+    """Help texts by field name, those of base classes included: the strings below the fields in the
+    source. Reading it costs more than a validation: only for messages and the JSON Schema."""
     descriptions: dict[str, str] = {}
     for model in reversed(section.__mro__):
         if model is not Section and Section in model.__mro__:
@@ -236,10 +262,10 @@ def _below_fields(model: type) -> dict[str, str]:
 
     definition = ast.parse(dedent(inspect.getsource(model))).body[0]
     body = definition.body if isinstance(definition, ast.ClassDef) else []
-    found = {}
+    texts = {}
     for field, below in pairwise(body):
         if not (isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)):
             continue
         if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
-            found[field.target.id] = inspect.cleandoc(str(below.value.value)).replace("\n", " ")
-    return found
+            texts[field.target.id] = inspect.cleandoc(str(below.value.value)).replace("\n", " ")
+    return texts

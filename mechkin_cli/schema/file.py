@@ -1,4 +1,4 @@
-"""The whole file: format 1, of a mechanism in space; what it has in common with one in a plane."""
+"""The whole file of a mechanism in space: format 1; and the sections common to space and plane."""
 
 from typing import Annotated, Any, Literal
 

@@ -3,6 +3,11 @@
 Read from the same annotations as the validator, in a fixed order of keys, with help texts from the
 sources of the sections and names as patterns. Fixed-length lists are `items` with `minItems` and
 `maxItems`, which every editor understands; null, which no file may hold, does not occur.
+
+A list of alternatives (`oneOf`) leaves editors to guess which one was meant, and their messages are
+those of the wrong one. So forms are decided by `if`, as the reader decides them: by the kind of the
+value, by the word at a key (`type`, `law`), or by a key that only one form has. Where nothing
+decides yet, as while a mapping is being typed, all forms are offered.
 """
 
 from __future__ import annotations
@@ -29,18 +34,11 @@ from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
 from mechkin_cli.schema.validation import RESERVED
 
-# Which of several forms an editor holds a value against: decided by one look, as the reader does.
-#
-# A list of alternatives (`oneOf`) leaves editors to guess which one was meant, and their messages
-# are those of the wrong one. So forms are told apart by `if`: by the kind of the value, by the word
-# that stands at a key (`type`, `law`), or by a key that only one form has. Where nothing decides
-# yet, as while a mapping is being typed, all forms are offered.
-
 Schema = dict[str, Any]
 
 
 def decided(forms: list[Schema], key: str | None, definitions: Schema) -> Schema:
-    """The schema that chooses among forms; `key` holds the word that tells them apart, if any."""
+    """The schema that chooses among forms; `key` holds the word that decides, if any."""
     if key is not None:
         return _by_word(forms, key, definitions)
     groups: dict[frozenset[str], list[Schema]] = {}
@@ -53,13 +51,10 @@ def decided(forms: list[Schema], key: str | None, definitions: Schema) -> Schema
 
 
 def _by_kind(forms: list[Schema], kinds: list[frozenset[str]]) -> Schema:
-    """By the JSON type of the value; all types that none has go to the last form."""
-    (*others, last) = forms
-    schema = last
+    """By the JSON type of the value; types of no form go to the last one."""
+    (*others, schema) = forms
     for form, kind in zip(reversed(others), reversed(kinds[:-1]), strict=True):
-        names = sorted(kind)
-        condition = {"type": names[0] if len(names) == 1 else names}
-        schema = {"if": condition, "then": form, "else": schema}
+        schema = {"if": {"type": _types(tuple(sorted(kind)))}, "then": form, "else": schema}
     return schema
 
 
@@ -77,40 +72,34 @@ def _by_word(forms: list[Schema], key: str, definitions: Schema) -> Schema:
         }
         for word in words
     ]
-    schema: Schema = {
-        "type": "object",
-        "properties": {key: _choice(key, words, forms, definitions)},
-    }
+    # the key that decides, with the meaning of each of its words
+    described: dict[str | None, str] = {}
+    for form in forms:
+        for name in _words(form, key, definitions):
+            described.setdefault(name, _resolved(form, definitions).get("description", ""))
+    meanings = "; ".join(str(described[word]).partition("\n")[0].rstrip(".") for word in words)
+    choice = {"type": "string", "enum": words, "description": f"{meanings}."}
+    schema: Schema = {"type": "object", "properties": {key: choice}}
     if without is None:
         return schema | {"required": [key], "allOf": rules}
     rules.append({"if": {"required": [key]}, "else": _by_key(without, definitions)})
     return schema | {"allOf": rules}
 
 
-def _choice(key: str, words: list[str], forms: list[Schema], definitions: Schema) -> Schema:
-    """The key that decides, with what each of its words means."""
-    described: dict[str | None, str] = {}
-    for form in forms:
-        for word in _words(form, key, definitions):
-            described.setdefault(word, _resolved(form, definitions).get("description", ""))
-    said = "; ".join(str(described[word]).partition("\n")[0].rstrip(".") for word in words)
-    return {"type": "string", "enum": words, "description": f"{said}."}
-
-
 def _by_key(forms: list[Schema], definitions: Schema) -> Schema:
     """By a key that one form needs and no other has."""
     if len(forms) == 1:
         return forms[0]
-    known = [_resolved(form, definitions) for form in forms]
+    resolved = [_resolved(form, definitions) for form in forms]
     schema: Schema = {"anyOf": forms}
     for number in reversed(range(len(forms))):
         others = {
             name
-            for place, other in enumerate(known)
+            for place, other in enumerate(resolved)
             if place != number
             for name in other.get("properties", {})
         }
-        own = [name for name in known[number].get("required", []) if name not in others]
+        own = [name for name in resolved[number].get("required", []) if name not in others]
         if own:
             needed = [{"required": [name]} for name in own]
             condition = needed[0] if len(needed) == 1 else {"anyOf": needed}
@@ -120,18 +109,18 @@ def _by_key(forms: list[Schema], definitions: Schema) -> Schema:
 
 def _words(form: Schema, key: str, definitions: Schema) -> list[str | None]:
     """The words of a form at a key; None where it does not need the key."""
-    found = _resolved(form, definitions)
-    if key not in found.get("required", []):
+    resolved = _resolved(form, definitions)
+    if key not in resolved.get("required", []):
         return [None]
-    word = found["properties"][key]
+    word = resolved["properties"][key]
     return [word["const"]] if "const" in word else list(word["enum"])
 
 
 def _kinds(form: Schema, definitions: Schema) -> list[str]:
-    found = _resolved(form, definitions)
-    if "if" in found or "type" not in found:
+    resolved = _resolved(form, definitions)
+    if "if" in resolved or "type" not in resolved:
         return []
-    kinds = found["type"]
+    kinds = resolved["type"]
     return [kinds] if isinstance(kinds, str) else list(kinds)
 
 
@@ -142,10 +131,8 @@ def _resolved(form: Schema, definitions: Schema) -> Schema:
     return form
 
 
-# An example of every key whose kind of value has none of its own, for editors.
-#
-# By the key, or by section and key where sections mean different things by one key. A test holds
-# every example against the schema of its key.
+# An example for editors of every key whose kind of value has none of its own: by the key, or by
+# section and key where sections mean different things by one key.
 
 _R: Final = {"type": "R", "links": ["ground", "crank"], "point": [0, 0, 0], "axis": [0, 0, 1]}
 _TURN: Final = {"from": 0, "to": 360, "step": 5, "rate": "10 rad/s"}
@@ -302,7 +289,6 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
 }
 
-
 INSTEAD_OF_ANY: Final[dict[str, Any]] = {
     "joint": "O1",
     "coordinate": "theta",
@@ -328,12 +314,7 @@ INSTEAD_OF_ANY: Final[dict[str, Any]] = {
     "center_of_mass": ["r/2", 0, "10 mm"],
     "xx": "2 kg*mm^2",
 }
-"""For keys whose kind of value has an example that says little of this key, wherever they stand."""
-
-
-def own_example(section: str, key: str) -> Any:
-    """The example of a key whatever its kind of value has; None where it has none here."""
-    return BY_SECTION.get((section, key), INSTEAD_OF_ANY.get(key))
+"""For keys whose kind of value has an example that explains little of this key."""
 
 
 IDENTITY: Final = "urn:mechkin:schema:mechanism:1"
@@ -343,17 +324,7 @@ STUDY_IDENTITY: Final = "urn:mechkin:schema:study:1"
 """The name of the schema of studies."""
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
-_FIRST_KEYS = (
-    "$schema",
-    "$id",
-    "title",
-    "description",
-    "$ref",
-    "type",
-    "const",
-    "enum",
-    "required",
-)
+_FIRST_KEYS = "$schema $id title description $ref type const enum required".split()  # noqa: SIM905
 _NAMED_SECTIONS = ("parameters", "links", "joints", "points", "directions")
 _BY_NAME = ("properties", "patternProperties", "$defs")
 _JSON_TYPES = {str: "string", int: "integer"}
@@ -415,13 +386,13 @@ def _whole(top: Schema, definitions: Schema) -> Schema:
 
 def _file(form: type[AnyFile], definitions: Schema) -> Schema:
     """One form of the file, with the rules for its names."""
-    found = _section(form, definitions)
+    schema = _section(form, definitions)
     for name in _NAMED_SECTIONS:
         reserved = {"not": {"$ref": "#/$defs/ReservedName"}}
-        found["properties"][name]["propertyNames"] = reserved
+        schema["properties"][name]["propertyNames"] = reserved
     barred = {"not": {"pattern": TAKEN_FOR_EDITORS}}
-    found["properties"]["responses"]["propertyNames"] = barred
-    return found
+    schema["properties"]["responses"]["propertyNames"] = barred
+    return schema
 
 
 def _non_empty(key: str, least: str) -> Schema:
@@ -445,25 +416,24 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
             required.append(key)
         elif isinstance(field.default, (str, int)):
             schema["default"] = field.default
-        own = own_example(section.__name__, key)
-        if own is None and not has_example(schema, definitions):
-            own = BY_KEY.get(key)
-        if own is not None:
-            schema = schema | {"examples": [own]}
+        example = BY_SECTION.get((section.__name__, key), INSTEAD_OF_ANY.get(key))
+        if example is None and not has_example(schema, definitions):
+            example = BY_KEY.get(key)
+        if example is not None:
+            schema = schema | {"examples": [example]}
         properties[key] = schema
     words = "\n\n".join(_paragraphs(section))
-    found = {"description": words, "type": "object", "additionalProperties": False}
-    found |= {"properties": properties} | ({"required": required} if required else {})
-    return found | section.editors
+    mapping = {"description": words, "type": "object", "additionalProperties": False}
+    mapping |= {"properties": properties} | ({"required": required} if required else {})
+    return mapping | section.editors
 
 
 def _measure(schema: Schema, definitions: Schema) -> str | None:
-    """What a number, or each number of a list, measures; None where it is no measured number."""
-    while "$ref" in schema:
-        schema = definitions[schema["$ref"].rpartition("/")[2]]
+    """The dimension of a number, or of each number of a list, in words; None for other values."""
+    schema = _resolved(schema, definitions)
     if "if" in schema:
         forms = (schema[form] for form in ("then", "else") if form in schema)
-        return next((found for form in forms if (found := _measure(form, definitions))), None)
+        return next(filter(None, (_measure(form, definitions) for form in forms)), None)
     if "items" in schema:
         return _measure(schema["items"], definitions)
     name, mark, _ = str(schema.get("description", "")).partition(_MEASURED)
@@ -471,7 +441,6 @@ def _measure(schema: Schema, definitions: Schema) -> str | None:
 
 
 def _paragraphs(section: type[Section]) -> list[str]:
-    """What the section is, in words."""
     paragraphs = inspect.cleandoc(section.__doc__ or "").split("\n\n")
     return [text.replace("\n", " ") for text in paragraphs]
 
@@ -480,17 +449,14 @@ def has_example(schema: Schema, definitions: Schema) -> bool:
     """Whether an editor has something to show for a value: an example, or the words it may be."""
     while not schema.keys() & {"examples", "enum", "const", "default"}:
         if "$ref" not in schema:
-            return any(
-                has_example(schema[form], definitions)
-                for form in ("then", "else")
-                if form in schema
-            )
+            forms = (schema[form] for form in ("then", "else") if form in schema)
+            return any(has_example(form, definitions) for form in forms)
         schema = definitions[schema["$ref"].rpartition("/")[2]]
     return True
 
 
 def _value(annotation: Any, definitions: Schema) -> Schema:
-    """What may stand at a place; what has a name goes to `definitions` and is referred to."""
+    """The schema of a value; one with a name goes to `definitions`, with a reference to it."""
     if isinstance(annotation, type) and issubclass(annotation, Section):
         name = annotation.__name__
         if name not in definitions:
@@ -532,7 +498,8 @@ def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Sche
         elif isinstance(rule, Shown):
             schema |= _shown(rule)
         elif isinstance(rule, DimensionRule):
-            schema |= _dimension(rule)
+            definitions[rule.schema_name] = schema | _dimension(rule)
+            schema = {"$ref": f"#/$defs/{rule.schema_name}"}
         elif isinstance(rule, Barred):
             schema |= {"not": {"pattern": rule.pattern}}
         elif isinstance(rule, ShortForm):
@@ -574,7 +541,7 @@ def _types(names: tuple[str, ...]) -> str | list[str]:
 
 
 def _ordered(schema: Any, by_name: bool = False) -> Any:
-    """The schema with its keys in order; where `by_name`, keys are names and keep theirs."""
+    """The schema with its keys in order; with `by_name` keys are names, in the order they have."""
     if isinstance(schema, list):
         return [_ordered(item) for item in schema]
     if not isinstance(schema, dict):

@@ -1,4 +1,9 @@
-"""`links:` - the rigid bodies: mass, mass centre and inertia in the home drawing."""
+"""`links:` - the rigid bodies; `joints:` - the pairs, by type; `chain:` - a loop in rows.
+
+All places and directions stand in the home drawing, in ground axes. A joint whose two halves do not
+meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker: [...]}`. A
+place is [x, y, z], or the name of a point.
+"""
 
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
@@ -53,7 +58,7 @@ class LinkInertia(Section):
 
 
 class BodyWithMass(Section):
-    """What links in space and in a plane have in common."""
+    """A link in space or in a plane."""
 
     editors: ClassVar[dict[str, Any]] = {
         "dependentRequired": {"mass": ["center_of_mass"], "center_of_mass": ["mass"]}
@@ -72,10 +77,8 @@ class BodyWithMass(Section):
         if self.mass is not None and centre is None:
             raise refuse("mass-without-centre", "a mass needs a center_of_mass", "add it", "mass")
         if self.mass is None and centre is not None:
-            hint = "add the mass (0 for none)"
-            raise refuse(
-                "centre-without-mass", "a center_of_mass needs a mass", hint, "center_of_mass"
-            )
+            text, hint = "a center_of_mass needs a mass", "add the mass (0 for none)"
+            raise refuse("centre-without-mass", text, hint, "center_of_mass")
 
 
 class Link(BodyWithMass):
@@ -88,23 +91,15 @@ class Link(BodyWithMass):
     """Inertia tensor about the mass centre; left out, zero."""
 
 
-# `joints:` - the pairs of the mechanism, one model per type with exactly the keys of that type.
-#
-# All places and directions stand in the home drawing, in ground axes. A joint whose two halves do
-# not meet in the drawing gives a place or direction per link: `point: {crank: [...], rocker:
-# [...]}`. A place is [x, y, z], or the name of a point.
-
 JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "F", "W")
 _PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "zero")
 
 
-def vector_or_per_link(value: Any) -> str:
-    """The form of a direction of a joint."""
+def _vector_or_per_link(value: Any) -> str:
     return "(per link)" if isinstance(value, dict) else "(vector)"
 
 
-def place_or_per_link(value: Any) -> str:
-    """The form of a place of a joint."""
+def _place_or_per_link(value: Any) -> str:
     return "(per link)" if isinstance(value, dict) else name_or_vector(value)
 
 
@@ -117,12 +112,12 @@ PlaceOrPerLink = Annotated[
     Annotated[Name, Tag("(name)")]
     | Annotated[_Vector, Tag("(vector)")]
     | Annotated[PerLink[_Place], Tag("(per link)")],
-    FormChoice(place_or_per_link),
+    FormChoice(_place_or_per_link),
 ]
 """A place as a vector or by its name, or one place for each link."""
 DirectionOrPerLink = Annotated[
     Annotated[_Vector, Tag("(vector)")] | Annotated[PerLink[_Vector], Tag("(per link)")],
-    FormChoice(vector_or_per_link),
+    FormChoice(_vector_or_per_link),
 ]
 """A direction, or one for each link."""
 
@@ -132,7 +127,7 @@ ZeroReference = Annotated[PerLink[DirectionVector], SchemaName("ZeroReference")]
 
 
 class JointBase(Section):
-    """What all joints have. The coordinates are the motion of the second link against the first."""
+    """A joint. Its coordinates are the motion of the second link against the first."""
 
     links: Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
     """The two links, [first, second]; `ground` is a link."""
@@ -152,7 +147,7 @@ class JointBase(Section):
 
 
 class PointJoint(JointBase):
-    """What all joints except the weld have."""
+    """A joint with a point: all but the weld."""
 
     point: Point
     """A point of the joint in the home drawing, [x, y, z] or by its name, or one per link."""
@@ -303,44 +298,23 @@ AnyAxisJoint = RevoluteJoint | PrismaticJoint | CylindricJoint | HelicalJoint
 TwoTurnJoint = UniversalJoint | SlottedSphereJoint | SphereCylinderJoint | CylinderPlaneJoint
 AnyJoint = (
     AnyAxisJoint
-    | TwoTurnJoint
     | SphericalJoint
     | SpherePlaneJoint
     | SphereGrooveJoint
+    | UniversalJoint
     | PlanarJoint
+    | SlottedSphereJoint
+    | SphereCylinderJoint
+    | CylinderPlaneJoint
     | FreePose
     | WeldJoint
 )
+Joint = Annotated[AnyJoint, by_word("type", JOINT_TYPES)]
 
 
-def _tag(mapping: dict[str, Any]) -> str | None:
-    word = mapping.get("type")
-    return f"({word})" if word in JOINT_TYPES else None
-
-
-Joint = Annotated[
-    Annotated[RevoluteJoint, Tag("(R)")]
-    | Annotated[PrismaticJoint, Tag("(P)")]
-    | Annotated[CylindricJoint, Tag("(C)")]
-    | Annotated[HelicalJoint, Tag("(H)")]
-    | Annotated[SphericalJoint, Tag("(S)")]
-    | Annotated[SpherePlaneJoint, Tag("(Sp)")]
-    | Annotated[SphereGrooveJoint, Tag("(Sg)")]
-    | Annotated[UniversalJoint, Tag("(U)")]
-    | Annotated[PlanarJoint, Tag("(E)")]
-    | Annotated[SlottedSphereJoint, Tag("(Ss)")]
-    | Annotated[SphereCylinderJoint, Tag("(Sc)")]
-    | Annotated[CylinderPlaneJoint, Tag("(Cp)")]
-    | Annotated[FreePose, Tag("(F)")]
-    | Annotated[WeldJoint, Tag("(W)")],
-    by_word("type", _tag, ", ".join(JOINT_TYPES)),
-]
-
-
-# `chain:` - a loop written as rows of four numbers (Denavit and Hartenberg 1955).
-#
-# Row by row the screw (theta, s) about z carries the next link's frame on, then (alpha, a) about
-# the new x; the product over the rows is the identity. Row i holds joint i and the link behind it.
+# A chain is a loop written as rows of four numbers (Denavit and Hartenberg 1955). Row by row the
+# screw (theta, s) about z carries the next link's frame on, then (alpha, a) about the new x; the
+# product over the rows is the identity. Row i holds joint i and the link behind it.
 
 
 class ChainRow(Section):
@@ -372,8 +346,7 @@ class ChainRow(Section):
     def check(self) -> None:
         """A lead belongs to type H alone."""
         if self.type == "H" and self.lead is None:
-            raise refuse(
-                "missing-key", "a joint of type H needs its lead", "add lead: length per turn"
-            )
+            hint = "add lead: length per turn"
+            raise refuse("missing-key", "a joint of type H needs its lead", hint)
         if self.type != "H" and self.lead is not None:
             raise refuse("unknown-key", "only a joint of type H has a lead", "remove it", "lead")

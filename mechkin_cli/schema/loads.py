@@ -3,7 +3,7 @@
 A value may be an expression of coordinates, their rates and `time`, or `{table: file.csv}`.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, Tag, by_word, refuse
 from mechkin_cli.schema.scalars import (
@@ -31,6 +31,8 @@ from mechkin_cli.schema.scalars import (
 class TableValue(JoinedTable):
     """A value read from a CSV file."""
 
+    tag = "(table)"
+
     table: CsvPath
     """CSV file with a header and two columns: what it runs over, and the value."""
     over: Text | None = None
@@ -38,21 +40,18 @@ class TableValue(JoinedTable):
     of a load on a joint, and time for a load on a link."""
 
 
-def expression_or_table(value: Any) -> str:
-    """The form of a load's value."""
+def _expression_or_table(value: Any) -> str:
     return "(table)" if isinstance(value, (dict, TableValue)) else "(expression)"
 
 
-ForceValue = Annotated[
-    Annotated[Force, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    FormChoice(expression_or_table),
-    SchemaName("ForceValue"),
+_Expression = TypeVar("_Expression")
+OrTable = Annotated[
+    Annotated[_Expression, Tag("(expression)")] | TableValue, FormChoice(_expression_or_table)
 ]
-TorqueValue = Annotated[
-    Annotated[Torque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    FormChoice(expression_or_table),
-    SchemaName("TorqueValue"),
-]
+"""An expression, or a table of its values."""
+
+ForceValue = Annotated[OrTable[Force], SchemaName("ForceValue")]
+TorqueValue = Annotated[OrTable[Torque], SchemaName("TorqueValue")]
 Axes = Literal["ground", "link"]
 Between = Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]
 
@@ -72,7 +71,7 @@ FreeFall = Annotated[
 
 
 class InRuns(Section):
-    """What all loads have."""
+    """A load of some runs."""
 
     runs: RunNames | None = None
     """The runs it acts in, `sweep` or names of responses; left out, all."""
@@ -89,9 +88,14 @@ class Gravity(InRuns):
 
     def check(self) -> None:
         """A direction of its own goes with the standard size alone."""
-        if self.direction is not None and self.g != "standard":
-            text = "g as a vector has a direction already"
-            raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
+        check_free_fall(self.g, self.direction)
+
+
+def check_free_fall(g: Any, direction: Any) -> None:
+    """Raises an error where free fall has a vector and a direction of its own."""
+    if direction is not None and g != "standard":
+        text = "g as a vector has a direction already"
+        raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
 
 
 class ForceOnLink(InRuns):
@@ -123,6 +127,8 @@ class TorqueOnLink(InRuns):
 class ForceOnJoint(InRuns):
     """A force on the coordinate s of a joint: it acts on the second link, against the first."""
 
+    tag = "(force at joint)"
+
     type: Literal["force"]
     joint: Name
     """The joint."""
@@ -132,6 +138,8 @@ class ForceOnJoint(InRuns):
 
 class TorqueOnJoint(InRuns):
     """A torque on the coordinate theta of a joint: on the second link, against the first."""
+
+    tag = "(torque at joint)"
 
     type: Literal["torque"]
     joint: Name
@@ -156,6 +164,8 @@ class SpringBetweenPoints(InRuns):
 
 class SpringAtJoint(InRuns):
     """A spring on a coordinate; it resists with preload + stiffness * (coordinate - free)."""
+
+    tag = "(spring at joint)"
 
     type: Literal["spring"]
     joint: Name
@@ -183,6 +193,8 @@ class DamperBetweenPoints(InRuns):
 class DamperAtJoint(InRuns):
     """A damper on a coordinate; it resists the rate of the coordinate."""
 
+    tag = "(damper at joint)"
+
     type: Literal["damper"]
     joint: Name
     """The joint."""
@@ -194,6 +206,8 @@ class DamperAtJoint(InRuns):
 
 class FallingCoefficient(Section):
     """A coefficient of friction that falls from rest to sliding."""
+
+    tag = "(falling)"
 
     static: Dimensionless
     """At rest."""
@@ -208,14 +222,14 @@ def _number_or_falling(value: Any) -> str:
 
 
 Coefficient = Annotated[
-    Annotated[Dimensionless, Tag("(number)")] | Annotated[FallingCoefficient, Tag("(falling)")],
+    Annotated[Dimensionless, Tag("(number)")] | FallingCoefficient,
     FormChoice(_number_or_falling),
     SchemaName("Coefficient"),
 ]
 
 
 class FrictionLoad(InRuns):
-    """What friction in space and in a plane have in common."""
+    """Friction in space or in a plane."""
 
     type: Literal["friction"]
     joint: Name
@@ -264,24 +278,9 @@ def _tag(mapping: dict[str, Any]) -> str | None:
     word = mapping.get("type")
     if word not in _WORDS:
         return None
-    if word in ("gravity", "friction"):
-        return f"({word})"
-    return f"({word} at joint)" if "joint" in mapping else f"({word})"
+    at_joint = "joint" in mapping and word not in ("gravity", "friction")
+    return f"({word} at joint)" if at_joint else f"({word})"
 
 
-tag_of_load = by_word("type", _tag, ", ".join(_WORDS))
-"""Which form a load has."""
-
-Load = Annotated[
-    Annotated[Gravity, Tag("(gravity)")]
-    | Annotated[ForceOnLink, Tag("(force)")]
-    | Annotated[ForceOnJoint, Tag("(force at joint)")]
-    | Annotated[TorqueOnLink, Tag("(torque)")]
-    | Annotated[TorqueOnJoint, Tag("(torque at joint)")]
-    | Annotated[SpringBetweenPoints, Tag("(spring)")]
-    | Annotated[SpringAtJoint, Tag("(spring at joint)")]
-    | Annotated[DamperBetweenPoints, Tag("(damper)")]
-    | Annotated[DamperAtJoint, Tag("(damper at joint)")]
-    | Annotated[FrictionAtJoint, Tag("(friction)")],
-    tag_of_load,
-]
+form_of_load = by_word("type", _WORDS, _tag)
+Load = Annotated[AnyLoad, form_of_load]

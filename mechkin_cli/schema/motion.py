@@ -1,4 +1,4 @@
-"""`motion:` - which coordinates are driven, and through which values.
+"""`motion:` - which coordinates are driven, and through which values; `assembly:` - the first row.
 
 Rows of a sweep: n = floor(|to - from|/|step| + 1e-9) + 1, x_i = from + i*step. One input is swept;
 others are held (`at`), follow (`with`) or run in step through equally many values. Or the rows are
@@ -7,7 +7,16 @@ moments of `time`, and inputs move by laws.
 
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from mechkin_cli.schema.base import NOTHING, Key, Limits, Section, Tag, by_word, refuse
+from mechkin_cli.schema.base import (
+    NOTHING,
+    STEP_OR_COUNT,
+    Key,
+    Limits,
+    Section,
+    by_word,
+    check_step_or_count,
+    refuse,
+)
 from mechkin_cli.schema.scalars import (
     AngleOrLength,
     AnyDimension,
@@ -21,8 +30,6 @@ from mechkin_cli.schema.scalars import (
     Text,
     WholeNumber,
 )
-
-# Laws of motion: an input as a function of time, for files with `motion: {time: ...}`.
 
 
 class ConstantRate(Section):
@@ -113,28 +120,15 @@ LAWS: Final = {
 }
 """The laws of motion by their words."""
 
-TaggedLaw = (
-    Annotated[ConstantRate, Tag("(constant-rate)")]
-    | Annotated[ConstantAcceleration, Tag("(constant-acceleration)")]
-    | Annotated[Polynomial, Tag("(polynomial)")]
-    | Annotated[Harmonic, Tag("(harmonic)")]
-    | Annotated[Cycloidal, Tag("(cycloidal)")]
-    | Annotated[TableLaw, Tag("(table)")]
-)
-"""The laws, as parts of a union that `law_tag` decides."""
-
 
 def law_tag(mapping: dict[str, Any]) -> str | None:
-    """The tag of what has a key `law`; None where the word is no law."""
+    """The tag of a mapping with a key `law`; None where the word is not a law."""
     word = mapping["law"]
     return f"({word})" if isinstance(word, str) and word in LAWS else None
 
 
-_STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
-
-
 class WithRates(Section):
-    """What inputs with rows of their own share."""
+    """The rates of inputs that have values for rows."""
 
     rate: CoordinateRate = "0"
     """Rate of the input, the same in every row."""
@@ -147,7 +141,8 @@ class WithRates(Section):
 class SweptInput(WithRates):
     """An input that runs from one value to another in equal steps."""
 
-    editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
+    tag = "(swept)"
+    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
     first: Annotated[AngleOrLength, Key("from")]
     """Value of the first row."""
@@ -160,15 +155,13 @@ class SweptInput(WithRates):
 
     def check(self) -> None:
         """Exactly one of step and count."""
-        if self.step is None and self.count is None:
-            raise refuse("missing-key", "from and to need a step or a count", "add one of them")
-        if self.step is not None and self.count is not None:
-            text = "step and count both say how many rows there are"
-            raise refuse("two-choices", text, "keep one of them", "count")
+        check_step_or_count(self.step, self.count, "rows")
 
 
 class ListedInput(WithRates):
     """An input that takes the listed values, one per row."""
+
+    tag = "(listed)"
 
     values: Annotated[tuple[AngleOrLength, ...], Limits(min_length=1)]
     """The value of each row."""
@@ -177,12 +170,16 @@ class ListedInput(WithRates):
 class HeldInput(WithRates):
     """An input that has the same value in every row."""
 
+    tag = "(held)"
+
     at: AngleOrLength
     """The value."""
 
 
 class FollowingInput(Section):
     """An input that follows others; its rates follow from the expression by the chain rule."""
+
+    tag = "(following)"
 
     value: Annotated[AnyDimension, Key("with")]
     """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
@@ -194,7 +191,8 @@ class FollowingInput(Section):
 class TimeSection(Section):
     """The moments of the rows, where the inputs are given by laws."""
 
-    editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
+    tag = "(spaced)"
+    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
     first: Annotated[Duration, Key("from")]
     """First moment."""
@@ -207,9 +205,7 @@ class TimeSection(Section):
 
     def check(self) -> None:
         """Exactly one of step and count."""
-        if (self.step is None) == (self.count is None):
-            text = "time needs either a step or a count"
-            raise refuse("step-or-count", text, "give exactly one of them")
+        check_step_or_count(self.step, self.count, "rows")
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:
@@ -224,12 +220,7 @@ def _tag(mapping: dict[str, Any]) -> str | None:
 
 
 InputMotion = Annotated[
-    Annotated[SweptInput, Tag("(swept)")]
-    | Annotated[ListedInput, Tag("(listed)")]
-    | Annotated[HeldInput, Tag("(held)")]
-    | Annotated[FollowingInput, Tag("(following)")]
-    | TaggedLaw,
-    by_word("law", _tag, ", ".join(LAWS)),
+    SweptInput | ListedInput | HeldInput | FollowingInput | Law, by_word("law", LAWS, _tag)
 ]
 
 
@@ -253,9 +244,6 @@ class MotionSection(Section):
                 text = f"{name} lists rows of its own beside time:"
                 hint = "give it a law, or remove time"
                 raise refuse("rows-beside-time", text, hint, "inputs", name)
-
-
-# `assembly:` - which way of assembling the mechanism is meant at the first row.
 
 
 class AssemblySection(Section):

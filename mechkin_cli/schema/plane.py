@@ -1,7 +1,7 @@
 """The whole file of a mechanism in a plane: format 1 with `plane: xy`.
 
 Points, directions and forces are two numbers, inertias and torques one, and nothing has an axis.
-What a plane has no place for is refused at its key, with what to write instead.
+Spatial values are refused at their key, with what to write instead.
 """
 
 from typing import Annotated, Any, ClassVar, Final, Literal
@@ -37,8 +37,9 @@ from mechkin_cli.schema.loads import (
     SpringBetweenPoints,
     TorqueOnJoint,
     TorqueValue,
+    check_free_fall,
+    form_of_load,
     standard_or_vector,
-    tag_of_load,
 )
 from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name, NamedOr
 
@@ -97,7 +98,7 @@ class PlaneLink(BodyWithMass):
 
 
 class PlanePointJoint(JointBase):
-    """What all joints of a plane have except the weld."""
+    """A joint of a plane with a point: all but the weld."""
 
     point: PlanePoint
     """A point of the joint in the home drawing, [x, y] or by its name, or one per link."""
@@ -146,17 +147,9 @@ class PlaneWeldJoint(JointBase):
     type: Literal["W"]
 
 
-def _joint_tag(mapping: dict[str, Any]) -> str | None:
-    word = mapping.get("type")
-    return f"({word})" if word in PLANE_JOINT_TYPES else None
-
-
 PlaneJoint = Annotated[
-    Annotated[PlaneRevoluteJoint, Tag("(R)")]
-    | Annotated[PlanePrismaticJoint, Tag("(P)")]
-    | Annotated[PinInSlotJoint, Tag("(Ps)")]
-    | Annotated[PlaneWeldJoint, Tag("(W)")],
-    by_word("type", _joint_tag, ", ".join(PLANE_JOINT_TYPES)),
+    PlaneRevoluteJoint | PlanePrismaticJoint | PinInSlotJoint | PlaneWeldJoint,
+    by_word("type", PLANE_JOINT_TYPES),
 ]
 
 
@@ -197,9 +190,7 @@ class PlaneGravity(InRuns):
 
     def check(self) -> None:
         """A direction of its own goes with the standard size alone."""
-        if self.direction is not None and self.g != "standard":
-            text = "g as a vector has a direction already"
-            raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
+        check_free_fall(self.g, self.direction)
 
 
 class PlaneForce(InRuns):
@@ -251,17 +242,17 @@ class PlaneFriction(FrictionLoad):
 
 
 PlaneLoad = Annotated[
-    Annotated[PlaneGravity, Tag("(gravity)")]
-    | Annotated[PlaneForce, Tag("(force)")]
-    | Annotated[ForceOnJoint, Tag("(force at joint)")]
-    | Annotated[PlaneTorque, Tag("(torque)")]
-    | Annotated[TorqueOnJoint, Tag("(torque at joint)")]
-    | Annotated[SpringBetweenPoints, Tag("(spring)")]
-    | Annotated[SpringAtJoint, Tag("(spring at joint)")]
-    | Annotated[DamperBetweenPoints, Tag("(damper)")]
-    | Annotated[DamperAtJoint, Tag("(damper at joint)")]
-    | Annotated[PlaneFriction, Tag("(friction)")],
-    tag_of_load,
+    PlaneGravity
+    | PlaneForce
+    | ForceOnJoint
+    | PlaneTorque
+    | TorqueOnJoint
+    | SpringBetweenPoints
+    | SpringAtJoint
+    | DamperBetweenPoints
+    | DamperAtJoint
+    | PlaneFriction,
+    form_of_load,
 ]
 
 

@@ -20,8 +20,8 @@ from mechkin_cli.schema.base import (
     FormChoice,
     Limits,
     Section,
-    Tag,
     fields_of,
+    tagged,
 )
 
 Read = Callable[[Any], Any]
@@ -126,10 +126,7 @@ def _composed(first: Read, second: Read) -> Read:
 
 def _one_of(union: Any, choice: FormChoice) -> Read:
     """What reads a union whose members each carry their tag."""
-    readers: dict[str | None, Read] = {}
-    for member in union.__args__:
-        tag = next(rule.tag for rule in member.__metadata__ if isinstance(rule, Tag))
-        readers[tag] = _value(member)
+    readers: dict[str | None, Read] = {tagged(form)[0]: _value(form) for form in union.__args__}
 
     def read(value: Any) -> Any:
         form = readers.get(choice.choose(value))

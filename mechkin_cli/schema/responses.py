@@ -13,12 +13,11 @@ from mechkin_cli.schema.base import (
     SchemaName,
     Section,
     Shown,
-    Tag,
     by_word,
     refuse,
 )
-from mechkin_cli.schema.loads import TableValue, expression_or_table
-from mechkin_cli.schema.motion import LAWS, FollowingInput, TaggedLaw, TimeSection, law_tag
+from mechkin_cli.schema.loads import OrTable
+from mechkin_cli.schema.motion import LAWS, FollowingInput, Law, TimeSection, law_tag
 from mechkin_cli.schema.scalars import (
     START_PATTERN,
     AngleOrLength,
@@ -34,22 +33,16 @@ from mechkin_cli.schema.scalars import (
 StartName = Annotated[
     str,
     Limits(pattern=START_PATTERN),
-    Shown(
-        ("string",),
-        "a joint coordinate or its rate",
-        ("O1.theta", "O1.theta_dot"),
-    ),
+    Shown(("string",), "a joint coordinate or its rate", ("O1.theta", "O1.theta_dot")),
     SchemaName("StartName"),
 ]
-Effort = Annotated[
-    Annotated[ForceOrTorque, Tag("(expression)")] | Annotated[TableValue, Tag("(table)")],
-    FormChoice(expression_or_table),
-    SchemaName("Effort"),
-]
+Effort = Annotated[OrTable[ForceOrTorque], SchemaName("Effort")]
 
 
 class HeldCoordinate(Section):
     """A coordinate that stays where it is."""
+
+    tag = "(held)"
 
     at: AngleOrLength
     """The value."""
@@ -61,16 +54,13 @@ def _law(mapping: dict[str, Any]) -> str | None:
     return "(following)" if "with" in mapping else "(held)"
 
 
-DrivenLaw = Annotated[
-    Annotated[HeldCoordinate, Tag("(held)")]
-    | Annotated[FollowingInput, Tag("(following)")]
-    | TaggedLaw,
-    by_word("law", _law, ", ".join(LAWS)),
-]
+DrivenLaw = Annotated[HeldCoordinate | FollowingInput | Law, by_word("law", LAWS, _law)]
 
 
 class ListedTime(Section):
     """The moments of the rows one by one."""
+
+    tag = "(listed)"
 
     values: Annotated[tuple[Duration, ...], Limits(min_length=2)]
     """Rising moments, of which the first is that of `start`."""
@@ -81,9 +71,7 @@ def _spaced_or_listed(value: Any) -> str:
 
 
 ResponseTime = Annotated[
-    Annotated[TimeSection, Tag("(spaced)")] | Annotated[ListedTime, Tag("(listed)")],
-    FormChoice(_spaced_or_listed),
-    SchemaName("ResponseTime"),
+    TimeSection | ListedTime, FormChoice(_spaced_or_listed), SchemaName("ResponseTime")
 ]
 _OTHER_STOPS = {
     "contact": "a stop is a value: {value: O2.s, at: 0, direction: down}",
@@ -96,6 +84,7 @@ _OTHER_STOPS = {
 class Crossing(Section):
     """Ends the response where a value passes another."""
 
+    tag = "(value)"
     advice: ClassVar[dict[str, str]] = _OTHER_STOPS
 
     value: AnyDimension
@@ -109,17 +98,19 @@ class Crossing(Section):
 class DeadCentre(Section):
     """Ends the response at a dead centre of a coordinate: where its rate changes its sign."""
 
+    tag = "(dead_centre)"
     advice: ClassVar[dict[str, str]] = _OTHER_STOPS
 
     dead_centre: Coordinate
     """The coordinate, for example O4.theta."""
     count: Annotated[WholeNumber, Limits(ge=1, le=1_000_000)] = 1
-    """The how manieth dead centre ends it."""
+    """Number of the dead centre that ends it, counted from 1."""
 
 
 class Turns(Section):
     """Ends the response where an angle has turned by whole turns from its start, to either side."""
 
+    tag = "(turns)"
     advice: ClassVar[dict[str, str]] = _OTHER_STOPS
 
     turns: Coordinate
@@ -133,12 +124,7 @@ def _stop(value: Any) -> str:
     return next((f"({key})" for key in ("dead_centre", "turns") if key in keys), "(value)")
 
 
-Stop = Annotated[
-    Annotated[Crossing, Tag("(value)")]
-    | Annotated[DeadCentre, Tag("(dead_centre)")]
-    | Annotated[Turns, Tag("(turns)")],
-    FormChoice(_stop),
-]
+Stop = Annotated[Crossing | DeadCentre | Turns, FormChoice(_stop)]
 
 
 class Response(Section):

@@ -1,4 +1,5 @@
-"""Single values: expressions with the dimension a field has, names, texts, whole numbers.
+"""Values that several sections share: expressions with the dimension of a field, names, texts,
+places, units, joined tables, names of runs.
 
 A value arrives as the text that was written (or as a number from Python). Expressions stay text and
 are not evaluated here; the dimension is attached for readers and for editors only.
@@ -18,6 +19,7 @@ from mechkin_cli.schema.base import (
     Section,
     Shown,
     Tag,
+    each_once,
     refuse,
 )
 from mechkin_cli.verdict import SWEEP
@@ -48,7 +50,7 @@ FORMS: Final = {
         "write a relative path with / that ends in .csv",
     ),
 }
-"""What a text that fails a pattern should have been, and what to do."""
+"""The expected form of a text that fails a pattern, and a hint."""
 
 _NOT_A_NUMBER = re.compile(r"[+-]?\.?(nan|inf|infinity)", re.IGNORECASE)
 _WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,300}")
@@ -59,16 +61,15 @@ def expression_text(value: Any) -> str:
 
     Raises a pydantic error for anything else, for an empty text, and for NaN and infinities.
     """
-    text = _number_text(value)
-    if text is None:
-        text = value if isinstance(value, str) else None
+    text = value if isinstance(value, str) else _number_text(value)
     if text is None:
         is_list = isinstance(value, (list, tuple))
         hint = 'a vector is written in quotes: "[x, y, z]"' if is_list else "for example 0.5 in"
         raise refuse("not-a-number", "expected a number or an expression", hint)
     text = text.strip()
     if not text:
-        raise refuse("empty-value", "an empty text is no number", "write a number or an expression")
+        hint = "write a number or an expression"
+        raise refuse("empty-value", "an empty text is not a number", hint)
     if _NOT_A_NUMBER.fullmatch(text):
         raise refuse("not-finite", f"{text} is not a finite number", "write a finite value")
     return text
@@ -87,9 +88,8 @@ def plain_text(value: Any) -> str:
     """A text as written; Python numbers become the text a user would have written."""
     text = value if isinstance(value, str) else _number_text(value)
     if text is None:
-        raise refuse(
-            "not-a-text", "expected a text", "write words, in quotes where YAML needs them"
-        )
+        hint = "write words, in quotes where YAML needs them"
+        raise refuse("not-a-text", "expected a text", hint)
     return text
 
 
@@ -112,67 +112,55 @@ Text = Annotated[
     SchemaName("Text"),
 ]
 
-Length = Annotated[
-    Expression, DimensionRule("length", ("0.5 in", "-P1", 2.5)), SchemaName("Length")
-]
-Mass = Annotated[Expression, DimensionRule("mass", ("2 lbm", 0.5)), SchemaName("Mass")]
-Inertia = Annotated[
-    Expression, DimensionRule("moment of inertia", (0.02, "3 kg*m^2")), SchemaName("Inertia")
-]
+Length = Annotated[Expression, DimensionRule("length", ("0.5 in", "-P1", 2.5), "Length")]
+Mass = Annotated[Expression, DimensionRule("mass", ("2 lbm", 0.5), "Mass")]
+Inertia = Annotated[Expression, DimensionRule("moment of inertia", (0.02, "3 kg*m^2"), "Inertia")]
 Acceleration = Annotated[
-    Expression, DimensionRule("acceleration", ("-9.80665 m/s^2", 0)), SchemaName("Acceleration")
+    Expression, DimensionRule("acceleration", ("-9.80665 m/s^2", 0), "Acceleration")
 ]
-Force = Annotated[Expression, DimensionRule("force", ("10 N", "-k*O2.s")), SchemaName("Force")]
-Torque = Annotated[Expression, DimensionRule("moment", ("10 N*m", 10)), SchemaName("Torque")]
+Force = Annotated[Expression, DimensionRule("force", ("10 N", "-k*O2.s"), "Force")]
+Torque = Annotated[Expression, DimensionRule("moment", ("10 N*m", 10), "Torque")]
 ForceOrTorque = Annotated[
-    Expression,
-    DimensionRule("force or moment", ("10 N*m", "-c*O4.theta_dot")),
-    SchemaName("ForceOrTorque"),
+    Expression, DimensionRule("force or moment", ("10 N*m", "-c*O4.theta_dot"), "ForceOrTorque")
 ]
 Dimensionless = Annotated[
-    Expression,
-    DimensionRule("dimensionless number", (1, "cos(alpha1)")),
-    SchemaName("Dimensionless"),
+    Expression, DimensionRule("dimensionless number", (1, "cos(alpha1)"), "Dimensionless")
 ]
-Duration = Annotated[Expression, DimensionRule("time", (0, "0.5 s")), SchemaName("Duration")]
-Angle = Annotated[Expression, DimensionRule("angle", ("12 deg", "alpha1", 90)), SchemaName("Angle")]
+Duration = Annotated[Expression, DimensionRule("time", (0, "0.5 s"), "Duration")]
+Angle = Annotated[Expression, DimensionRule("angle", ("12 deg", "alpha1", 90), "Angle")]
 AngleOrLength = Annotated[
     Expression,
-    DimensionRule("angle or length, as the coordinate", (150, "0.5 in")),
-    SchemaName("AngleOrLength"),
+    DimensionRule("angle or length, as the coordinate", (150, "0.5 in"), "AngleOrLength"),
 ]
 CoordinateRate = Annotated[
-    Expression,
-    DimensionRule("rate of the coordinate", ("0.1 rad/s", "2 in/s")),
-    SchemaName("CoordinateRate"),
+    Expression, DimensionRule("rate of the coordinate", ("0.1 rad/s", "2 in/s"), "CoordinateRate")
 ]
 CoordinateAcceleration = Annotated[
     Expression,
-    DimensionRule("second rate of the coordinate", ("0.2 rad/s^2", 0)),
-    SchemaName("CoordinateAcceleration"),
+    DimensionRule("second rate of the coordinate", ("0.2 rad/s^2", 0), "CoordinateAcceleration"),
 ]
 CoordinateJerk = Annotated[
-    Expression,
-    DimensionRule("third rate of the coordinate", ("0.3 rad/s^3", 0)),
-    SchemaName("CoordinateJerk"),
+    Expression, DimensionRule("third rate of the coordinate", ("0.3 rad/s^3", 0), "CoordinateJerk")
 ]
-Velocity = Annotated[Expression, DimensionRule("velocity", ("5 mm/s", 0.1)), SchemaName("Velocity")]
+Velocity = Annotated[Expression, DimensionRule("velocity", ("5 mm/s", 0.1), "Velocity")]
 Stiffness = Annotated[
     Expression,
     DimensionRule(
-        "force per length, or moment per angle (bare: per rad)", ("200 N/m", "5 N*m/rad")
+        "force per length, or moment per angle (bare: per rad)",
+        ("200 N/m", "5 N*m/rad"),
+        "Stiffness",
     ),
-    SchemaName("Stiffness"),
 ]
 Damping = Annotated[
     Expression,
     DimensionRule(
-        "force per speed, or moment per angular rate (bare: per rad/s)", ("10 N*s/m", 0.2)
+        "force per speed, or moment per angular rate (bare: per rad/s)",
+        ("10 N*s/m", 0.2),
+        "Damping",
     ),
-    SchemaName("Damping"),
 ]
 AnyDimension = Annotated[
-    Expression, DimensionRule("any dimension", ("12 deg", 0.5, "2*P1")), SchemaName("AnyDimension")
+    Expression, DimensionRule("any dimension", ("12 deg", 0.5, "2*P1"), "AnyDimension")
 ]
 
 Name = Annotated[
@@ -205,8 +193,6 @@ AccelerationVector = Annotated[
 ]
 
 
-# A place in the home drawing: its coordinates, or the name of a point that is drawn there.
-
 _NAME: Final = re.compile(NAME_PATTERN)
 
 
@@ -223,9 +209,6 @@ NamedOr = Annotated[
 """The name of a point, or coordinates: of space or of a plane."""
 
 NamedOrGiven = Annotated[NamedOr[LengthVector], SchemaName("NamedOrGiven")]
-
-
-# `points:` and `directions:` - named places and directions that move with a link.
 
 
 class PointOfLink(Section):
@@ -247,8 +230,6 @@ class DirectionOfLink(Section):
     """The direction in the home drawing, [x, y, z] in ground axes; its length does not matter."""
 
 
-# `units:` - the units of bare numbers in the file and of the tables.
-
 UnitText = Annotated[
     str,
     BeforeRule(plain_text),
@@ -258,7 +239,7 @@ UnitText = Annotated[
 
 
 class UnitsSection(Section):
-    """The units of bare numbers and of the tables; what is left out is in m, deg, kg, N, s.
+    """The units of bare numbers and of the tables; by default m, deg, kg, N, s.
 
     The unit of moments is force times length. Rates of lengths are per `time`; angular rates are in
     rad/s unless `angular_rate` says otherwise. Torsional stiffness is per rad, torsional damping
@@ -283,10 +264,8 @@ METRIC = UnitsSection()
 """The units where a file names none."""
 
 
-# How the points of a table are joined.
-
 _ENDS = {"spline": ("not-a-knot", "natural", "clamped"), "monotone": ("clamped",), "linear": ()}
-"""The ends that each interpolation has."""
+"""The ends that each interpolation may have."""
 
 
 class JoinedTable(Section):
@@ -307,10 +286,8 @@ class JoinedTable(Section):
             raise refuse("table-ends", text, hint, "ends")
 
 
-# The runs of a file by name: the sweep of `motion:`, and each of `responses:`.
-
 DEVICE: Final = re.compile("con|prn|aux|nul|com[0-9]|lpt[0-9]", re.IGNORECASE)
-"""Names that are devices on Windows, whatever follows them behind a point."""
+"""Names that are devices on Windows, with any ending."""
 
 # JSON Schema has no flag for ignoring case
 TAKEN_FOR_EDITORS: Final = (
@@ -326,14 +303,7 @@ RunName = Annotated[
 ]
 
 
-def _with_a_run(names: tuple[str, ...]) -> tuple[str, ...]:
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise refuse("named-twice", f"the run {name} is named twice", "name it once", index)
-    return names
-
-
-RunNames = Annotated[tuple[RunName, ...], Limits(min_length=1), After(_with_a_run)]
+RunNames = Annotated[tuple[RunName, ...], Limits(min_length=1), After(each_once)]
 
 
 def free_run_names(responses: dict[str, Any]) -> dict[str, Any]:
@@ -345,7 +315,7 @@ def free_run_names(responses: dict[str, Any]) -> dict[str, Any]:
         if name.casefold() == SWEEP:
             text = "sweep is the run along the inputs of motion:"
         elif DEVICE.fullmatch(name):
-            text = f"{name} is a device on Windows, no file"
+            text = f"{name} is a device on Windows, not a file"
         elif len(name) > MOST_LETTERS:
             text = f"a name of {len(name)} letters is too long for a file (limit {MOST_LETTERS})"
         elif twin != name:

@@ -1,9 +1,10 @@
-"""A study file: a mechanism, what varies in it, and what is kept of every variant."""
+"""A study file: a mechanism, its variations, and the results of every variant."""
 
 from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
+    STEP_OR_COUNT,
     After,
     BeforeRule,
     FormChoice,
@@ -14,11 +15,11 @@ from mechkin_cli.schema.base import (
     ShortForm,
     Shown,
     Tag,
+    check_step_or_count,
+    each_once,
     refuse,
 )
 from mechkin_cli.schema.scalars import AnyDimension, CsvPath, Name, RunName, Text, WholeNumber
-
-_STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
 
 MechanismPath = Annotated[
     str,
@@ -33,7 +34,8 @@ ListOfValues = Annotated[tuple[AnyDimension, ...], Limits(min_length=1)]
 class RangeOfValues(Section):
     """Values from one to another in equal steps."""
 
-    editors: ClassVar[dict[str, Any]] = _STEP_OR_COUNT
+    tag = "(range)"
+    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
     first: Annotated[AnyDimension, Key("from")]
     """First value."""
@@ -46,15 +48,13 @@ class RangeOfValues(Section):
 
     def check(self) -> None:
         """Exactly one of step and count."""
-        if self.step is None and self.count is None:
-            raise refuse("missing-key", "from and to need a step or a count", "add one of them")
-        if self.step is not None and self.count is not None:
-            text = "step and count both say how many values there are"
-            raise refuse("two-choices", text, "keep one of them", "count")
+        check_step_or_count(self.step, self.count, "values")
 
 
 class Uniform(Section):
     """Drawn, evenly between two values."""
+
+    tag = "(uniform)"
 
     between: Annotated[tuple[AnyDimension, ...], Limits(min_length=2, max_length=2)]
     """The least and the largest value: [0.4 in, 0.6 in]."""
@@ -63,22 +63,26 @@ class Uniform(Section):
 class Normal(Section):
     """Drawn from a normal distribution."""
 
+    tag = "(normal)"
+
     deviation: AnyDimension
     """Standard deviation, larger than 0."""
     mean: AnyDimension | None = None
     """Mean; left out, the mechanism's own value."""
 
 
-def _both_sides(value: Any) -> Any:
+def _one_or_more(value: Any) -> Any:
     return value if isinstance(value, (list, tuple)) else (value,)
 
 
 class Tolerance(Section):
     """Drawn about the mechanism's own value."""
 
+    tag = "(tolerance)"
+
     tolerance: Annotated[
         tuple[AnyDimension, ...],
-        BeforeRule(_both_sides),
+        BeforeRule(_one_or_more),
         Limits(min_length=1, max_length=2),
         ShortForm(("string", "number"), "plus and minus this"),
     ]
@@ -98,11 +102,7 @@ def _form(value: Any) -> str:
 
 
 Variation = Annotated[
-    Annotated[ListOfValues, Tag("(values)")]
-    | Annotated[RangeOfValues, Tag("(range)")]
-    | Annotated[Uniform, Tag("(uniform)")]
-    | Annotated[Normal, Tag("(normal)")]
-    | Annotated[Tolerance, Tag("(tolerance)")],
+    Annotated[ListOfValues, Tag("(values)")] | RangeOfValues | Uniform | Normal | Tolerance,
     FormChoice(_form),
 ]
 
@@ -127,17 +127,6 @@ KeptWord = Literal[
 ]  # fmt: skip
 
 
-def _one_or_more(value: Any) -> Any:
-    return value if isinstance(value, (list, tuple)) else (value,)
-
-
-def _each_once(words: tuple[str, ...]) -> tuple[str, ...]:
-    for index, word in enumerate(words):
-        if word in words[:index]:
-            raise refuse("named-twice", f"{word} stands there twice", "name it once", index)
-    return words
-
-
 class Kept(Section):
     """A quantity, and what of its rows is kept of every variant."""
 
@@ -148,7 +137,7 @@ class Kept(Section):
         Key("as"),
         BeforeRule(_one_or_more),
         Limits(min_length=1),
-        After(_each_once),
+        After(each_once),
         ShortForm(("string",), "one of the words: peak"),
     ]
     """`max`, `min`, `peak` (largest magnitude), `range`, `mean`, `rms`, `place_of_max`,

@@ -1,6 +1,10 @@
-"""`tables:` - the layouts a run writes, one file each: columns are expressions over quantities."""
+"""`tables:` - the layouts a run writes, one file each: columns are expressions over quantities.
 
-from typing import Annotated, Any, Literal, Protocol, TypeVar
+Also `coefficients:`, the dense system of all reactions at one row, and `balances:`, sums of the
+sweep over a cycle.
+"""
+
+from typing import Annotated, Any, Literal, TypeVar
 
 from mechkin_cli.schema.base import (
     NOTHING,
@@ -12,8 +16,8 @@ from mechkin_cli.schema.base import (
     Section,
     ShortForm,
     Shown,
-    Tag,
     by_word,
+    each_once,
     refuse,
 )
 from mechkin_cli.schema.scalars import (
@@ -114,7 +118,7 @@ def free_name(name: str) -> str:
     if name.casefold() in _TAKEN:
         raise refuse("reserved-name", _TAKEN[name.casefold()], "rename it")
     if DEVICE.fullmatch(name):
-        raise refuse("reserved-name", f"{name} is a device on Windows, no file", "rename it")
+        raise refuse("reserved-name", f"{name} is a device on Windows, not a file", "rename it")
     return name
 
 
@@ -141,13 +145,6 @@ class Plot(Section):
 SummaryWord = Literal["max", "min", "peak", "mean", "rms", "range"]
 
 
-def _each_once(words: tuple[str, ...]) -> tuple[str, ...]:
-    for index, word in enumerate(words):
-        if word in words[:index]:
-            raise refuse("named-twice", f"{word} stands there twice", "name it once", index)
-    return words
-
-
 def _refuse_unknown(plot: Plot, labels: list[str]) -> None:
     """Refuses a picture of columns that the table does not have."""
     named = [(plot.x, ("plot", "x"))] if plot.x is not None else []
@@ -171,7 +168,7 @@ class Table(Section):
         tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), After(_differing_labels)
     ]
     """The columns, from left to right."""
-    summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(_each_once)] = ()
+    summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(each_once)] = ()
     """What stands below the table for each column that is computed: some of [max, min, peak, mean,
     rms, range]. `peak` is the largest magnitude; max, min and peak have their places; left
     out, nothing."""
@@ -198,29 +195,6 @@ class Table(Section):
                     raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
 
 
-class _HasName(Protocol):
-    """What is written under a name."""
-
-    @property
-    def name(self) -> str: ...
-
-
-AnyNamed = TypeVar("AnyNamed", bound=_HasName)
-
-
-def differing_names(tables: tuple[AnyNamed, ...]) -> tuple[AnyNamed, ...]:
-    """The tables, if no two would be written to the same file; file systems may ignore case."""
-    names = [table.name.casefold() for table in tables]
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            text = f"two tables are called {tables[index].name}"
-            raise refuse("table-clash", text, "rename one of them", index, "name")
-    return tables
-
-
-# `coefficients:` - the dense system of all reactions at one row, as a table of coefficients.
-
-
 class Coefficients(Section):
     """The equations of equilibrium of all links and the conditions of all pairs at one row.
 
@@ -241,8 +215,6 @@ class Coefficients(Section):
     """Number of unknowns that the source counts, to stand beside those here; left out, none
     does."""
 
-
-# `balances:` - what the sweep sums up to over a cycle, a small table each.
 
 CycleName = Annotated[
     str,
@@ -278,11 +250,7 @@ class HarmonicsBalance(_Balance):
     of: Annotated[tuple[AnyDimension, ...], Limits(min_length=1, max_length=100)]
     """Expressions of one dimension; a vector stands for its three components."""
     orders: Annotated[tuple[Dimensionless, ...], Limits(min_length=1, max_length=1000)] = (
-        "0",
-        "1",
-        "2",
-        "3",
-        "4",
+        *("0", "1", "2", "3", "4"),
     )
     """Orders: cosines and sines of so many times the angle, or periods in the rows' time. Where the
     rows turn k times, multiples of 1/k are orders, too. Left out, [0, 1, 2, 3, 4]."""
@@ -298,21 +266,20 @@ class FlywheelBalance(_Balance):
     """That mean; left out, the rate of the input in the sweep."""
 
 
-_WORDS = {"work": "(work)", "harmonics": "(harmonics)", "flywheel": "(flywheel)"}
-
-
-def _tag(mapping: dict[str, Any]) -> str | None:
-    word = mapping.get("type")
-    return _WORDS.get(word) if isinstance(word, str) else None
-
-
 AnyBalance = WorkBalance | HarmonicsBalance | FlywheelBalance
-Balance = Annotated[
-    Annotated[WorkBalance, Tag("(work)")]
-    | Annotated[HarmonicsBalance, Tag("(harmonics)")]
-    | Annotated[FlywheelBalance, Tag("(flywheel)")],
-    by_word("type", _tag, ", ".join(_WORDS)),
-]
+Balance = Annotated[AnyBalance, by_word("type", ("work", "harmonics", "flywheel"))]
+
+AnyTables = TypeVar("AnyTables", bound=tuple[Table, ...] | tuple[Coefficients, ...])
+
+
+def differing_names(tables: AnyTables) -> AnyTables:
+    """The tables, if no two would be written to the same file; file systems may ignore case."""
+    names = [table.name.casefold() for table in tables]
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            text = f"two tables are called {tables[index].name}"
+            raise refuse("table-clash", text, "rename one of them", index, "name")
+    return tables
 
 
 def refuse_clashes(

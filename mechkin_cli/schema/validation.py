@@ -1,6 +1,9 @@
-"""One namespace: joints, links, points, directions and parameters must not share a name.
+"""Plain data -> `MechanismFile`, `PlaneFile` or `StudyFile`, or all independent errors as records.
 
-The check reads plain data, so that a clash is reported together with whatever else is wrong.
+A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
+records of pydantic are added reserved and clashing names, and the keys that a mapping may have.
+Joints, links, points, directions, parameters and quantities share one namespace; the check reads
+plain data, so that a clash is reported together with all other errors.
 """
 
 from __future__ import annotations
@@ -36,7 +39,7 @@ _SECTIONS = ("parameters", "quantities", "links", "joints", "chain", "points", "
 
 
 def name_errors(data: object) -> list[dict[str, Any]]:
-    """Reserved words and clashes among the names that a file defines, as error records with `loc`.
+    """Reserved words and clashes among the names that a file defines, as error records.
 
     A clash is reported at the second place in the order of the file.
     """
@@ -78,24 +81,13 @@ def _chain_definitions(
     if isinstance(row.get("joint"), str):
         yield "chain", row["joint"], ("chain", index, "joint")
     link = row.get("link")
-    if (
-        isinstance(link, str)
-        and link != "ground"
-        and not (isinstance(links, dict) and link in links)
-    ):
+    listed = links if isinstance(links, dict) else {}
+    if isinstance(link, str) and link != "ground" and link not in listed:
         yield "chain", link, ("chain", index, "link")
 
 
 def _error(code: str, location: tuple[str | int, ...], text: str, hint: str) -> dict[str, Any]:
     return {"type": code, "loc": location, "msg": text, "ctx": {"text": text, "hint": hint}}
-
-
-# Plain data -> `MechanismFile`, `PlaneFile` or `StudyFile`, or every independent error as a plain
-# record.
-#
-# A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
-# records of pydantic are added the reserved and clashing names, and what a mapping's keys could
-# have been.
 
 
 class InvalidDataError(Exception):
@@ -110,11 +102,15 @@ def validate(data: object) -> AnyFile:
     """The mechanism file that plain data describes, with `plane:` one in a plane; raises
     `InvalidDataError`."""
     errors = name_errors(data)
-    form = _form(data)
+    form: type[AnyFile] = MechanismFile
+    if isinstance(data, dict) and "plane" in data:
+        from mechkin_cli.schema.plane import PlaneFile
+
+        form = PlaneFile
     try:
         file = validated(form, data)
     except ValueError as failure:
-        errors = _told(failure, data, form) + errors
+        errors = _records(failure, data, form) + errors
     if errors:
         raise InvalidDataError(errors)
     return file
@@ -127,29 +123,20 @@ def validate_study(data: object) -> StudyFile:
     try:
         return validated(StudyFile, data)
     except ValueError as failure:
-        raise InvalidDataError(_told(failure, data, StudyFile)) from None
+        raise InvalidDataError(_records(failure, data, StudyFile)) from None
 
 
-def _told(failure: ValueError, data: object, form: type[Section]) -> list[dict[str, Any]]:
-    """The errors of a validation as records."""
-    from pydantic_core import ValidationError  # only where there are some
+def _records(failure: ValueError, data: object, form: type[Section]) -> list[dict[str, Any]]:
+    from pydantic_core import ValidationError  # only for messages
 
     if not isinstance(failure, ValidationError):
         raise failure
-    found = failure.errors(include_url=False, include_input=False)
-    return [_completed(dict(error), data, form) for error in found]
-
-
-def _form(data: object) -> type[AnyFile]:
-    if isinstance(data, dict) and "plane" in data:
-        from mechkin_cli.schema.plane import PlaneFile
-
-        return PlaneFile
-    return MechanismFile
+    errors = failure.errors(include_url=False, include_input=False)
+    return [_completed(dict(error), data, form) for error in errors]
 
 
 def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
-    """The record with what a message needs beyond pydantic's own context."""
+    """The record with the context that a message needs beyond pydantic's own."""
     if error["type"] == "string_pattern_mismatch":
         expected, hint = FORMS[error["ctx"]["pattern"]]
         return error | {"ctx": {"expected": expected, "hint": hint}}
@@ -157,33 +144,30 @@ def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict
         return _with_advice(error, data, form)
     if error["type"] not in ("missing", "extra_forbidden"):
         return error
-    from mechkin_cli.schema.advice import (
-        advice_for_key,
-        known_keys,  # reads sources: only for messages
-    )
+    from mechkin_cli.schema.advice import advice_for_key, known_keys  # only for messages
 
     *mapping, key = error["loc"]
     known = known_keys(form, tuple(mapping))
     if known is None:
         return error
+    section, descriptions = known
     context = {
-        "known": list(known.descriptions),
-        "advice": known.advice.get(str(key)) or advice_for_key(known.section, str(key)),
-        "purpose": known.descriptions.get(str(key)),
+        "known": list(descriptions),
+        "advice": section.advice.get(str(key)) or advice_for_key(section.__name__, str(key)),
+        "purpose": descriptions.get(str(key)),
     }
     return error | {"ctx": context}
 
 
 def _with_advice(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
-    """The record of an unknown type, with what to write instead where that is known."""
+    """The record of an unknown type, with advice on what to write instead."""
     from mechkin_cli.schema.advice import advice_for_type
 
-    found: Any = data
+    value: Any = data
     try:
-        for step in error["loc"]:
-            found = found[step]
-        word = found[error["ctx"]["key"]]
+        for step in (*error["loc"], error["ctx"]["key"]):
+            value = value[step]
     except (KeyError, IndexError, TypeError):
         return error
-    advice = advice_for_type(str(error["loc"][0]), str(word), getattr(form, "in_plane", False))
+    advice = advice_for_type(str(error["loc"][0]), str(value), getattr(form, "in_plane", False))
     return error | {"ctx": error["ctx"] | {"advice": advice}}

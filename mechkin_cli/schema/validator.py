@@ -1,8 +1,9 @@
-"""What is wrong with plain data, by pydantic's core.
+"""The errors of plain data, by pydantic's core.
 
 `pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
 compiles every class when it is defined: for the sections of format 1 that took longer than the
-analysis of a mechanism. Here a section of which a file has none costs its class body alone.
+analysis of a mechanism. Here a validator is built when the first value of its section is met, so
+that a section which a file does not use costs its class body alone.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from mechkin_cli.schema.base import (
     FormChoice,
     Limits,
     Section,
-    Tag,
     fields_of,
+    tagged,
 )
 
 _VALIDATORS: dict[type[Section], SchemaValidator] = {}
@@ -30,23 +31,20 @@ _VALIDATORS: dict[type[Section], SchemaValidator] = {}
 def judged(section: type[AnySection], data: object) -> AnySection:
     """The section that plain data describes; raises pydantic's ValidationError.
 
-    The places of its errors go on from that of the section in which it stands.
+    The locations of its errors continue that of the section around it.
     """
-    validator = _VALIDATORS.get(section)
-    if validator is None:
-        validator = _VALIDATORS[section] = _built(section)
-    found: AnySection = validator.validate_python(data)
-    return found
+    if section not in _VALIDATORS:
+        _VALIDATORS[section] = _built(section)
+    return _VALIDATORS[section].validate_python(data)  # type: ignore[no-any-return]
 
 
 def _built(section: type[Section]) -> SchemaValidator:
-    fields = {
-        field.name: core.model_field(
-            _with_default(_schema(field.annotation), field.required, field.default),
-            validation_alias=key,
-        )
-        for key, field in fields_of(section).items()
-    }
+    fields = {}
+    for key, field in fields_of(section).items():
+        value = _schema(field.annotation)
+        if not field.required:
+            value = core.with_default_schema(value, default=field.default)
+        fields[field.name] = core.model_field(value, validation_alias=key)
     keys = core.model_fields_schema(fields, extra_behavior="forbid")
     schema: core.CoreSchema = core.model_schema(section, keys)
     if section.check is not Section.check:
@@ -57,10 +55,6 @@ def _built(section: type[Section]) -> SchemaValidator:
 def _checked(section: Section) -> Section:
     section.check()
     return section
-
-
-def _with_default(schema: core.CoreSchema, required: bool, default: Any) -> core.CoreSchema:
-    return schema if required else core.with_default_schema(schema, default=default)
 
 
 @cache
@@ -115,11 +109,9 @@ def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
 
 def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
     """A union whose members each carry their tag."""
-    choices: dict[Any, core.CoreSchema] = {}
-    for member in get_args(union):
-        form, *rules = get_args(member)
-        tag = next(rule.tag for rule in rules if isinstance(rule, Tag))
-        choices[tag] = _with_rules(form, tuple(rules))
+    choices: dict[Any, core.CoreSchema] = {
+        tag: _with_rules(form, rules) for tag, form, rules in map(tagged, get_args(union))
+    }
     if choice.words is None:
         return core.tagged_union_schema(choices, choice.choose)
     return core.tagged_union_schema(

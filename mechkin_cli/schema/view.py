@@ -11,7 +11,7 @@ from mechkin_cli.schema.base import (
     Section,
     ShortForm,
     Shown,
-    refuse,
+    each_once,
 )
 from mechkin_cli.schema.scalars import (
     COLOUR_PATTERN,
@@ -53,14 +53,7 @@ KindOrShape = Annotated[
 ]
 
 
-def _all_different(names: tuple[str, ...]) -> tuple[str, ...]:
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise refuse("twice", f"{name} is named twice", "name it once", index)
-    return names
-
-
-Names = Annotated[tuple[Name, ...], After(_all_different)]
+Names = Annotated[tuple[Name, ...], After(each_once)]
 
 
 class ViewSection(Section):

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.plan import ClosingJoint, HungLinks, TreeJoint, flatten, plan_records
+from mechkin_cli.plan import PLACING, flatten, plan_records
 from mechkin_cli.session import POSITIONS
 from mechkin_cli.structure import RandomStarts
 from mechkin_cli.sweep.rows import RunRows
@@ -94,9 +94,7 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
     """The plan's constants, and which of them place links: masses, loads and what else no position
     reads must not change a random number."""
     records = plan_records(session.layout)
-    placing = [
-        isinstance(r, TreeJoint | ClosingJoint | HungLinks) for r in records for _ in flatten([r])
-    ]
+    placing = [record.call in PLACING for record in records for _ in flatten([record])]
     return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
 
 

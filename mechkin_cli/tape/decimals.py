@@ -1,8 +1,12 @@
 """A tape of exact numbers replayed in decimals of 60 digits, with a bound of the rounding.
 
-Every register has a value and a bound of its distance from the true one, which is carried on to
+Every register has a value and a bound of its distance from the true one, which is propagated to
 first order with a margin (running error analysis: N. J. Higham, Accuracy and Stability of Numerical
 Algorithms, 3.3): far tighter than intervals of doubles, and enough to round a constant once.
+
+Elementary functions are summed by their series. Reductions are those of J.-M. Muller, Elementary
+Functions (2016), chapters 5 and 11: whole half turns are taken off an angle, a tangent is halved
+until its series is short. Pi has 60 decimals, so an angle x is reduced to |x| 1e-60.
 """
 
 from __future__ import annotations
@@ -25,12 +29,6 @@ if TYPE_CHECKING:
     from mechkin_cli.tape.tape import ExactTape, Tape
 
 
-# Elementary functions of decimal numbers to some 60 digits, by their series.
-#
-# Reductions are those of J.-M. Muller, Elementary Functions (2016), chapters 5 and 11: whole half
-# turns are taken off an angle, a tangent is halved until its series is short. Pi has 60 decimals,
-# so an angle x is reduced to |x| 1e-60.
-
 _HALVINGS = 4
 
 
@@ -39,7 +37,7 @@ def _pi() -> Decimal:
 
 
 def _smallest_term() -> Decimal:
-    """Terms below this one change nothing."""
+    """The size of terms that no longer change a sum."""
     return Decimal(1).scaleb(-getcontext().prec - 2)
 
 
@@ -53,31 +51,19 @@ def _alternating(first: Decimal, square: Decimal, number: int) -> Decimal:
     return total
 
 
-def _quarter(angle: Decimal) -> tuple[Decimal, int]:
-    """The angle within an eighth of a turn of a whole number of quarters, and that number."""
-    half = _pi() / 2
-    count = int((angle / half).to_integral_value())
-    return angle - count * half, count % 4
-
-
-def sin(angle: Decimal) -> Decimal:
-    """The sine."""
-    rest, quarter = _quarter(angle)
-    if quarter % 2:
-        found = _alternating(Decimal(1), rest * rest, 0)
-    else:
-        found = _alternating(rest, rest * rest, 1)
-    return -found if quarter >= 2 else found
+def sin(angle: Decimal, quarters: int = 0) -> Decimal:
+    """The sine of an angle and some more quarters of a turn."""
+    quarter = _pi() / 2
+    count = int((angle / quarter).to_integral_value())
+    rest = angle - count * quarter
+    is_cosine = (count + quarters) % 2
+    sine = _alternating(Decimal(1) if is_cosine else rest, rest * rest, 0 if is_cosine else 1)
+    return -sine if (count + quarters) % 4 >= 2 else sine
 
 
 def cos(angle: Decimal) -> Decimal:
     """The cosine."""
-    rest, quarter = _quarter(angle)
-    if quarter % 2:
-        found = -_alternating(rest, rest * rest, 1)
-    else:
-        found = _alternating(Decimal(1), rest * rest, 0)
-    return -found if quarter >= 2 else found
+    return sin(angle, 1)
 
 
 def tan(angle: Decimal) -> Decimal:
@@ -134,19 +120,19 @@ _LEAST_OFF = 1.0 / (1 << 900)
 """Of a number that is not exact: its bound, a double, never comes out zero."""
 
 _LEAST_RADIUS = 1.0 / (1 << 200)
-"""Of a number that is no sum of two doubles: products of a few such radii, with which intervals of
-doubles go on, are no zeros either. So far below all lengths and directions it widens nothing."""
+"""Of a number that is not a sum of two doubles: products of a few such radii, with which intervals
+of doubles go on, are not zero either. So far below all lengths and directions it widens nothing."""
 
 
 class Approximation(NamedTuple):
-    """A number, and how far it is from the true one at most."""
+    """A number, and a bound of its distance from the true one."""
 
     value: Decimal
     off: float
 
 
 class NotEnclosed(ValueError):
-    """A tape divides by what may be zero, or takes a function beyond where it is defined."""
+    """A tape divides by what may be zero, or takes a function outside its domain."""
 
 
 def double_doubles(tape: ExactTape) -> Floats:
@@ -156,17 +142,17 @@ def double_doubles(tape: ExactTape) -> Floats:
     Raises:
         NotEnclosed: an output is not defined.
     """
-    return np.array([parts(one)[:2] for one in replay(tape)], dtype=np.float64).reshape(-1, 2)
+    return enclosures(tape)[:, :2].copy()
 
 
 def enclosures(tape: ExactTape) -> Floats:
-    """The outputs enclosed (outputs, 3): high and low as in double-double, and how far their sum is
-    from the true number at most.
+    """The outputs enclosed (outputs, 3): high and low as in double-double, and a bound of the
+    distance of their sum from the true number.
 
     Raises:
         NotEnclosed: an output is not defined.
     """
-    return np.array([parts(one) for one in replay(tape)], dtype=np.float64).reshape(-1, 3)
+    return np.array([parts(near) for near in replay(tape)], dtype=np.float64).reshape(-1, 3)
 
 
 def replay(tape: ExactTape) -> list[Approximation]:
@@ -186,23 +172,24 @@ def run(tape: Tape, rows: Iterable[Sequence[Approximation]]) -> list[list[Approx
     Raises:
         NotEnclosed: an output is not defined.
     """
-    codes = list(map(Operation, tape.operations.tolist()))
-    operands = [o[: ARITY[code]] for code, o in zip(codes, tape.operands.tolist(), strict=True)]
-    lines = [(code, _RULES[code], o) for code, o in zip(codes, operands, strict=True)]
-    outputs = tape.outputs.tolist()
-    found = []
+    instructions = []
+    for code, operands in zip(tape.operations.tolist(), tape.operands.tolist(), strict=True):
+        operation = Operation(code)
+        instructions.append((operation, _RULES[operation], operands[: ARITY[operation]]))
+    results = []
     with localcontext() as context:
         context.prec = DIGITS
         for row in rows:
             registers = list(row)
-            for code, rule, places in lines:
-                arguments = [registers[place] for place in places]
+            for operation, rule, operands in instructions:
+                arguments = [registers[operand] for operand in operands]
                 result = rule(*arguments)
                 if not result.off < inf or not result.value.is_finite():
-                    raise NotEnclosed(f"{code.name.lower()} of {', '.join(map(str, arguments))}")
+                    name = operation.name.lower()
+                    raise NotEnclosed(f"{name} of {', '.join(map(str, arguments))}")
                 registers.append(result)
-            found.append([registers[place] for place in outputs])
-    return found
+            results.append([registers[output] for output in tape.outputs.tolist()])
+    return results
 
 
 def of_fraction(number: Fraction) -> Approximation:
@@ -237,13 +224,12 @@ def _size(near: Approximation) -> float:
 
 
 def _rounding(off: float, function: Callable[..., Decimal], *arguments: Decimal) -> Approximation:
-    """The result of one operation of IEEE 854, which tells whether it was rounded."""
+    """The result of one operation of IEEE 854, whose flag shows whether it was rounded."""
     context = getcontext()
     context.clear_flags()
     value = function(*arguments)
-    return (
-        Approximation(value, off) if not off and not context.flags[Inexact] else _near(value, off)
-    )
+    is_exact = not off and not context.flags[Inexact]
+    return Approximation(value, off) if is_exact else _near(value, off)
 
 
 def _carried(off: float, a: Approximation, b: Approximation) -> float:
@@ -253,10 +239,6 @@ def _carried(off: float, a: Approximation, b: Approximation) -> float:
 
 def _sum(a: Approximation, b: Approximation) -> Approximation:
     return _rounding(a.off + b.off, operator.add, a.value, b.value)
-
-
-def _difference(a: Approximation, b: Approximation) -> Approximation:
-    return _sum(a, _negative(b))
 
 
 def _negative(a: Approximation) -> Approximation:
@@ -288,13 +270,11 @@ def _root(a: Approximation) -> Approximation:
 def _smooth(
     function: Callable[[Decimal], Decimal], slope: Callable[[float], float]
 ) -> Callable[[Approximation], Approximation]:
-    """A function of a bounded slope near its argument; of exactly 0 and 1 nothing is special."""
+    """A function of a bounded slope near its argument; 0 and 1 are not treated as exact."""
 
     def apply(a: Approximation) -> Approximation:
-        value = function(a.value)
         reduction = _size(a) * _UNIT
-        off = 2.0 * slope(float(a.value)) * (a.off + reduction)
-        return _near(value, off)
+        return _near(function(a.value), 2.0 * slope(float(a.value)) * (a.off + reduction))
 
     return apply
 
@@ -320,9 +300,9 @@ def _angle(y: Approximation, x: Approximation) -> Approximation:
     if not far > 0.0:
         if not (y.value or x.value or y.off or x.off):
             return _near(atan2(y.value, x.value), _UNIT)
-        raise NotEnclosed("the angle of what may be no point")
+        raise NotEnclosed("the angle of a point that may be the origin")
     if y.off and x.value - Decimal(x.off) < 0 and abs(y.value) <= Decimal(y.off):
-        raise NotEnclosed("the angle of what may lie on either side of half a turn")
+        raise NotEnclosed("the angle of a point that may lie on either side of half a turn")
     return _near(atan2(y.value, x.value), 2.0 * (y.off + x.off) / far + _UNIT)
 
 
@@ -342,13 +322,9 @@ def _truth(holds: bool) -> Approximation:
     return Approximation(Decimal(int(holds)), 0.0)
 
 
-def _power(a: Approximation, b: Approximation) -> Approximation:
-    return _exponential(_product(b, _logarithm(a)))
-
-
 _RULES: dict[Operation, Callable[..., Approximation]] = {
     Operation.ADD: _sum,
-    Operation.SUBTRACT: _difference,
+    Operation.SUBTRACT: lambda a, b: _sum(a, _negative(b)),
     Operation.MULTIPLY: _product,
     Operation.DIVIDE: _quotient,
     Operation.NEGATE: _negative,
@@ -363,7 +339,7 @@ _RULES: dict[Operation, Callable[..., Approximation]] = {
     Operation.ATAN2: _angle,
     Operation.EXP: _exponential,
     Operation.LOG: _logarithm,
-    Operation.POWER: _power,
+    Operation.POWER: lambda a, b: _exponential(_product(b, _logarithm(a))),
     Operation.LESS: lambda a, b: _truth(a.value < b.value),
     Operation.NOT_MORE: lambda a, b: _truth(a.value <= b.value),
     Operation.EQUAL: lambda a, b: _truth(a.value == b.value),
@@ -373,5 +349,5 @@ _RULES: dict[Operation, Callable[..., Approximation]] = {
     Operation.SIGN: lambda a: Approximation(Decimal((a.value > 0) - (a.value < 0)), 0.0),
     Operation.WHOLE: lambda a: Approximation(a.value.to_integral_value(ROUND_HALF_EVEN), 0.0),
 }
-"""What a tape of exact numbers may hold. Over rows it chooses, too: by the values, whose bounds say
-nothing of the other way."""
+"""The operations of a tape of exact numbers. Over rows it chooses, too, by the values: their bounds
+do not cover the other branch."""

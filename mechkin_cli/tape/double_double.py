@@ -2,8 +2,8 @@
 on them unchanged.
 
 They are `Recorded` numbers that differ from row to row, so expressions take them as they take those
-of a tape; and they answer to the functions of numpy that such code calls (`_UFUNCS`, `_FUNCTIONS`).
-What they cannot do raises TypeError, never a rounded answer.
+of a tape; and they support the functions of numpy that such code calls (`_UFUNCS`, `_FUNCTIONS`).
+All others raise TypeError, never a rounded answer.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.exact import Exact
+from mechkin_cli.tape.recorder import Recorder
 from mechkin_cli.tape.scalars import (
     Recorded,
     fast_two_sum,
@@ -24,7 +25,7 @@ from mechkin_cli.tape.scalars import (
     root_of,
     sum_of,
 )
-from mechkin_cli.tape.tape import ARITY, Operation, Tape, compiled, replay_precise
+from mechkin_cli.tape.tape import ARITY, Operation, compiled, replay_precise
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel import _kernel
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 
 class Truths(np.ndarray[Any, Any]):
-    """What a comparison finds, row by row."""
+    """The truth of a comparison, row by row."""
 
     def choose(self, chosen: Any, other: Any) -> Any:  # type: ignore[override]
         """`chosen` where it holds, else `other`."""
@@ -56,9 +57,9 @@ class DoubleDoubles(Recorded):
     @classmethod
     def view(cls, high: Floats, low: Floats) -> DoubleDoubles:
         """Of two arrays of one shape as they are, not copied."""
-        found = cls.__new__(cls)
-        found.high, found.low = high, low
-        return found
+        array = cls.__new__(cls)
+        array.high, array.low = high, low
+        return array
 
     @classmethod
     def of_fraction(cls, value: Fraction) -> DoubleDoubles:
@@ -96,8 +97,8 @@ class DoubleDoubles(Recorded):
         return DoubleDoubles.view(self.high[index], self.low[index])
 
     def __setitem__(self, index: Any, value: Any) -> None:
-        given = exactly(value)
-        self.high[index], self.low[index] = given.high, given.low
+        exact = exactly(value)
+        self.high[index], self.low[index] = exact.high, exact.low
 
     def __repr__(self) -> str:
         return f"DoubleDoubles({self.high!r}, {self.low!r})"
@@ -107,60 +108,32 @@ class DoubleDoubles(Recorded):
         return DoubleDoubles(self.high.copy(), self.low.copy())
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        known = _UFUNCS.get(ufunc)
-        if known is None or method != "__call__" or options:
+        own = _UFUNCS.get(ufunc)
+        if own is None or method != "__call__" or options:
             raise TypeError(f"{ufunc.__name__} of double-double numbers")
         with np.errstate(all="ignore"):
-            return known(*map(exactly, inputs))
+            return own(*map(exactly, inputs))
 
-    def __array_function__(self, function: Any, types: Any, given: Any, options: Any) -> Any:
-        known = _FUNCTIONS.get(function)
-        if known is None:
+    def __array_function__(self, function: Any, types: Any, arguments: Any, options: Any) -> Any:
+        own = _FUNCTIONS.get(function)
+        if own is None:
             raise TypeError(f"{function.__name__} of double-double numbers")
         with np.errstate(all="ignore"):
-            return known(*given, **options)
+            return own(*arguments, **options)
 
     def __array__(self, *_: Any, **__: Any) -> Any:
         raise TypeError("double-double numbers would lose their low parts")
 
     def apply(self, operation: str, *others: Any) -> Any:
-        """An operation of a tape (`operations.Operation`) on these numbers and others."""
+        """An operation of a tape (`Operation`) on these numbers and others."""
+        own = _OPERATIONS.get(operation)
+        numbers = (self, *map(exactly, others))
         with np.errstate(all="ignore"):
-            return _applied(operation, self, *map(exactly, others))
+            return own(*numbers) if own else elementary(operation, *numbers)
 
     def apply_after(self, operation: str, first: Any) -> Any:
         """The operation on a float first."""
         return exactly(first).apply(operation, self)
-
-    def __add__(self, other: Any) -> DoubleDoubles:
-        return np.add(self, other)  # type: ignore[no-any-return]
-
-    def __radd__(self, other: Any) -> DoubleDoubles:
-        return np.add(other, self)  # type: ignore[no-any-return]
-
-    def __sub__(self, other: Any) -> DoubleDoubles:
-        return np.subtract(self, other)  # type: ignore[no-any-return]
-
-    def __rsub__(self, other: Any) -> DoubleDoubles:
-        return np.subtract(other, self)  # type: ignore[no-any-return]
-
-    def __mul__(self, other: Any) -> DoubleDoubles:
-        return np.multiply(self, other)  # type: ignore[no-any-return]
-
-    def __rmul__(self, other: Any) -> DoubleDoubles:
-        return np.multiply(other, self)  # type: ignore[no-any-return]
-
-    def __truediv__(self, other: Any) -> DoubleDoubles:
-        return np.divide(self, other)  # type: ignore[no-any-return]
-
-    def __rtruediv__(self, other: Any) -> DoubleDoubles:
-        return np.divide(other, self)  # type: ignore[no-any-return]
-
-    def __neg__(self) -> DoubleDoubles:
-        return DoubleDoubles(-self.high, -self.low)
-
-    def __abs__(self) -> DoubleDoubles:
-        return _magnitude(self)
 
     def __lt__(self, other: Any) -> Any:
         return np.less(self, other)
@@ -182,8 +155,8 @@ class DoubleDoubles(Recorded):
 
 
 def exactly(value: Any) -> DoubleDoubles:
-    """A number, an array of doubles or of double-doubles as double-doubles; a double that knows
-    what it was rounded from as that."""
+    """A number, an array of doubles or of double-doubles as double-doubles; an `Exact` as the
+    number it was rounded from."""
     if isinstance(value, Exact):
         return DoubleDoubles.of_fraction(value.fraction)
     return value if isinstance(value, DoubleDoubles) else DoubleDoubles(value)
@@ -202,9 +175,8 @@ def stacked(parts: Sequence[DoubleDoubles], axis: int = 0) -> DoubleDoubles:
 
 
 def difference(value: Floats, other: DoubleDoubles) -> Floats:
-    """value - other to the last bits of a double, however alike they are."""
-    found = exactly(value) - other
-    return found.high
+    """value - other to the last bits of a double, without cancellation."""
+    return (exactly(value) - other).high
 
 
 def _of_pairs(
@@ -212,7 +184,7 @@ def _of_pairs(
 ) -> Callable[..., DoubleDoubles]:
     def apply(*numbers: DoubleDoubles) -> DoubleDoubles:
         high, low = function(*((n.high, n.low) for n in numbers))
-        # the errors of an infinity are nan, it itself is not
+        # the rounding errors of an infinity are nan, but the infinity is a result
         rough = plain(*(n.high for n in numbers))
         is_pair = np.isfinite(high)
         return DoubleDoubles(np.where(is_pair, high, rough), np.where(is_pair, low, 0.0))
@@ -226,8 +198,12 @@ _quotient = _of_pairs(quotient_of, np.divide)
 _root = _of_pairs(root_of, np.sqrt)
 
 
+def _negative(a: DoubleDoubles) -> DoubleDoubles:
+    return DoubleDoubles(-a.high, -a.low)
+
+
 def _difference(a: DoubleDoubles, b: DoubleDoubles) -> DoubleDoubles:
-    return _sum(a, -b)
+    return _sum(a, _negative(b))
 
 
 def _magnitude(a: DoubleDoubles) -> DoubleDoubles:
@@ -235,8 +211,8 @@ def _magnitude(a: DoubleDoubles) -> DoubleDoubles:
     return DoubleDoubles(np.where(negative, -a.high, a.high), np.where(negative, -a.low, a.low))
 
 
-def _truths(found: Bools) -> Any:
-    return np.asarray(found).view(Truths)
+def _truths(holds: Bools) -> Any:
+    return np.asarray(holds).view(Truths)
 
 
 def _less(a: DoubleDoubles, b: DoubleDoubles) -> Any:
@@ -271,10 +247,10 @@ def _largest(a: DoubleDoubles, axis: int, initial: float) -> DoubleDoubles:
     """The largest along the first axis, at least `initial`."""
     if axis:
         raise TypeError("max of double-double numbers along an axis that is not the first")
-    found = exactly(np.full(a.shape[1:], initial))
+    largest = exactly(np.full(a.shape[1:], initial))
     for part in a:
-        found = _where(_less(found, part), part, found)
-    return found
+        largest = _where(_less(largest, part), part, largest)
+    return largest
 
 
 def _sign(a: DoubleDoubles) -> DoubleDoubles:
@@ -290,20 +266,12 @@ def _whole(a: DoubleDoubles) -> DoubleDoubles:
     return DoubleDoubles(*fast_two_sum(high, low))
 
 
-def _applied(operation: str, *numbers: DoubleDoubles) -> Any:
-    own = _OPERATIONS.get(operation)
-    if own is not None:
-        return own(*numbers)
-
-    return elementary(operation, *numbers)
-
-
 _UFUNCS: dict[Any, Callable[..., Any]] = {
     np.add: _sum,
     np.subtract: _difference,
     np.multiply: _product,
     np.divide: _quotient,
-    np.negative: lambda a: -a,
+    np.negative: _negative,
     np.absolute: _magnitude,
     np.sqrt: _root,
     np.less: _less,
@@ -331,6 +299,11 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 """Functions of numpy, of arrays."""
 
 _OPERATIONS: dict[str, Callable[..., Any]] = {
+    "ADD": _sum,
+    "SUBTRACT": _difference,
+    "MULTIPLY": _product,
+    "DIVIDE": _quotient,
+    "NEGATE": _negative,
     "SQUARE_ROOT": _root,
     "MAGNITUDE": _magnitude,
     "SIGN": _sign,
@@ -341,50 +314,32 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 """Operations of a tape that need no kernel."""
 
 
-# Elementary functions of double-double numbers, by the kernel.
-
-
 def elementary(operation: str, *numbers: DoubleDoubles) -> DoubleDoubles:
-    """The function of a name (`SIN`), number by number."""
+    """The kernel's function of a name (`SIN`), number by number."""
     parts = np.broadcast_arrays(*(part for n in numbers for part in (n.high, n.low)))
     shape = parts[0].shape
     values = np.stack([part.ravel() for part in parts]).reshape(len(numbers), 2, -1)
-    found = replay_precise(_tape(operation), values)[0]
-    return DoubleDoubles(found[:, 0, 0].reshape(shape), found[:, 0, 1].reshape(shape))
+    result = replay_precise(_tape(operation), values)[0]
+    return DoubleDoubles(result[:, 0, 0].reshape(shape), result[:, 0, 1].reshape(shape))
 
 
 @cache
 def _tape(operation: str) -> _kernel.Tape:
     """The tape of one operation."""
     code = Operation[operation]
-    count = ARITY[code]
-    operands = np.array([[k if k < count else 0 for k in range(3)]], dtype=np.int32)
-    nothing = np.zeros(0, dtype=np.bool_)
-    return compiled(
-        Tape(
-            tuple("xyz"[:count]),
-            np.zeros(0),
-            np.array([code], dtype=np.uint8),
-            operands,
-            np.array([count], dtype=np.int32),
-            np.zeros((0, 3), dtype=np.int32),
-            nothing,
-            nothing,
-        )
-    )
-
-
-# Gaussian elimination in any numbers that numpy can hold, rows of a batch at once.
+    recorder = Recorder("xyz"[: ARITY[code]], [1.0] * ARITY[code])
+    return compiled(recorder.tape([recorder.compute(code, *range(ARITY[code]))]))
 
 
 def eliminate(matrix: Any, right: Any) -> Any:
-    """Solutions (rows, n) of systems (rows, n, n) by elimination with partial pivoting."""
+    """Solutions (rows, n) of systems (rows, n, n) in any numbers that numpy can hold, by Gaussian
+    elimination with partial pivoting."""
     a = np.concatenate([matrix, right[:, :, None]], axis=2)
     rows, n = right.shape
-    every = np.arange(rows)
+    all_rows = np.arange(rows)
     for k in range(n):
         pivot = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
-        a[every, pivot], a[:, k] = a[:, k].copy(), a[every, pivot]
+        a[all_rows, pivot], a[:, k] = a[:, k].copy(), a[all_rows, pivot]
         a[:, k] /= a[:, k, k][:, None]
         factors = a[:, :, k].copy()
         factors[:, k] = 0

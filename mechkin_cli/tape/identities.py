@@ -1,19 +1,27 @@
 """Whether exact numbers are zero, decided by identities and never by rounding.
 
-A recorded number is a quotient of two sums (`exact_sums`): what the text says is rational, parts of
-a turn become roots of unity, other angles exponentials, for which sin^2 + cos^2 = 1 and the sums of
-angles hold by themselves; roots are generators whose squares are known. A number is zero where its
-numerator comes out empty. One that is off in any digit of the text is another rational number; what
-is zero by an identity that is not known here is not found to be.
+A recorded number is a quotient of two sums: numbers of the text are rational, parts of a turn
+become roots of unity, other angles exponentials, for which sin^2 + cos^2 = 1 and the sums of angles
+hold by themselves; roots are generators whose squares are known. A number is zero where its
+numerator comes out empty. One that is off in any digit of the text is another rational number; a
+number that is zero by an identity that is not known here is not found to be zero.
+
+A term of a sum is a rational number times e(t), a root of unity, times exp(i a) for a real a, times
+powers of generators. e(t) = exp(2 pi i t) stands for the sines of parts of a turn, exp(i a) for
+those of other angles. Roots of unity are written in the basis of powers below (p - 1)/p of a turn
+in each prime p (L. C. Washington, Introduction to Cyclotomic Fields, 1997, chapter 2), so that a
+sum of them is zero only where it is empty. Between the other factors no relations are known but
+those of their products: a sum that comes out empty is zero, one that does not may be.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, reduce
 from math import isqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.exact import PI
 from mechkin_cli.record import NamedTuple
@@ -21,17 +29,8 @@ from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Operation
 
 if TYPE_CHECKING:
-    from mechkin_cli.tape.exact import ExactRecorder, ExactStep
+    from mechkin_cli.tape.exact import ExactRecorder
 
-
-# Sums of products of what exact numbers are made of, in a form in which equal ones meet.
-#
-# A term is a rational number times e(t), a root of unity, times exp(i a) for a real a, times powers
-# of generators. e(t) = exp(2 pi i t) stands for the sines of parts of a turn, exp(i a) for those of
-# other angles. Roots of unity are told in the basis of powers below (p - 1)/p of a turn in each
-# prime p (L. C. Washington, Introduction to Cyclotomic Fields, 1997, chapter 2), so that a sum of
-# them is zero only where it is empty. Between the other factors no relations are known but those of
-# their products: a sum that comes out empty is zero, one that does not may be.
 
 Powers = tuple[tuple[int, int], ...]
 """Generators with their exponents, which are not zero, in order."""
@@ -43,7 +42,7 @@ LARGEST_PRIME = 97
 """Roots of unity of larger primes are left as they are: each would become a long sum."""
 
 MOST_TERMS = 1024
-"""Of a sum; longer ones are given up."""
+"""Of a sum; longer ones are not decided."""
 
 
 class Monomial(NamedTuple):
@@ -64,7 +63,7 @@ ONE: Sum = {UNIT: Fraction(1)}
 
 
 class SumUndecided(ValueError):
-    """A sum grew too long, or a number is not made of what is known."""
+    """A sum grew too long, or a number has no form as a sum."""
 
 
 def rational_sum(value: Fraction | int) -> Sum:
@@ -74,7 +73,7 @@ def rational_sum(value: Fraction | int) -> Sum:
 
 def phase(turn: Fraction, angle: Angle) -> Sum:
     """e(turn) exp(i angle)."""
-    return _collected((Monomial(t, angle, ()), sign) for t, sign in _told(turn % 1))
+    return _collected((Monomial(t, angle, ()), sign) for t, sign in _in_basis(turn % 1))
 
 
 def power(generator: int) -> Sum:
@@ -101,10 +100,7 @@ def multiplied(a: Sum, b: Sum) -> Sum:
 
 def merged(a: tuple[tuple[Powers, Fraction], ...], b: Angle) -> Angle:
     """The sum of two angles."""
-    found = dict(a)
-    for key, value in b:
-        found[key] = found.get(key, NO_TURN) + value
-    return tuple(sorted((key, value) for key, value in found.items() if value))
+    return tuple(sorted((key, value) for key, value in _added(a, b, NO_TURN).items() if value))
 
 
 def opposite(angle: Angle) -> Angle:
@@ -114,14 +110,18 @@ def opposite(angle: Angle) -> Angle:
 
 def with_powers(a: Powers, b: Powers) -> Powers:
     """The product of two products of generators."""
-    found = dict(a)
-    for generator, exponent in b:
-        found[generator] = found.get(generator, 0) + exponent
-    return tuple(sorted((key, value) for key, value in found.items() if value))
+    return tuple(sorted((key, value) for key, value in _added(a, b, 0).items() if value))
+
+
+def _added(a: Iterable[tuple[Any, Any]], b: Iterable[tuple[Any, Any]], zero: Any) -> dict[Any, Any]:
+    total = dict(a)
+    for key, value in b:
+        total[key] = total.get(key, zero) + value
+    return total
 
 
 def rational(a: Sum) -> Fraction | None:
-    """The rational number that a sum is; None where it is not told as one."""
+    """The rational number that a sum is; None where it has another form."""
     if not a:
         return Fraction(0)
     return a[UNIT] if len(a) == 1 and UNIT in a else None
@@ -132,27 +132,25 @@ def _products(a: Sum, b: Sum) -> Iterator[tuple[Monomial, Fraction]]:
         for other, second in b.items():
             angle = merged(one.angle, other.angle)
             powers = with_powers(one.powers, other.powers)
-            for turn, sign in _told((one.turn + other.turn) % 1):
+            for turn, sign in _in_basis((one.turn + other.turn) % 1):
                 yield Monomial(turn, angle, powers), sign * factor * second
 
 
 def _collected(terms: Iterable[tuple[Monomial, Fraction | int]]) -> Sum:
-    found: dict[Monomial, Fraction] = {}
-    for monomial, value in terms:
-        found[monomial] = found.get(monomial, NO_TURN) + value
-    found = {monomial: value for monomial, value in found.items() if value}
-    if len(found) > MOST_TERMS:
+    total = {key: value for key, value in _added((), terms, NO_TURN).items() if value}
+    if len(total) > MOST_TERMS:
         raise SumUndecided("a sum has too many terms")
-    return found
+    return total
 
 
 @lru_cache(maxsize=4096)
-def _told(turn: Fraction) -> tuple[tuple[Fraction, int], ...]:
-    """A root of unity in the basis: its members with their signs."""
-    found = [(turn, 1)]
-    for prime in _primes(turn.denominator):
-        found = [part for t, sign in found for part in _without_last(t, sign, prime)]
-    return tuple(found)
+def _in_basis(turn: Fraction) -> tuple[tuple[Fraction, int], ...]:
+    """A root of unity as the members of the basis with their signs."""
+    members = [(turn, 1)]
+    for prime in range(2, LARGEST_PRIME + 1):
+        if turn.denominator % prime == 0 and all(prime % k for k in range(2, isqrt(prime) + 1)):
+            members = [part for t, sign in members for part in _without_last(t, sign, prime)]
+    return tuple(members)
 
 
 def _without_last(turn: Fraction, sign: int, prime: int) -> list[tuple[Fraction, int]]:
@@ -163,7 +161,7 @@ def _without_last(turn: Fraction, sign: int, prime: int) -> list[tuple[Fraction,
 
 
 def _part(turn: Fraction, prime: int) -> Fraction:
-    """What a turn is in the powers of a prime, in [0, 1)."""
+    """The part of a turn in the powers of a prime, in [0, 1)."""
     whole, rest = 1, turn.denominator
     while rest % prime == 0:
         whole, rest = whole * prime, rest // prime
@@ -172,23 +170,15 @@ def _part(turn: Fraction, prime: int) -> Fraction:
     return Fraction(turn.numerator * pow(rest, -1, whole) % whole, whole)
 
 
-def _primes(count: int) -> list[int]:
-    return [p for p in range(2, LARGEST_PRIME + 1) if count % p == 0 and _is_prime(p)]
-
-
-def _is_prime(count: int) -> bool:
-    return all(count % k for k in range(2, isqrt(count) + 1))
-
-
 _PI = 0
 """The generator of pi."""
 
 _BITS_OF_A_PART = 100
-"""Of the denominator of a part of pi at most: in a number that is none, the digits of pi are left,
-which have twice as many."""
+"""Of the denominator of a part of pi at most: in a number that is not one, the digits of pi are
+left, which have twice as many."""
 
 _LARGEST_FACTOR = 1000
-"""Prime factors up to this one are told apart in the root of a rational number."""
+"""Prime factors up to this one are separated in the root of a rational number."""
 
 _LARGEST_GAUSS = 7
 """Roots of primes up to this one are sums of roots of unity: cos(30 deg) is root(3)/2."""
@@ -197,14 +187,14 @@ _HALF = Fraction(1, 2)
 
 
 class Quotient(NamedTuple):
-    """above / below, where below is a number that is divided by."""
+    """above / below, where below is not zero."""
 
     above: Sum
     below: Sum = ONE
 
 
 class Identities:
-    """What is identically zero of the numbers of a recording.
+    """The numbers of a recording that are identically zero.
 
     Args:
         recorder: that holds the numbers.
@@ -220,25 +210,24 @@ class Identities:
     def is_zero(self, value: object) -> bool:
         """Whether a recorded number, or a constant, is zero by an identity; False where it is not
         zero, and where no identity is found."""
-        wanted = self.recorder.origin(register(self.recorder, value))
-        for step in self.recorder.steps_to(wanted):
-            if step.register not in self._read:
-                self._read[step.register] = self._found(step)
-        found = self._read[wanted]
-        return found is not None and not found.above
+        number = self.recorder.origin(register(self.recorder, value))
+        for step, operation, operands in self.recorder.steps_to(number):
+            if step not in self._read:
+                self._read[step] = None
+                with suppress(SumUndecided):
+                    self._read[step] = self._quotient(step, operation, operands)
+        quotient = self._read[number]
+        return quotient is not None and not quotient.above
 
-    def _found(self, step: ExactStep) -> Quotient | None:
-        """A number whose operands have been read; None where it became too long."""
-        try:
-            if step.operation is None:
-                return self._written(step.register)
-            operands = [self._read[operand] for operand in step.operands]
-            rule = _RULES.get(step.operation)
-            if rule is not None and None not in operands:
-                return rule(self, *operands)
-        except SumUndecided:
-            pass
-        return None
+    def _quotient(
+        self, number: int, operation: Operation | None, operands: Iterable[int]
+    ) -> Quotient | None:
+        """A number whose operands have been read; None where it has no form as a quotient."""
+        if operation is None:
+            return self._written(number)
+        quotients = [self._read[operand] for operand in operands]
+        rule = _RULES.get(operation)
+        return None if rule is None or None in quotients else rule(self, *quotients)
 
     def _written(self, number: int) -> Quotient | None:
         value = self.recorder.exact.get(number)
@@ -251,23 +240,20 @@ class Identities:
 
     def _times(self, a: Sum, b: Sum) -> Sum:
         """a b, with the squares of roots put in."""
-        return self._reduced(multiplied(a, b))
-
-    def _reduced(self, a: Sum) -> Sum:
-        found: Sum = {}
-        for monomial, factor in a.items():
-            kept, squares = [], []
+        total: Sum = {}
+        for monomial, factor in multiplied(a, b).items():
+            powers, squares = [], []
             for generator, exponent in monomial.powers:
                 if generator in self._squares:
                     squares += [self._squares[generator]] * (exponent // 2)
                     exponent %= 2
                 if exponent:
-                    kept.append((generator, exponent))
-            term: Sum = {Monomial(monomial.turn, monomial.angle, tuple(kept)): factor}
+                    powers.append((generator, exponent))
+            term: Sum = {Monomial(monomial.turn, monomial.angle, tuple(powers)): factor}
             for square in squares:
                 term = self._times(term, square)
-            found = added(found, term)
-        return found
+            total = added(total, term)
+        return total
 
     def total(self, a: Quotient, b: Quotient) -> Quotient:
         """a + b."""
@@ -275,14 +261,6 @@ class Identities:
             return self.shortened(added(a.above, b.above), a.below)
         above = added(self._times(a.above, b.below), self._times(b.above, a.below))
         return self.shortened(above, self._times(a.below, b.below))
-
-    def difference(self, a: Quotient, b: Quotient) -> Quotient:
-        """a - b."""
-        return self.total(a, self.opposite(b))
-
-    def opposite(self, a: Quotient) -> Quotient:
-        """-a."""
-        return Quotient(scaled(Fraction(-1), a.above), a.below)
 
     def product(self, a: Quotient, b: Quotient) -> Quotient:
         """a b."""
@@ -292,14 +270,14 @@ class Identities:
         """a / b.
 
         Raises:
-            Undecided: b is zero.
+            SumUndecided: b is zero.
         """
         if not b.above:
             raise SumUndecided("a quotient by zero")
         return self.shortened(self._times(a.above, b.below), self._times(a.below, b.above))
 
     def shortened(self, above: Sum, below: Sum) -> Quotient:
-        """A quotient, without what divides by a single term."""
+        """A quotient, whose single term below becomes a factor above."""
         if not above:
             return Quotient(ZERO)
         if above == below:
@@ -320,7 +298,7 @@ class Identities:
         return Quotient(above) if left == ONE else self.shortened(above, left)
 
     def generator(self, key: object) -> int:
-        """The generator of what is known by a key."""
+        """The generator of a key."""
         return self._generators.setdefault(key, len(self._generators))
 
     def root(self, a: Quotient) -> Quotient:
@@ -340,18 +318,18 @@ class Identities:
         if value < 0:
             raise SumUndecided("the root of a negative number")
         rest = value.numerator * value.denominator
-        outside, found = Fraction(1, value.denominator), ONE
+        outside, root = Fraction(1, value.denominator), ONE
         for prime in range(2, _LARGEST_FACTOR + 1):
             count = 0
             while rest % prime == 0:
                 rest, count = rest // prime, count + 1
             outside *= prime ** (count // 2)
             if count % 2:
-                found = self._times(found, self._root_of_whole(prime))
+                root = self._times(root, self._root_of_whole(prime))
         whole = isqrt(rest)
         if whole * whole == rest:
-            return scaled(outside * whole, found)
-        return scaled(outside, self._times(found, self._root_of_whole(rest)))
+            return scaled(outside * whole, root)
+        return scaled(outside, self._times(root, self._root_of_whole(rest)))
 
     def _root_of_whole(self, value: int) -> Sum:
         if value <= _LARGEST_GAUSS:
@@ -361,7 +339,7 @@ class Identities:
         return power(generator)
 
     def magnitude(self, a: Quotient) -> Quotient:
-        """|a|, of which no more is known than its square, but where it is rational."""
+        """|a|: known by its square only, unless it is rational."""
         value = rational(a.above) if a.below == ONE else None
         if value is not None:
             return Quotient(rational_sum(abs(value)))
@@ -371,73 +349,60 @@ class Identities:
         """exp(i a) and exp(-i a).
 
         Raises:
-            Undecided: the angle is no sum of rational multiples of real products.
+            SumUndecided: the angle is not a sum of rational multiples of real products.
         """
         if a.below != ONE:
             raise SumUndecided("the sine of a quotient")
         turn, angle = Fraction(0), []
-        ways = (Quotient(ONE), Quotient(ONE))
+        forward, back = Quotient(ONE), Quotient(ONE)
         for monomial, factor in a.above.items():
             if monomial.turn or monomial.angle:
                 raise SumUndecided("the sine of sines")
-            known = self._circles.get(_single(monomial.powers))
-            if monomial.powers == ((_PI, 1),):
+            powers = monomial.powers
+            single = powers[0][0] if len(powers) == 1 and powers[0][1] == 1 else None
+            circle = self._circles.get(single) if single is not None else None
+            if powers == ((_PI, 1),):
                 turn += factor * _HALF
-            elif known is not None and factor.denominator == 1:
-                one, back = known if factor > 0 else known[::-1]
+            elif circle is not None and factor.denominator == 1:
+                one, other = circle if factor > 0 else circle[::-1]
                 for _ in range(abs(factor.numerator)):
-                    ways = (self.product(ways[0], one), self.product(ways[1], back))
+                    forward, back = self.product(forward, one), self.product(back, other)
             else:
-                angle.append((monomial.powers, factor))
+                angle.append((powers, factor))
         parts = merged(tuple(angle), ())
-        way = Quotient(phase(turn, parts))
-        back = Quotient(phase(-turn, opposite(parts)))
-        return self.product(ways[0], way), self.product(ways[1], back)
+        return (
+            self.product(forward, Quotient(phase(turn, parts))),
+            self.product(back, Quotient(phase(-turn, opposite(parts)))),
+        )
 
     def cosine(self, a: Quotient) -> Quotient:
         """cos a."""
-        way, back = self.circle(a)
-        return self.product(Quotient(rational_sum(_HALF)), self.total(way, back))
+        return self.product(Quotient(rational_sum(_HALF)), self.total(*self.circle(a)))
 
     def sine(self, a: Quotient) -> Quotient:
         """sin a."""
-        way, back = self.circle(a)
+        forward, back = self.circle(a)
         half_over_i = scaled(_HALF, phase(Fraction(-1, 4), ()))
-        return self.product(Quotient(half_over_i), self.total(way, self.opposite(back)))
-
-    def tangent(self, a: Quotient) -> Quotient:
-        """tan a."""
-        return self.ratio(self.sine(a), self.cosine(a))
+        return self.product(Quotient(half_over_i), self.total(forward, _negative(back)))
 
     def angle_of(self, y: Quotient, x: Quotient) -> Quotient:
         """The angle of a point, by its sine and cosine."""
         far = self.root(self.total(self.product(x, x), self.product(y, y)))
         turned = self.product(Quotient(phase(Fraction(1, 4), ())), y)
-        one, back = self.total(x, turned), self.total(x, self.opposite(turned))
-        return self._arc("angle", (y, x), (self.ratio(one, far), self.ratio(back, far)))
-
-    def arcsine(self, a: Quotient) -> Quotient:
-        """asin a."""
-        return self.angle_of(a, self._beside(a))
-
-    def arccosine(self, a: Quotient) -> Quotient:
-        """acos a."""
-        return self.angle_of(self._beside(a), a)
-
-    def arctangent(self, a: Quotient) -> Quotient:
-        """atan a."""
-        return self.angle_of(a, Quotient(ONE))
-
-    def _beside(self, a: Quotient) -> Quotient:
-        return self.root(self.total(Quotient(ONE), self.opposite(self.product(a, a))))
-
-    def _arc(
-        self, name: str, of: tuple[Quotient, ...], circle: tuple[Quotient, Quotient]
-    ) -> Quotient:
-        key = tuple(frozenset(part.items()) for quotient in of for part in quotient)
-        generator = self.generator((name, key))
+        forward, back = self.total(x, turned), self.total(x, _negative(turned))
+        key = tuple(frozenset(part.items()) for quotient in (y, x) for part in quotient)
+        circle = self.ratio(forward, far), self.ratio(back, far)
+        generator = self.generator(("angle", key))
         self._circles[generator] = circle
         return Quotient(power(generator))
+
+    def other_leg(self, a: Quotient) -> Quotient:
+        """sqrt(1 - a^2)."""
+        return self.root(self.total(Quotient(ONE), _negative(self.product(a, a))))
+
+
+def _negative(a: Quotient) -> Quotient:
+    return Quotient(scaled(Fraction(-1), a.above), a.below)
 
 
 def _gauss(prime: int) -> Sum:
@@ -448,32 +413,23 @@ def _gauss(prime: int) -> Sum:
     if prime == 2:
         eighth = Fraction(1, 8)
         return added(phase(eighth, ()), phase(-eighth, ()))
-    found: Sum = ZERO
     back = Fraction(-1, 4) if prime % 4 == 3 else Fraction(0)
-    for k in range(prime):
-        turn = Fraction(k * k, prime) + back
-        found = added(found, phase(turn, ()))
-    return found
-
-
-def _single(powers: Powers) -> int:
-    """The generator of a product of one; -1 of others."""
-    return powers[0][0] if len(powers) == 1 and powers[0][1] == 1 else -1
+    return reduce(added, (phase(Fraction(k * k, prime) + back, ()) for k in range(prime)), ZERO)
 
 
 _RULES: dict[Operation, Callable[..., Quotient]] = {
     Operation.ADD: Identities.total,
-    Operation.SUBTRACT: Identities.difference,
+    Operation.SUBTRACT: lambda own, a, b: own.total(a, _negative(b)),
     Operation.MULTIPLY: Identities.product,
     Operation.DIVIDE: Identities.ratio,
-    Operation.NEGATE: Identities.opposite,
+    Operation.NEGATE: lambda own, a: _negative(a),
     Operation.MAGNITUDE: Identities.magnitude,
     Operation.SQUARE_ROOT: Identities.root,
     Operation.SIN: Identities.sine,
     Operation.COS: Identities.cosine,
-    Operation.TAN: Identities.tangent,
-    Operation.ASIN: Identities.arcsine,
-    Operation.ACOS: Identities.arccosine,
-    Operation.ATAN: Identities.arctangent,
+    Operation.TAN: lambda own, a: own.ratio(own.sine(a), own.cosine(a)),
+    Operation.ASIN: lambda own, a: own.angle_of(a, own.other_leg(a)),
+    Operation.ACOS: lambda own, a: own.angle_of(own.other_leg(a), a),
+    Operation.ATAN: lambda own, a: own.angle_of(a, Quotient(ONE)),
     Operation.ATAN2: Identities.angle_of,
 }

@@ -1,7 +1,8 @@
 """Recording: instructions as they are computed, each only once; guards; the tape of some outputs.
 
-What no output and no guard needs is left out of a tape, and so are the registers of equal
-instructions: the code may compute a frame ten times over.
+A tape leaves out what no output and no guard needs, and the registers of equal instructions: the
+code may compute a frame ten times over. Code runs on `Traced` numbers, which record all arithmetic
+on them, and stand inside nested data that a `Filling` builds again with other numbers.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from types import MappingProxyType
 from typing import Any, NoReturn
 
 import numpy as np
@@ -25,8 +27,8 @@ class Recorder:
     """Grows by `constant`, `compute` and `guard`; register numbers are its own.
 
     Attributes:
-        values: what every register held when it was recorded.
-        is_settled: whether no other numbers will be put in.
+        values: of every register, when it was recorded.
+        is_settled: whether no other values will replace its inputs.
         holds_others: whether numbers of other recordings are constants of this one.
     """
 
@@ -61,78 +63,87 @@ class Recorder:
 
     def number(self, register: int) -> Traced:
         """The number in a register."""
-
         return Traced(self, register)
 
     def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
-        """What a condition finds now; a replay must find the same, or where that is only `advice`
-        say so."""
+        """The truth of a condition now, of which a replay reports if it is another one: with
+        `advice` as `Verdict.OTHER_ADVICE` only."""
         instruction = (condition, a, b, 0)
         if not advice:
             self._serious.add(instruction)
         if instruction not in self._guards:
-            found = meaning(condition)(self.values[a], self.values[b]) != 0.0
-            self._guards[instruction] = found
+            holds = meaning(condition)(self.values[a], self.values[b]) != 0.0
+            self._guards[instruction] = holds
         return self._guards[instruction]
 
     def by_rounding(self, condition: Undecided) -> Undecided:
-        """A condition of this recording on whose ways numbers are the same but for rounding."""
+        """A condition of this recording whose branches differ by rounding only."""
         return condition
 
     def tape(self, outputs: Iterable[int], *, guarded: bool = True) -> Tape:
         """The tape of some registers, with all guards so far or with none."""
         outputs = list(outputs)
-        asked = self._guards if guarded else {}
-        needed = self._needed([*outputs, *(r for g in asked for r in g[1:3])])
+        guards = self._guards if guarded else {}
+        needed = self._needed([*outputs, *(r for g in guards for r in g[1:3])])
         first = len(self.inputs)
-        computed = [r for r in needed if r in self._written]
         constants = [r for r in needed if r >= first and r not in self._written]
-        number = {r: r for r in range(first)}
-        number |= {r: first + k for k, r in enumerate((*constants, *computed))}
-        written = [self._written[r] for r in computed]
-        operands = [renumbered(instruction, number) for instruction in written]
-        guards = [(g[0], number[g[1]], number[g[2]]) for g in asked]
+        values = [self.values[r] for r in constants]
+        return self._tape(self.inputs, [*range(first), *constants], values, needed, outputs, guards)
+
+    def _tape(
+        self,
+        inputs: tuple[str, ...],
+        leaves: Sequence[int],
+        constants: Sequence[float],
+        needed: Sequence[int],
+        outputs: Sequence[int],
+        guards: Mapping[Instruction, bool] = MappingProxyType({}),
+    ) -> Tape:
+        """A tape of the `needed` registers, whose `leaves` are the inputs and the constants."""
+        operations, operands, number = self._renumbered(leaves, needed)
+        conditions = [(g[0], number[g[1]], number[g[2]]) for g in guards]
         return Tape(
-            self.inputs,
-            np.array([self.values[r] for r in constants], dtype=np.float64),
-            np.array([instruction[0] for instruction in written], dtype=np.uint8),
+            inputs,
+            np.array(constants, dtype=np.float64),
+            np.array(operations, dtype=np.uint8),
             np.array(operands, dtype=np.int32).reshape(-1, 3),
             np.array([number[r] for r in outputs], dtype=np.int32),
-            np.array(guards, dtype=np.int32).reshape(-1, 3),
-            np.array(list(asked.values()), dtype=np.bool_),
-            np.array([g not in self._serious for g in asked], dtype=np.bool_),
+            np.array(conditions, dtype=np.int32).reshape(-1, 3),
+            np.array(list(guards.values()), dtype=np.bool_),
+            np.array([g not in self._serious for g in guards], dtype=np.bool_),
         )
+
+    def _renumbered(
+        self, leaves: Sequence[int], needed: Sequence[int]
+    ) -> tuple[list[int], list[tuple[int, int, int]], dict[int, int]]:
+        """Operations and operands of the registers among `needed` that are computed, and the
+        numbers that all registers have when the leaves come first."""
+        computed = [r for r in needed if r in self._written]
+        number = {r: k for k, r in enumerate((*leaves, *computed))}
+        operations, operands = [], []
+        for register in computed:
+            operation, *registers = self._written[register]
+            a, b, c = ([number[r] for r in registers[: ARITY[operation]]] + [0, 0])[:3]
+            operations.append(int(operation))
+            operands.append((a, b, c))
+        return operations, operands, number
 
     def _register(self, value: float) -> int:
         self.values.append(value)
         return len(self.values) - 1
 
-    def _needed(self, wanted: list[int]) -> list[int]:
+    def _needed(self, outputs: Iterable[int]) -> list[int]:
         """The registers that some depend on, themselves included, in order."""
-        found: set[int] = set()
-        while wanted:
-            register = wanted.pop()
-            if register in found:
-                continue
-            found.add(register)
-            if register in self._written:
-                operation, *operands = self._written[register]
-                wanted += operands[: ARITY[operation]]
-        return sorted(found)
-
-
-def renumbered(instruction: Instruction, number: dict[int, int]) -> tuple[int, int, int]:
-    """The operands of an instruction by other numbers of their registers; unused ones are 0."""
-    operation, *operands = instruction
-    count = ARITY[operation]
-    a, b, c = ([number[r] for r in operands[:count]] + [0, 0])[:3]
-    return a, b, c
-
-
-# A scalar that writes down what is computed with it.
-#
-# It is no float and does not become one: code that would lose the trace (float(), a format, a truth
-# value, an array of floats) raises `TraceLost`, so that nothing passes for a constant that is none.
+        needed: set[int] = set()
+        pending = list(outputs)
+        while pending:
+            register = pending.pop()
+            if register not in needed:
+                needed.add(register)
+                if register in self._written:
+                    operation, *operands = self._written[register]
+                    pending += operands[: ARITY[operation]]
+        return sorted(needed)
 
 
 class TraceLost(TypeError):
@@ -140,9 +151,9 @@ class TraceLost(TypeError):
 
 
 class RecordedComparison(Undecided):
-    """A comparison of which no code has taken note yet.
+    """A comparison that has not decided anything yet.
 
-    As a truth value it becomes a guard; `choose` keeps both ways on the tape.
+    As a truth value it becomes a guard; `choose` records both branches.
     """
 
     __slots__ = ("left", "negated", "operation", "recorder", "right")
@@ -158,9 +169,9 @@ class RecordedComparison(Undecided):
         return self.recorder.guard(self.operation, self.left, self.right) is not self.negated
 
     def advised(self) -> bool:
-        """The truth value, where no more than a warning hangs on it."""
-        found = self.recorder.guard(self.operation, self.left, self.right, advice=True)
-        return found is not self.negated
+        """The truth value, where it decides on a warning only."""
+        holds = self.recorder.guard(self.operation, self.left, self.right, advice=True)
+        return holds is not self.negated
 
     def by_rounding(self) -> Undecided:
         """As `Undecided.by_rounding`."""
@@ -168,10 +179,10 @@ class RecordedComparison(Undecided):
 
     def choose(self, chosen: float | Traced, other: float | Traced) -> Traced:
         """`chosen` where the condition holds, else `other`."""
+        number: Any
         for number in (chosen, other):
-            if _is_made_of_others(number):
-                made: Any = number
-                return made.chosen_by(self, chosen, other)  # type: ignore[no-any-return]
+            if _is_composite(number):
+                return number.chosen_by(self, chosen, other)  # type: ignore[no-any-return]
         if self.negated:
             chosen, other = other, chosen
         holds = self.recorder.compute(self.operation, self.left, self.right)
@@ -179,7 +190,11 @@ class RecordedComparison(Undecided):
 
 
 class Traced(Recorded):
-    """A register of a recorder."""
+    """A register of a recorder, which records what is computed with it.
+
+    It is not a float and does not become one: code that would lose the trace (float(), a format, a
+    truth value, an array of floats) raises `TraceLost`, so that no number is taken for a constant.
+    """
 
     __slots__ = ("recorder", "register")
     __hash__ = None  # type: ignore[assignment]
@@ -198,40 +213,16 @@ class Traced(Recorded):
         """The value when it was recorded."""
         return self.recorder.values[self.register]
 
-    def __add__(self, other: float | Traced) -> Traced:
-        return self._with(Operation.ADD, other)
-
-    def __radd__(self, other: float) -> Traced:
-        return self._after(Operation.ADD, other)
-
-    def __sub__(self, other: float | Traced) -> Traced:
-        return self._with(Operation.SUBTRACT, other)
-
-    def __rsub__(self, other: float) -> Traced:
-        return self._after(Operation.SUBTRACT, other)
-
-    def __mul__(self, other: float | Traced) -> Traced:
-        return self._with(Operation.MULTIPLY, other)
-
-    def __rmul__(self, other: float) -> Traced:
-        return self._after(Operation.MULTIPLY, other)
-
     def __truediv__(self, other: float | Traced) -> Traced:
         if isinstance(other, Traced):
             other._refuse_zero()
         elif not isinstance(other, Recorded) and other == 0.0:
             raise ZeroDivisionError("float division by zero")
-        return self._with(Operation.DIVIDE, other)
+        return self.apply("DIVIDE", other)
 
     def __rtruediv__(self, other: float) -> Traced:
         self._refuse_zero()
-        return self._after(Operation.DIVIDE, other)
-
-    def __neg__(self) -> Traced:
-        return self._with(Operation.NEGATE)
-
-    def __abs__(self) -> Traced:
-        return self._with(Operation.MAGNITUDE)
+        return self.apply_after("DIVIDE", other)
 
     def __lt__(self, other: float | Traced) -> RecordedComparison:
         return self._compared(Operation.LESS, other)
@@ -253,25 +244,19 @@ class Traced(Recorded):
 
     def apply(self, operation: str, *others: float | Traced) -> Traced:
         """The operation of a name on this number first, then on others."""
-        return self._with(Operation[operation], *others)
+        if others and _is_composite(others[0]):
+            composite: Any = others[0]
+            return composite.apply_after(operation, self)  # type: ignore[no-any-return]
+        return _computed(Operation[operation], self, *others)
 
     def apply_after(self, operation: str, first: float) -> Traced:
         """The operation of a name on a float first, then on this number."""
-        return self._after(Operation[operation], first)
-
-    def _with(self, operation: Operation, *others: float | Traced) -> Traced:
-        if others and _is_made_of_others(others[0]):
-            made: Any = others[0]
-            return made.apply_after(operation.name, self)  # type: ignore[no-any-return]
-        return _computed(operation, self, *others)
-
-    def _after(self, operation: Operation, other: float) -> Traced:
-        return _computed(operation, other, self)
+        return _computed(Operation[operation], first, self)
 
     def _compared(
         self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
     ) -> RecordedComparison:
-        if _is_made_of_others(other):
+        if _is_composite(other):
             return NotImplemented  # type: ignore[no-any-return]
         recorder = _innermost(self, other)
         left, right = register(recorder, self), register(recorder, other)
@@ -280,7 +265,6 @@ class Traced(Recorded):
         return RecordedComparison(recorder, operation, left, right, negated)
 
     def _refuse_zero(self) -> None:
-        """A division by zero ends the code with an error."""
         if self == 0.0:
             raise ZeroDivisionError("float division by zero")
 
@@ -297,8 +281,8 @@ class Traced(Recorded):
         return f"Traced({self.recorded!r})"
 
 
-def _is_made_of_others(number: object) -> bool:
-    """Whether a recorded number is no register but consists of several, and knows what to do."""
+def _is_composite(number: object) -> bool:
+    """Whether a recorded number is not one register but consists of several, as a jet does."""
     return isinstance(number, Recorded) and not isinstance(number, Traced)
 
 
@@ -318,7 +302,7 @@ def register(recorder: Recorder, value: object) -> int:
     """The register of a traced number or of a constant.
 
     Raises:
-        TraceLost: something else, or a number of another recording that is no constant of this one.
+        TraceLost: another type, or a number of another recording that cannot be a constant here.
     """
     if isinstance(value, Traced):
         if value.recorder is recorder:
@@ -327,18 +311,16 @@ def register(recorder: Recorder, value: object) -> int:
             return recorder.constant(value)  # type: ignore[arg-type]
         raise TraceLost("numbers of two recordings meet")
     if isinstance(value, float | int):
-        # an `Exact` keeps what it knows
+        # an `Exact` stays one
         return recorder.constant(value if isinstance(value, float) else float(value))
     raise TraceLost(f"a varied number meets {type(value).__name__}")
 
-
-# Rows of numbers of which some may be recorded: those stand in arrays of objects.
 
 _OBJECTS = np.dtype(object)
 
 
 def is_traced(values: Any) -> bool:
-    """Whether some of the numbers are recorded."""
+    """Whether some of the numbers are recorded: they stand in an array of objects."""
     return isinstance(values, Recorded) or getattr(values, "dtype", None) is _OBJECTS
 
 
@@ -366,16 +348,15 @@ def differ(values: Floats) -> bool:
     return bool((values != values[0]).any())
 
 
-# Recorded numbers inside nested data: mappings, tuples, data classes, arrays of objects.
-#
-# Data is filled in by the steps that build it: each distinct part with a recorded number in it
-# once, from parts that stand before. Parts without any stay the objects that they are.
-
 Build = Callable[[list[Any]], Any]
 
 
 class Filling:
-    """How some data follows from its recorded numbers.
+    """How some data follows from its recorded numbers: mappings, tuples, data classes and arrays of
+    objects, nested in one another.
+
+    Each distinct part with a recorded number is built once, from parts built before it. Parts
+    without any stay the objects that they are.
 
     Attributes:
         numbers: the recorded numbers, each once.
@@ -385,7 +366,7 @@ class Filling:
         self.numbers: list[Traced] = []
         self._registers: dict[int, int] = {}
         self._parts: dict[int, int | None] = {}
-        self._kept: list[Any] = []
+        self._fixed: list[Any] = []
         self._steps: list[tuple[Build, list[int]]] = []
         self._whole = self._place(data)
         self._data = data
@@ -394,9 +375,9 @@ class Filling:
         """The data with other numbers in the places of the recorded ones."""
         if self._whole is None:
             return self._data
-        # a place: 3k for number k, 3k + 1 for a part that is kept, 3k + 2 for the result of a step
+        # a place: 3k for number k, 3k + 1 for a part without numbers, 3k + 2 for a step's result
         built: list[Any] = []
-        sources = (numbers, self._kept, built)
+        sources = (numbers, self._fixed, built)
         for build, places in self._steps:
             built.append(build([sources[place % 3][place // 3] for place in places]))
         return sources[self._whole % 3][self._whole // 3]
@@ -420,20 +401,16 @@ class Filling:
         places = [self._place(item) for item in items]
         if all(place is None for place in places):
             return None
-        found = [
-            self._keep(item) if place is None else place
-            for item, place in zip(items, places, strict=True)
-        ]
-        self._steps.append((build, found))
+        for k, item in enumerate(items):
+            if places[k] is None:
+                places[k] = 3 * len(self._fixed) + 1
+                self._fixed.append(item)
+        self._steps.append((build, places))  # type: ignore[arg-type]
         return 3 * (len(self._steps) - 1) + 2
-
-    def _keep(self, item: Any) -> int:
-        self._kept.append(item)
-        return 3 * (len(self._kept) - 1) + 1
 
 
 def _taken_apart(value: Any) -> tuple[list[Any], Build] | None:
-    """The parts of a value, and how it is built of such parts; None for what has none."""
+    """The parts of a value, and how to build it from them; None where it has none."""
     if isinstance(value, np.ndarray):
         if value.dtype != object:
             return None

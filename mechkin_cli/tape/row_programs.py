@@ -1,19 +1,24 @@
-"""Numbers that differ from row to row, written down as they are computed with: programs of a plan.
+"""Recorded numbers that differ from row to row, and their derivatives: programs of a plan.
 
 Nothing is decided on them, as nothing is on the rows of an array: a quotient by zero or the root of
-a negative number has no value in that row. What is constant over the rows, a float or a number that
-is itself recorded elsewhere, becomes a constant of the program, each where it is met: equal
-constants are not made one, so that the program of varied parameters has the same structure.
+a negative number has no value in that row. A number that is constant over the rows, a float or one
+that is itself recorded elsewhere, becomes a new constant of the program at each use, so that the
+program of varied parameters has the same structure.
+
+`JetNumber` records a number with its first three derivatives over a parameter. Sums, products
+(Leibniz), quotients and functions (Faa di Bruno) are exact, as in `expressions.jets`. An order that
+is the float 0.0 is left out of the recording.
 """
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Sequence
 from math import nan
 from typing import Any
 
-from mechkin_cli.tape.recorder import Instruction, Recorder, Traced, TraceLost, renumbered
+import numpy as np
+
+from mechkin_cli.tape.recorder import Instruction, Recorder, Traced, TraceLost
 from mechkin_cli.tape.scalars import Recorded, Undecided, of_one, of_two
 from mechkin_cli.tape.tape import Operation
 
@@ -24,11 +29,8 @@ class RowNumber(Traced):
     __slots__ = ()
     is_row = True
 
-    def __truediv__(self, other: float | Traced) -> Traced:
-        return self._with(Operation.DIVIDE, other)
-
-    def __rtruediv__(self, other: float) -> Traced:
-        return self._after(Operation.DIVIDE, other)
+    __truediv__ = Recorded.__truediv__
+    __rtruediv__ = Recorded.__rtruediv__
 
     def _refuse_zero(self) -> None:
         """Where it is zero, a quotient by it has no value in that row."""
@@ -38,7 +40,7 @@ class RowRecorder(Recorder):
     """Records what is computed with `inputs` numbers that differ from row to row.
 
     Attributes:
-        constants: the number of each register that is one, in order.
+        constants: the number of each register that is a constant, in order.
     """
 
     holds_others = True
@@ -67,41 +69,33 @@ class RowRecorder(Recorder):
         return self._instructions[instruction]
 
     def guard(self, condition: Operation, a: int, b: int, *, advice: bool = False) -> bool:
-        """Refused: rows go all ways."""
+        """Not possible: rows take different branches."""
         raise TraceLost("what is computed depends on a number that differs from row to row")
 
     @property
     def instructions(self) -> list[Instruction]:
-        """What was written down so far, in order."""
+        """The instructions so far, in order."""
         return list(self._written.values())
 
     def listed(
         self, outputs: Sequence[int], marked: Sequence[Instruction]
     ) -> tuple[list[Any], list[int], list[tuple[int, int, int]], list[int], list[int]]:
-        """What some registers need: constants, operations, operands, the registers' numbers, and
-        which of the operations are those `marked`."""
-        first = len(self.inputs)
-        needed = self._needed(list(outputs))
+        """The program of some registers: constants, operations, operands, the registers' numbers,
+        and which of the operations are `marked`."""
+        needed = self._needed(outputs)
         constants = [r for r in needed if r in self.constants]
-        computed = [r for r in needed if r in self._written]
-        number = {r: r for r in range(first)}
-        number |= {r: first + k for k, r in enumerate((*constants, *computed))}
-        written = [self._written[r] for r in computed]
-        chosen = set(marked)
+        leaves = [*range(len(self.inputs)), *constants]
+        operations, operands, number = self._renumbered(leaves, needed)
+        written = [self._written[r] for r in needed if r in self._written]
+        marks = set(marked)
         return (
             [self.constants[r] for r in constants],
-            [int(instruction[0]) for instruction in written],
-            [renumbered(instruction, number) for instruction in written],
+            operations,
+            operands,
             [number[r] for r in outputs],
-            [k for k, instruction in enumerate(written) if instruction in chosen],
+            [k for k, instruction in enumerate(written) if instruction in marks],
         )
 
-
-# Recorded numbers that move: value and first three derivatives over a parameter, each recorded.
-#
-# Sums, products (Leibniz), quotients and functions (Faa di Bruno) are exact, as in
-# `expressions.jets`, whose formulas these are for one number at a time. An order that is the float
-# 0.0 is left out of what is written down.
 
 _LARGEST_POWER = 64
 """Whole exponents up to this one are products."""
@@ -134,52 +128,6 @@ class JetNumber(Recorded):
     def __init__(self, orders: Sequence[Any]) -> None:
         self.orders = tuple(orders)
 
-    def __add__(self, other: Any) -> JetNumber:
-        return JetNumber(map(_sum, self.orders, orders_of(other)))  # type: ignore[arg-type]
-
-    def __radd__(self, other: Any) -> JetNumber:
-        return JetNumber(orders_of(other)) + self
-
-    def __sub__(self, other: Any) -> JetNumber:
-        return self + -JetNumber(orders_of(other))
-
-    def __rsub__(self, other: Any) -> JetNumber:
-        return JetNumber(orders_of(other)) - self
-
-    def __mul__(self, other: Any) -> JetNumber:
-        a, b = self.orders, orders_of(other)
-        return JetNumber(
-            [
-                _product(a[0], b[0]),
-                _total([(1, a[1], b[0]), (1, a[0], b[1])]),
-                _total([(1, a[2], b[0]), (2, a[1], b[1]), (1, a[0], b[2])]),
-                _total([(1, a[3], b[0]), (3, a[2], b[1]), (3, a[1], b[2]), (1, a[0], b[3])]),
-            ]
-        )
-
-    def __rmul__(self, other: Any) -> JetNumber:
-        return JetNumber(orders_of(other)) * self
-
-    def __truediv__(self, other: Any) -> JetNumber:
-        """From a = (a/b) b order by order."""
-        a, b = self.orders, orders_of(other)
-        found: list[Any] = []
-        for order, terms in enumerate(_LEIBNIZ):
-            rest = a[order]
-            for count, k in terms:
-                rest = _sum(rest, _opposite(_total([(count, found[k], b[order - k])])))
-            found.append(0.0 if _is_zero(rest) else rest / b[0])
-        return JetNumber(found)
-
-    def __rtruediv__(self, other: Any) -> JetNumber:
-        return JetNumber(orders_of(other)) / self
-
-    def __neg__(self) -> JetNumber:
-        return JetNumber([_opposite(order) for order in self.orders])
-
-    def __abs__(self) -> JetNumber:
-        return (self < 0.0).choose(-self, self)
-
     def __lt__(self, other: Any) -> JetCondition:
         return JetCondition(self.orders[0] < orders_of(other)[0])
 
@@ -197,16 +145,14 @@ class JetNumber(Recorded):
 
     @staticmethod
     def chosen_by(condition: Any, chosen: Any, other: Any) -> JetNumber:
-        """One of two, of which one is such a number, by a condition of numbers that are none."""
+        """One of two, of which one is a jet, by a condition of numbers that are not."""
         return JetCondition(condition).choose(chosen, other)
 
     def apply(self, operation: str, *others: Any) -> Any:
         """The operation of a name on this number first, then on others."""
-        return (
-            _TWO[operation](self, JetNumber(orders_of(others[0])))
-            if others
-            else (_ONE[operation](self))
-        )
+        if others:
+            return _TWO[operation](self, JetNumber(orders_of(others[0])))
+        return _ONE[operation](self)
 
     def apply_after(self, operation: str, first: Any) -> Any:
         """The operation of a name on a number that does not move first."""
@@ -216,10 +162,6 @@ class JetNumber(Recorded):
 def orders_of(value: Any) -> tuple[Any, Any, Any, Any]:
     """The orders of a jet, or of a number that does not move."""
     return value.orders if isinstance(value, JetNumber) else (value, 0.0, 0.0, 0.0)
-
-
-_LEIBNIZ = ((), ((1, 0),), ((1, 0), (2, 1)), ((1, 0), (3, 1), (3, 2)))
-"""Of each order of a product q b: the terms (count, k) of q_k b_(order - k) below the highest."""
 
 
 def _is_zero(value: Any) -> bool:
@@ -249,6 +191,34 @@ def _total(terms: Sequence[tuple[int, Any, Any]]) -> Any:
     return total
 
 
+def _times(one: JetNumber, other: JetNumber) -> JetNumber:
+    a, b = one.orders, other.orders
+    return JetNumber(
+        [
+            _product(a[0], b[0]),
+            _total([(1, a[1], b[0]), (1, a[0], b[1])]),
+            _total([(1, a[2], b[0]), (2, a[1], b[1]), (1, a[0], b[2])]),
+            _total([(1, a[3], b[0]), (3, a[2], b[1]), (3, a[1], b[2]), (1, a[0], b[3])]),
+        ]
+    )
+
+
+_LEIBNIZ = ((), ((1, 0),), ((1, 0), (2, 1)), ((1, 0), (3, 1), (3, 2)))
+"""Of each order of a product q b: the terms (count, k) of q_k b_(order - k) below the highest."""
+
+
+def _over(one: JetNumber, other: JetNumber) -> JetNumber:
+    """The quotient q = a/b, from a = q b order by order."""
+    a, b = one.orders, other.orders
+    orders: list[Any] = []
+    for order, terms in enumerate(_LEIBNIZ):
+        rest = a[order]
+        for count, k in terms:
+            rest = _sum(rest, _opposite(_total([(count, orders[k], b[order - k])])))
+        orders.append(0.0 if _is_zero(rest) else rest / b[0])
+    return JetNumber(orders)
+
+
 def _chosen(condition: Any, a: Any, b: Any) -> Any:
     if isinstance(condition, Undecided):
         return a if _is_zero(a) and _is_zero(b) else condition.choose(a, b)
@@ -256,7 +226,7 @@ def _chosen(condition: Any, a: Any, b: Any) -> Any:
 
 
 def _through(slopes: Callable[[Any], Sequence[Any]]) -> Callable[[JetNumber], JetNumber]:
-    """A function by its value and derivatives; what does not move needs none."""
+    """A function by its value and derivatives; a number that does not move needs none."""
 
     def apply(inner: JetNumber) -> JetNumber:
         value, first, second, third = slopes(inner.orders[0])
@@ -274,6 +244,13 @@ def _through(slopes: Callable[[Any], Sequence[Any]]) -> Callable[[JetNumber], Je
         )
 
     return apply
+
+
+# Elementary functions f of a float, of rows or of a recorded number: f, f', f'', f'''.
+
+
+def _square_root(x: Any) -> Any:
+    return x.apply("SQUARE_ROOT") if isinstance(x, Recorded) else np.sqrt(x)
 
 
 def _sine(x: Any) -> Sequence[Any]:
@@ -294,7 +271,7 @@ def _tangent(x: Any) -> Sequence[Any]:
 
 
 def _arcsine(x: Any) -> Sequence[Any]:
-    slope = 1.0 / of_one("SQUARE_ROOT", (1.0 - x) * (1.0 + x))
+    slope = 1.0 / _square_root((1.0 - x) * (1.0 + x))
     cube = slope * slope * slope
     return of_one("ASIN", x), slope, x * cube, cube * (1.0 + 3.0 * (x * slope) * (x * slope))
 
@@ -311,7 +288,7 @@ def _arctangent(x: Any) -> Sequence[Any]:
 
 
 def _root(x: Any) -> Sequence[Any]:
-    root = of_one("SQUARE_ROOT", x)
+    root = _square_root(x)
     first = 0.5 / root
     second = -0.5 * first / x
     return root, first, second, -1.5 * second / x
@@ -324,6 +301,20 @@ def _exponential(x: Any) -> Sequence[Any]:
 def _logarithm(x: Any) -> Sequence[Any]:
     slope = 1.0 / x
     return of_one("LOG", x), slope, -(slope * slope), 2.0 * (slope * slope * slope)
+
+
+SLOPES: dict[str, Callable[[Any], Sequence[Any]]] = {
+    "SIN": _sine,
+    "COS": _cosine,
+    "TAN": _tangent,
+    "ASIN": _arcsine,
+    "ACOS": _arccosine,
+    "ATAN": _arctangent,
+    "SQUARE_ROOT": _root,
+    "EXP": _exponential,
+    "LOG": _logarithm,
+}
+"""Value and first three derivatives of functions of a float, of rows or of a recorded number."""
 
 
 def _angle(y: JetNumber, x: JetNumber) -> JetNumber:
@@ -341,9 +332,9 @@ def _power(base: JetNumber, exponent: JetNumber) -> JetNumber:
     n = exponent.orders[0]
     if any(not _is_zero(order) for order in exponent.orders[1:]) or getattr(n, "is_row", False):
         return _ONE["EXP"](exponent * _ONE["LOG"](base))
-    known = n.recorded if isinstance(n, Recorded) else n
-    if known == int(known) and abs(known) <= _LARGEST_POWER:
-        return _whole_power(base, int(known))
+    count = n.recorded if isinstance(n, Recorded) else n
+    if count == int(count) and abs(count) <= _LARGEST_POWER:
+        return _whole_power(base, int(count))
 
     def slopes(x: Any) -> Sequence[Any]:
         value = of_two("POWER", x, n)
@@ -357,39 +348,24 @@ def _power(base: JetNumber, exponent: JetNumber) -> JetNumber:
 def _whole_power(base: JetNumber, count: int) -> JetNumber:
     if count == 0:
         return JetNumber([1.0, 0.0, 0.0, 0.0])
-    found = base
+    product = base
     for _ in range(abs(count) - 1):
-        found = found * base
-    return found if count > 0 else 1.0 / found
-
-
-def _sign(a: JetNumber) -> JetNumber:
-    return JetNumber([of_one("SIGN", a.orders[0]), 0.0, 0.0, 0.0])
-
-
-def _whole(a: JetNumber) -> JetNumber:
-    return JetNumber([of_one("WHOLE", a.orders[0]), 0.0, 0.0, 0.0])
+        product = product * base
+    return product if count > 0 else 1.0 / product
 
 
 _ONE: dict[str, Callable[[JetNumber], JetNumber]] = {
-    "SIN": _through(_sine),
-    "COS": _through(_cosine),
-    "TAN": _through(_tangent),
-    "ASIN": _through(_arcsine),
-    "ACOS": _through(_arccosine),
-    "ATAN": _through(_arctangent),
-    "SQUARE_ROOT": _through(_root),
-    "EXP": _through(_exponential),
-    "LOG": _through(_logarithm),
-    "MAGNITUDE": abs,
-    "SIGN": _sign,
-    "WHOLE": _whole,
+    **{operation: _through(slopes) for operation, slopes in SLOPES.items()},
+    "NEGATE": lambda a: JetNumber([_opposite(order) for order in a.orders]),
+    "MAGNITUDE": lambda a: (a < 0.0).choose(-a, a),
+    "SIGN": lambda a: JetNumber([of_one("SIGN", a.orders[0]), 0.0, 0.0, 0.0]),
+    "WHOLE": lambda a: JetNumber([of_one("WHOLE", a.orders[0]), 0.0, 0.0, 0.0]),
 }
 _TWO: dict[str, Callable[[JetNumber, JetNumber], JetNumber]] = {
-    "ADD": operator.add,
-    "SUBTRACT": operator.sub,
-    "MULTIPLY": operator.mul,
-    "DIVIDE": operator.truediv,
+    "ADD": lambda a, b: JetNumber([*map(_sum, a.orders, b.orders)]),
+    "SUBTRACT": lambda a, b: a + -b,
+    "MULTIPLY": _times,
+    "DIVIDE": _over,
     "ATAN2": _angle,
     "POWER": _power,
     "LARGER": lambda a, b: (b > a).choose(b, a),

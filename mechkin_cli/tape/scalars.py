@@ -1,7 +1,7 @@
-"""What code does with scalars that may be recorded: the same bits for a float as ever.
+"""Functions of scalars that may be recorded, and error-free arithmetic of doubles.
 
-For a float every function is what its name says; for a `Traced` number it goes on the tape. In
-annotations a `float` is either. The recorder itself is only loaded where something is recorded.
+A function of a float is the ordinary one, with the same bits; one of a `Recorded` number goes on
+its tape. In annotations a `float` is either.
 """
 
 from __future__ import annotations
@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeGuard, TypeVar
 
 import numpy as np
+
+from mechkin_cli.kernel import functions
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -21,14 +23,15 @@ LARGEST_FLOAT = sys.float_info.max
 
 
 class Recorded:
-    """What `Traced` numbers are, for code that must tell them from floats; `is_row`: from rows."""
+    """A number that is not a plain float, and whose arithmetic is that of its `apply`; `is_row`
+    where it differs from row to row."""
 
     __slots__ = ()
     is_row = False
 
     @property
     def is_settled(self) -> bool:
-        """Whether all is decided: the number stands for the one double that has been judged."""
+        """Whether the number stands for one double, with which everything has been decided."""
         return False
 
     @property
@@ -36,17 +39,47 @@ class Recorded:
         """The value when it was recorded."""
         raise NotImplementedError
 
-    def apply(self, operation: str, *others: Any) -> Any:
+    def apply(self, operation: str, *others: Any) -> Self:
         """The operation of a name on this number first, then on others."""
         raise NotImplementedError
 
-    def apply_after(self, operation: str, first: Any) -> Any:
+    def apply_after(self, operation: str, first: Any) -> Self:
         """The operation of a name on a float first, then on this number."""
         raise NotImplementedError
 
+    def __add__(self, other: Any) -> Self:
+        return self.apply("ADD", other)
+
+    def __radd__(self, other: Any) -> Self:
+        return self.apply_after("ADD", other)
+
+    def __sub__(self, other: Any) -> Self:
+        return self.apply("SUBTRACT", other)
+
+    def __rsub__(self, other: Any) -> Self:
+        return self.apply_after("SUBTRACT", other)
+
+    def __mul__(self, other: Any) -> Self:
+        return self.apply("MULTIPLY", other)
+
+    def __rmul__(self, other: Any) -> Self:
+        return self.apply_after("MULTIPLY", other)
+
+    def __truediv__(self, other: Any) -> Self:
+        return self.apply("DIVIDE", other)
+
+    def __rtruediv__(self, other: Any) -> Self:
+        return self.apply_after("DIVIDE", other)
+
+    def __neg__(self) -> Self:
+        return self.apply("NEGATE")
+
+    def __abs__(self) -> Self:
+        return self.apply("MAGNITUDE")
+
 
 class Undecided:
-    """What a comparison of recorded numbers is before it becomes a truth value."""
+    """A comparison of recorded numbers before it becomes a truth value."""
 
     __slots__ = ()
 
@@ -55,11 +88,11 @@ class Undecided:
         raise NotImplementedError
 
     def advised(self) -> bool:
-        """The truth value, where no more than a warning hangs on it."""
+        """The truth value, where it decides on a warning only."""
         raise NotImplementedError
 
     def by_rounding(self) -> Undecided:
-        """The condition where nothing but rounding lies between its two ways."""
+        """The condition where its two branches differ by rounding only."""
         return self
 
 
@@ -72,22 +105,22 @@ def is_number(value: object) -> TypeGuard[float]:
 
 
 def is_row(value: object) -> bool:
-    """Whether a value is recorded and another in every row."""
+    """Whether a value is recorded and differs from row to row."""
     return isinstance(value, Recorded) and value.is_row
 
 
 def plain(value: Any) -> Any:
-    """The value as a float, or as the recorded number it is."""
+    """The value as a float; a recorded number stays as it is."""
     return value if isinstance(value, Recorded) else float(value)
 
 
 def as_recorded(value: float) -> float:
-    """The number as a float, a recorded one as it was then: for what is no part of a result."""
+    """The number as a float, a recorded one as it was then: for use outside of results."""
     return value.recorded if isinstance(value, Recorded) else value
 
 
 def is_settled(*values: float) -> bool:
-    """Whether numbers are recorded exactly: no others will be put in."""
+    """Whether numbers are recorded exactly: no other values will replace them."""
     return all(isinstance(value, Recorded) and value.is_settled for value in values)
 
 
@@ -101,16 +134,14 @@ def is_finite(value: float) -> bool:
 def square_root(value: float) -> float:
     """The square root of a number that is not negative."""
     if isinstance(value, Recorded):
-        root: float = value.apply("SQUARE_ROOT")
-        return root
+        return value.apply("SQUARE_ROOT")
     return math.sqrt(value)
 
 
 def sign(value: float) -> float:
     """1 of a positive number, -1 of a negative one, else the number itself."""
     if isinstance(value, Recorded):
-        found: float = value.apply("SIGN")
-        return found
+        return value.apply("SIGN")
     return 1.0 if value > 0.0 else -1.0 if value < 0.0 else value
 
 
@@ -138,37 +169,31 @@ def nonzero(value: float) -> float:
     """The value, or 1 where it is zero."""
     if isinstance(value, Recorded):
         is_zero: Any = value == 0.0
-        found: float = is_zero.choose(1.0, value)
-        return found
+        return is_zero.choose(1.0, value)  # type: ignore[no-any-return]
     return value or 1.0
 
 
 def either(
     condition: bool, chosen: Callable[[], Result], other: Callable[[], Result]
 ) -> Result | tuple[Any, ...]:
-    """One of two tuples of numbers; on a tape both are kept and no guard is needed.
+    """One of two tuples of numbers; a tape computes both, without a guard.
 
     `other` must be computable where the condition holds, too.
     """
     if isinstance(condition, Undecided):
-        pairs = zip(chosen(), other(), strict=True)
-        return tuple(condition.choose(one, two) for one, two in pairs)
+        return tuple(condition.choose(a, b) for a, b in zip(chosen(), other(), strict=True))
     return chosen() if condition else other()
 
 
 def by_rounding(condition: bool) -> bool:
-    """A condition on whose ways numbers are the same but for rounding: exact ones take the way that
-    does not hold, on which nothing is taken for what it almost is."""
-    if isinstance(condition, Undecided):
-        return condition.by_rounding()
-    return condition
+    """A condition whose branches differ by rounding only: exact numbers take the branch of a
+    condition that does not hold, which approximates nothing."""
+    return condition.by_rounding() if isinstance(condition, Undecided) else condition
 
 
 def advice(condition: bool) -> bool:
-    """The truth of a condition on which no more than a warning hangs."""
-    if isinstance(condition, Undecided):
-        return condition.advised()
-    return condition
+    """The truth of a condition that decides on a warning only."""
+    return condition.advised() if isinstance(condition, Undecided) else condition
 
 
 def next_power_of_two(value: float) -> float:
@@ -179,7 +204,7 @@ def next_power_of_two(value: float) -> float:
         [1.0, 1.0, 2.0, 0.25]
     """
     if isinstance(value, Recorded):
-        return value.apply("POWER_OF_TWO")  # type: ignore[no-any-return]
+        return value.apply("POWER_OF_TWO")
     mantissa, exponent = math.frexp(value)
     return math.ldexp(1.0, exponent if mantissa > 0.7 else exponent - 1)
 
@@ -188,7 +213,7 @@ def of_one(operation: str, value: Any) -> Any:
     """The kernel's function of a name (`SIN`) of a float, of rows or of a recorded number."""
     if isinstance(value, Recorded):
         return value.apply(operation)
-    return _kernel_function(operation)(value)
+    return getattr(functions, operation.lower())(value)
 
 
 def of_two(operation: str, first: Any, second: Any) -> Any:
@@ -197,14 +222,7 @@ def of_two(operation: str, first: Any, second: Any) -> Any:
         return first.apply(operation, second)
     if isinstance(second, Recorded):
         return second.apply_after(operation, first)
-    return _kernel_function(operation)(first, second)
-
-
-def _kernel_function(operation: str) -> Callable[..., Any]:
-    from mechkin_cli.kernel import functions
-
-    function: Callable[..., Any] = getattr(functions, operation.lower())
-    return function
+    return getattr(functions, operation.lower())(first, second)
 
 
 def sin(angle: Any) -> Any:
@@ -217,19 +235,17 @@ def cos(angle: Any) -> Any:
     return of_one("COS", angle)
 
 
-def whole(value: Recorded) -> Any:
+def whole(value: Any) -> Any:
     """The nearest whole number of a recorded one that is smaller than 2^51."""
-    if not value.is_row and not abs(value) < float(2**51):  # type: ignore[arg-type]
+    if not value.is_row and not abs(value) < float(2**51):
         raise TypeError("a varied number is too large to be rounded")
     return value.apply("WHOLE")
 
 
-# Sums, products and roots of doubles with their rounding errors, over arrays.
-#
-# T. J. Dekker (Numerische Mathematik 18, 1971), D. E. Knuth (The Art of Computer Programming, vol.
-# 2, 4.2.2), and for pairs M. Joldes, J.-M. Muller and V. Popescu (ACM Trans. Math. Software 44,
-# 2017), algorithms 6, 12 and 17. Valid while nothing overflows or underflows; factors stay below
-# 2^995.
+# Sums, products and roots of doubles with their rounding errors, over arrays. Sources: T. J. Dekker
+# (Numerische Mathematik 18, 1971), D. E. Knuth (The Art of Computer Programming, vol. 2, 4.2.2),
+# and for pairs M. Joldes, J.-M. Muller and V. Popescu (ACM Trans. Math. Software 44, 2017),
+# algorithms 6, 12 and 17. Valid while nothing overflows or underflows; factors stay below 2^995.
 
 if TYPE_CHECKING:
     Pair = tuple[Floats, Floats]

@@ -1,4 +1,4 @@
-"""A tape as plain data."""
+"""A tape as plain data, its reference evaluator on floats, and its replay by the kernel."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from fractions import Fraction
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel import _kernel, functions
 from mechkin_cli.kernel.functions import width
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape.scalars import next_power_of_two, sign
@@ -22,11 +21,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-# The operations of a tape, by the numbers that stand in it (`kernel/core/tape/tape.hpp`).
-
-
 class Operation(IntEnum):
-    """What an instruction computes of its operands a, b, c; for floats, the IEEE operation.
+    """What an instruction computes of its operands a, b, c; for floats, the IEEE operation. The
+    numbers are those of the kernel (`kernel/core/tape/tape.hpp`).
 
     LARGER is b where b > a, else a; SMALLER is b where b < a, else a: of equal operands the first.
     CHOOSE is b where a is not zero, else c. LESS, NOT_MORE and EQUAL are 1 where a < b, a <= b,
@@ -64,7 +61,7 @@ class Operation(IntEnum):
 
 
 CONDITIONS: tuple[Operation, ...] = (Operation.LESS, Operation.NOT_MORE, Operation.EQUAL)
-"""What a guard may ask."""
+"""The conditions of guards."""
 
 _ONE = {
     Operation.NEGATE,
@@ -87,8 +84,8 @@ ARITY = dict.fromkeys(Operation, 2) | dict.fromkeys(_ONE, 1) | {Operation.CHOOSE
 
 
 class Verdict(IntEnum):
-    """What the guards say of some inputs: all as recorded, all but for a warning, or that the code
-    would have gone another way, so that the outputs mean nothing."""
+    """The guards' verdict on some inputs: all as recorded, all but for a warning, or that the code
+    would have branched otherwise, so that the outputs mean nothing."""
 
     SAME = 0
     OTHER_ADVICE = 1
@@ -101,14 +98,14 @@ class Tape:
     k - inputs, then the result of instruction k - inputs - constants.
 
     Attributes:
-        inputs: names of the numbers given, in SI.
+        inputs: names of the input numbers, in SI.
         constants: (constants,).
         operations: (instructions,) of `Operation`.
         operands: (instructions, 3) registers that lie before; unused ones are 0.
         outputs: (outputs,) registers of the numbers computed.
         guards: (guards, 3): `Operation` out of `CONDITIONS`, and its two registers.
-        expected: (guards,) what each guard found when the tape was recorded.
-        advice: (guards,) whether only a warning hangs on it.
+        expected: (guards,) the truth of each guard when the tape was recorded.
+        advice: (guards,) whether it decides on a warning only.
     """
 
     inputs: tuple[str, ...]
@@ -125,26 +122,15 @@ class Tape:
         """Number of registers."""
         return len(self.inputs) + self.constants.size + self.operations.size
 
-    def depends(self, output: int, given: int = 0) -> bool:
+    def depends(self, output: int, input_number: int = 0) -> bool:
         """Whether an output depends on an input."""
         first = len(self.inputs) + self.constants.size
-        moved = {given}
+        moved = {input_number}
         for k, operands in enumerate(self.operands.tolist(), start=first):
             if moved.intersection(operands[: ARITY[Operation(int(self.operations[k - first]))]]):
                 moved.add(k)
         return int(self.outputs[output]) in moved
 
-    @cached_property
-    def fixed(self) -> NDArray[np.bool_]:
-        """Which outputs depend on no input: constants."""
-        first = len(self.inputs)
-        fixed: NDArray[np.bool_] = (self.outputs >= first) & (
-            self.outputs < first + self.constants.size
-        )
-        return fixed
-
-
-# The meaning of the operations for floats, one by one: what the kernel computes in lanes.
 
 _ROUNDER = float(3 * 2**51)
 """1.5 * 2^52: adding it rounds to the nearest whole number."""
@@ -162,14 +148,6 @@ def _divide(a: float, b: float) -> float:
     return math.copysign(math.inf, math.copysign(1.0, a) * math.copysign(1.0, b))
 
 
-def _square_root(a: float) -> float:
-    return math.sqrt(a) if a >= 0.0 else math.nan
-
-
-def _whole(a: float) -> float:
-    return (a + _ROUNDER) - _ROUNDER
-
-
 def _power_of_two_or_nan(a: float) -> float:
     if not 0.0 < a < math.inf:
         return math.nan
@@ -183,7 +161,7 @@ MEANING: dict[Operation, Callable[..., float]] = {
     Operation.DIVIDE: _divide,
     Operation.NEGATE: lambda a: -a,
     Operation.MAGNITUDE: abs,
-    Operation.SQUARE_ROOT: _square_root,
+    Operation.SQUARE_ROOT: lambda a: math.sqrt(a) if a >= 0.0 else math.nan,
     Operation.LARGER: lambda a, b: b if b > a else a,
     Operation.SMALLER: lambda a, b: b if b < a else a,
     Operation.CHOOSE: lambda a, b, c: b if a != 0.0 else c,
@@ -191,34 +169,22 @@ MEANING: dict[Operation, Callable[..., float]] = {
     Operation.NOT_MORE: lambda a, b: float(a <= b),
     Operation.EQUAL: lambda a, b: float(a == b),
     Operation.POWER_OF_TWO: _power_of_two_or_nan,
-    Operation.WHOLE: _whole,
+    Operation.WHOLE: lambda a: (a + _ROUNDER) - _ROUNDER,
     Operation.SIGN: sign,
 }
-"""The operations that are not elementary functions."""
+"""The operations on floats, as the kernel computes them in lanes; elementary functions are those of
+the kernel."""
 
 
 def meaning(operation: Operation) -> Callable[..., float]:
     """The function of one, two or three floats."""
-    known = MEANING.get(operation)
-    if known is None:
-        from mechkin_cli.kernel import functions
-
-        known = MEANING[operation] = getattr(functions, operation.name.lower())
-    return known
+    if operation not in MEANING:
+        MEANING[operation] = getattr(functions, operation.name.lower())
+    return MEANING[operation]
 
 
-# The reference evaluator: a tape replayed on floats, operation by operation.
-
-
-class Replayed(NamedTuple):
-    """The outputs, and what the guards say of them."""
-
-    outputs: list[float]
-    verdict: Verdict
-
-
-def evaluate(tape: Tape, values: Sequence[float]) -> Replayed:
-    """Replays a tape for other inputs.
+def evaluate(tape: Tape, values: Sequence[float]) -> tuple[list[float], Verdict]:
+    """Replays a tape on floats, operation by operation: its outputs, and the guards' verdict.
 
     Args:
         tape: the tape.
@@ -230,15 +196,12 @@ def evaluate(tape: Tape, values: Sequence[float]) -> Replayed:
         arguments = (registers[r] for r in operands[: ARITY[operation]])
         registers.append(meaning(operation)(*arguments))
     verdict = Verdict.SAME
-    every = zip(tape.guards.tolist(), tape.expected, tape.advice, strict=True)
-    for (code, a, b), expected, advice in every:
-        found = meaning(Operation(code))(registers[a], registers[b]) != 0.0
-        if found is not bool(expected):
+    guards = zip(tape.guards.tolist(), tape.expected, tape.advice, strict=True)
+    for (code, a, b), expected, advice in guards:
+        holds = meaning(Operation(code))(registers[a], registers[b]) != 0.0
+        if holds is not bool(expected):
             verdict = max(verdict, Verdict.OTHER_ADVICE if advice else Verdict.OTHER_WAY)
-    return Replayed([registers[r] for r in tape.outputs.tolist()], verdict)
-
-
-# Tapes replayed by the kernel, over many sets of inputs at once.
+    return [registers[r] for r in tape.outputs.tolist()], verdict
 
 
 def compiled(tape: Tape) -> _kernel.Tape:

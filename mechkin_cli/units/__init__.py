@@ -49,41 +49,10 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "dimension": [
-            "ACCELERATION",
-            "ANGLE",
-            "ANGULAR_ACCELERATION",
-            "ANGULAR_JERK",
-            "ANGULAR_RATE",
-            "DAMPING",
-            "DIMENSIONLESS",
-            "Dimension",
-            "ENERGY",
-            "FORCE",
-            "INERTIA",
-            "JERK",
-            "LENGTH",
-            "MASS",
-            "MOMENT",
-            "POWER",
-            "STIFFNESS",
-            "TIME",
-            "TORSIONAL_DAMPING",
-            "TORSIONAL_STIFFNESS",
-            "VELOCITY",
-        ],
-        "units": [
-            "CompoundUnit",
-            "Conversion",
-            "FIELDS",
-            "UNITS",
-            "UnitError",
-            "UnitSystem",
-            "bounded_exponent",
-            "compound",
-            "conversion",
-            "named_unit",
-            "parse_unit",
-        ],
+        "dimension": "ACCELERATION ANGLE ANGULAR_ACCELERATION ANGULAR_JERK ANGULAR_RATE DAMPING "
+        "DIMENSIONLESS Dimension ENERGY FORCE INERTIA JERK LENGTH MASS MOMENT POWER STIFFNESS TIME "
+        "TORSIONAL_DAMPING TORSIONAL_STIFFNESS VELOCITY",
+        "units": "CompoundUnit Conversion FIELDS UNITS UnitError UnitSystem bounded_exponent "
+        "compound conversion named_unit parse_unit",
     },
 )

@@ -9,6 +9,7 @@ not where they are multiplied, so `(theta*r)/r` is an angle again.
 
 from __future__ import annotations
 
+import operator
 from fractions import Fraction
 
 from mechkin_cli.record import dataclass
@@ -36,20 +37,10 @@ class Dimension:
         return not (self.length or self.mass or self.time or self.angle)
 
     def __mul__(self, other: Dimension) -> Dimension:
-        return Dimension(
-            plain(self.length + other.length),
-            plain(self.mass + other.mass),
-            plain(self.time + other.time),
-            plain(self.angle + other.angle),
-        )
+        return Dimension(*map(plain, map(operator.add, self.exponents, other.exponents)))
 
     def __truediv__(self, other: Dimension) -> Dimension:
-        return Dimension(
-            plain(self.length - other.length),
-            plain(self.mass - other.mass),
-            plain(self.time - other.time),
-            plain(self.angle - other.angle),
-        )
+        return Dimension(*map(plain, map(operator.sub, self.exponents, other.exponents)))
 
     def __pow__(self, exponent: Exponent) -> Dimension:
         return Dimension(*(plain(power * exponent) for power in self.exponents))
@@ -72,14 +63,8 @@ class Dimension:
 
     def __str__(self) -> str:
         """The dimension as a product: `length^2/time`."""
-        return format_product(
-            [
-                ("mass", self.mass),
-                ("length", self.length),
-                ("angle", self.angle),
-                ("time", self.time),
-            ]
-        )
+        names = ("mass", "length", "angle", "time")
+        return format_product([(name, getattr(self, name)) for name in names])
 
 
 def format_product(factors: list[tuple[str, Exponent]]) -> str:
@@ -92,8 +77,7 @@ def format_product(factors: list[tuple[str, Exponent]]) -> str:
 def _power(name: str, exponent: Exponent) -> str:
     if exponent == 1:
         return name
-    plain = isinstance(exponent, int)
-    return f"{name}^{exponent}" if plain else f"{name}^({exponent})"
+    return f"{name}^{exponent}" if isinstance(exponent, int) else f"{name}^({exponent})"
 
 
 def plain(exponent: Exponent) -> Exponent:

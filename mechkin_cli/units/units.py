@@ -1,7 +1,12 @@
-"""Compound units: products of powers of the units in the table, such as `lbm*in/s^2`.
+"""Units: exact conversion, the closed table, compound units such as `lbm*in/s^2`, unit systems.
 
 Grammar: `unit (("*" | "/") unit)*`, where `unit = symbol ["^" integer]` and the first one may be
 `1` (`1/s`). `**` is read as `^`. A `/` takes only the next unit: `N*m/rad/s` is N m/(rad s).
+
+Factors to SI are exact by definition: inch and pound from the international yard and pound
+agreement of 1959, standard gravity 9.80665 m/s^2 from the third General Conference on Weights and
+Measures (1901). Pi is a fraction of 60 decimals, so a factor of degrees is the true value rounded
+once.
 """
 
 from __future__ import annotations
@@ -37,8 +42,6 @@ from mechkin_cli.units.dimension import (
     plain,
 )
 
-# The error of a unit text.
-
 
 class UnitError(MechkinError):
     """A unit that does not exist, is malformed, or does not measure what it is used for.
@@ -60,17 +63,16 @@ class UnitError(MechkinError):
         return f"{self.message}; {self.hint}" if self.hint else self.message
 
 
-# Conversion of values by an exact factor, with as few roundings as double arithmetic allows.
-#
-# A factor is a `Fraction`. If it is a double (12 in a foot) values are multiplied by it; if its
-# inverse is one (1000 mm in a metre) they are divided by that; a factor of one leaves values
-# untouched. Only in the other cases is the factor itself rounded; it knows then from what.
-
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 
 class Conversion(NamedTuple):
-    """Values times `multiplier` over `divisor`, of which at least one is exactly 1."""
+    """Values times `multiplier` over `divisor`, of which at least one is exactly 1.
+
+    So there are as few roundings as double arithmetic allows: a factor that is a double (12 in a
+    foot) multiplies, one whose inverse is (1000 mm in a metre) divides, and only other factors are
+    rounded themselves, to an `Exact`.
+    """
 
     multiplier: float
     divisor: float
@@ -104,7 +106,6 @@ def conversion(factor: Fraction) -> Conversion:
 
 
 def _double(factor: Fraction) -> float:
-    """The nearest double."""
     try:
         value = float(factor)
     except OverflowError:
@@ -112,14 +113,6 @@ def _double(factor: Fraction) -> float:
     if not 1.0 / LARGEST_CONVERSION <= value <= LARGEST_CONVERSION:
         raise UnitError("the conversion factor of this unit is outside the range of numbers")
     return value
-
-
-# The closed table of units.
-#
-# Factors to SI are exact by definition: inch and pound from the international yard and pound
-# agreement of 1959, standard gravity 9.80665 m/s^2 from the third General Conference on Weights and
-# Measures (1901). Pi is carried as a fraction of 60 decimals, so a factor of degrees is the true
-# value rounded once.
 
 
 class Unit(NamedTuple):
@@ -221,7 +214,7 @@ MISTAKES = {
     "Nm": "write N*m",
     "Nmm": "write N*mm",
 }
-"""What to write instead of words that are no unit but look like one."""
+"""What to write instead of words that look like a unit but are not."""
 
 
 MAX_UNIT_LENGTH = 200
@@ -285,9 +278,8 @@ def parse_unit(text: str) -> CompoundUnit:
     while True:
         match = _FACTOR.match(text, position)
         if match is None or (match[1] == "1" and terms):
-            raise UnitError(
-                f"{text!r} is not a unit", position, "write units as lbm*in/s^2, N*m or rad/s"
-            )
+            hint = "write units as lbm*in/s^2, N*m or rad/s"
+            raise UnitError(f"{text!r} is not a unit", position, hint)
         if match[1] != "1":
             unit = named_unit(match[1], match.start(1))
             terms.append((unit.symbol, sign * bounded_exponent(match[2] or "1", match.start(2))))
@@ -295,11 +287,8 @@ def parse_unit(text: str) -> CompoundUnit:
         if position == len(text):
             return compound(terms)
         if text[position] not in "*/":
-            raise UnitError(
-                f"unexpected {text[position]!r} in the unit {text!r}",
-                position,
-                "join units with * and /",
-            )
+            message = f"unexpected {text[position]!r} in the unit {text!r}"
+            raise UnitError(message, position, "join units with * and /")
         sign = -1 if text[position] == "/" else 1
         position += 1
 
@@ -308,12 +297,18 @@ def named_unit(symbol: str, offset: int = 0) -> Unit:
     """The unit of a symbol.
 
     Raises:
-        UnitError: the table has no such unit; the hint names what was probably meant.
+        UnitError: the table has no such unit; the hint names the nearest ones.
     """
-    unit = UNITS.get(symbol)
-    if unit is None:
-        raise UnitError(f"{symbol[:MAX_QUOTED]!r} is not a unit", offset, _suggestion(symbol))
-    return unit
+    if symbol in UNITS:
+        return UNITS[symbol]
+    hint = MISTAKES.get(symbol)
+    if hint is None:
+        from difflib import get_close_matches
+
+        same_letters = [name for name in UNITS if name.lower() == symbol.lower()]
+        nearest = same_letters or get_close_matches(symbol, UNITS, 3, 0.6)
+        hint = f"did you mean {' or '.join(nearest)}?" if nearest else None
+    raise UnitError(f"{symbol[:MAX_QUOTED]!r} is not a unit", offset, hint)
 
 
 def bounded_exponent(digits: str, offset: int = 0) -> int:
@@ -359,28 +354,6 @@ def _product(terms: Iterable[tuple[str, Exponent]]) -> Fraction:
     return product
 
 
-def _suggestion(symbol: str) -> str | None:
-    if symbol in MISTAKES:
-        return MISTAKES[symbol]
-    from difflib import get_close_matches
-
-    same_letters = [name for name in UNITS if name.lower() == symbol.lower()]
-    nearest = same_letters or get_close_matches(symbol, UNITS, 3, 0.6)
-    return f"did you mean {' or '.join(nearest)}?" if nearest else None
-
-
-# The unit system of a file: in which units its bare numbers are written and its tables printed.
-#
-# The unit of a dimension is composed by these rules:
-#
-# - mass and time together make force: `mass^m` becomes `force^m`, so moments and energies are
-#   force*length, power is force*length/time, damping force*time/length; without time it stays mass;
-# - an angle with time is an angular rate, always per second: `rad/s`, `rad/s^2`;
-# - an angle beside mass or length is in rad, its time in s: torsional stiffness is moment per rad,
-#   torsional damping moment per rad/s, whatever the file's unit of angular rates;
-# - what is per angle is per rad;
-# - an angle alone is in the file's unit; what is left is in the file's units of length and time.
-
 FIELDS = {
     "length": LENGTH,
     "angle": ANGLE,
@@ -402,7 +375,19 @@ _RADIAN_PER_SECOND = parse_unit("rad/s")
 
 @dataclass(frozen=True, slots=True)
 class UnitSystem:
-    """Units of bare numbers and of tables."""
+    """Units of the bare numbers and of the tables of a file.
+
+    The unit of a dimension is composed by these rules:
+
+    - mass and time together make force: `mass^m` becomes `force^m`, so moments and energies are
+      force*length, power is force*length/time, damping force*time/length; without time it stays
+      mass;
+    - an angle with time is an angular rate, always per second: `rad/s`, `rad/s^2`;
+    - an angle beside mass or length is in rad, its time in s: torsional stiffness is moment per
+      rad, torsional damping moment per rad/s, whatever the file's unit of angular rates;
+    - a quantity per angle is per rad;
+    - an angle alone is in the file's unit; the rest is in the file's units of length and time.
+    """
 
     length: CompoundUnit = _METRE
     angle: CompoundUnit = _DEGREE
@@ -419,13 +404,14 @@ class UnitSystem:
 
     @classmethod
     def from_mapping(cls, texts: Mapping[str, str | None]) -> UnitSystem:
-        """The system of a file's `units:` mapping; what is left out or None keeps its default.
+        """The system of a file's `units:` mapping; entries that are missing or None have defaults.
 
         Raises:
             UnitError: an entry that does not exist or is not a unit of its kind; `key` names it.
         """
-        given = {key: text for key, text in texts.items() if text is not None}
-        return cls(**{key: field_unit(key, text) for key, text in given.items()})
+        return cls(
+            **{key: field_unit(key, text) for key, text in texts.items() if text is not None}
+        )
 
     def unit(self, dimension: Dimension) -> CompoundUnit:
         """The unit of a dimension, composed by the rules above."""
@@ -443,16 +429,13 @@ class UnitSystem:
             product = self.force**reduced.mass
         elif reduced.mass:
             product = self.mass**reduced.mass
-        bare = not (reduced.mass or reduced.length)
-        return product * self.length**length * self._time_and_angle(time, reduced.angle, bare)
-
-    def _time_and_angle(self, time: Exponent, angle: Exponent, bare: bool) -> CompoundUnit:
-        """`bare`: there is neither mass nor length."""
+        product, angle = product * self.length**length, reduced.angle
+        alone = not (reduced.mass or reduced.length)
         if angle and time:
-            rate = self.angular_rate if bare else _RADIAN_PER_SECOND
-            return rate**angle * _SECOND ** (time + angle)
-        angle_unit = self.angle if bare and angle > 0 else _RADIAN
-        return self.time**time * angle_unit**angle
+            rate = self.angular_rate if alone else _RADIAN_PER_SECOND
+            return product * (rate**angle * _SECOND ** (time + angle))
+        angle_unit = self.angle if alone and angle > 0 else _RADIAN
+        return product * (self.time**time * angle_unit**angle)
 
     def label(self, dimension: Dimension) -> str:
         """The unit of a dimension as text: `in`, `rad/s`, `lbm*in^2/s^2`; empty for a number."""
@@ -476,10 +459,9 @@ class UnitSystem:
         Raises:
             UnitError: the factor is outside the range of numbers (exponents far from any use).
         """
-        known = self._conversions.get(dimension)
-        if known is None:
-            known = self._conversions[dimension] = conversion(self.unit(dimension).factor)
-        return known
+        if dimension not in self._conversions:
+            self._conversions[dimension] = conversion(self.unit(dimension).factor)
+        return self._conversions[dimension]
 
 
 def field_unit(key: str, text: str) -> CompoundUnit:
@@ -498,18 +480,12 @@ def field_unit(key: str, text: str) -> CompoundUnit:
         symbols = [name for name, unit in UNITS.items() if unit.dimension == dimension]
         hint = error.hint or f"units of {dimension.phrase} are {', '.join(symbols)}"
         raise UnitError(error.message, error.offset, hint, key) from None
+    default = getattr(UnitSystem(), key)
     if unit.dimension != dimension:
-        raise UnitError(
-            f"the unit of {key} is {text.strip()!r}, which measures {unit.dimension.phrase}",
-            0,
-            f"give a unit of {dimension.phrase}, such as {getattr(UnitSystem(), key)}",
-            key,
-        )
+        message = f"the unit of {key} is {text.strip()!r}, which measures {unit.dimension.phrase}"
+        raise UnitError(message, 0, f"give a unit of {dimension.phrase}, such as {default}", key)
     if not 1 / LARGEST_FACTOR <= size <= LARGEST_FACTOR:
-        raise UnitError(
-            f"one unit of {key} is {size:.0e} in SI (limit {LARGEST_FACTOR:.0e} or its inverse)",
-            0,
-            f"give a unit such as {getattr(UnitSystem(), key)}",
-            key,
-        )
+        limit = f"(limit {LARGEST_FACTOR:.0e} or its inverse)"
+        message = f"one unit of {key} is {size:.0e} in SI {limit}"
+        raise UnitError(message, 0, f"give a unit such as {default}", key)
     return unit

@@ -286,7 +286,7 @@ def refused(text: str) -> str:
         ("from: 0, to: 360, step: 5", "values: [0, 5, 30, 180, 270, 360]", ["equal distances"]),
         ("from: 0, to: 360, step: 5", "values: [0, 180, 360]", ["too few"]),
         ("from: 0, to: 360, step: 5, rate: 30 rad/s", "at: 3", ["nothing moves"]),
-        ("type: work}", "type: work, cycle: D.s}", ["D.s is no input", "inputs are A.theta"]),
+        ("type: work}", "type: work, cycle: D.s}", ["D.s is not an input", "inputs are A.theta"]),
         ("type: work}", "type: work, cycle: time}", ["the sweep has no time"]),
         ("type: work}", "type: labour}", ["work, harmonics, flywheel"]),
         ("name: work", "name: sweep", ["another table or balance is called sweep"]),

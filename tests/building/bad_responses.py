@@ -28,7 +28,7 @@ START = [
         "expected a time, found a length",
     ),
     response("start: {O.theta: 2}, time: {from: 1, to: »1, count: 3}", "zero-step", "stands still"),
-    response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is no coord"),
+    response("start: {»Q.theta_dot: 1}, TIME", "unknown-coordinate", "Q.theta is not a coord"),
     response("start: {»O.theta_ddot: 1}, TIME", "wrong-form", "O1.theta_dot"),
     response("start: {O.theta: »20 mm}, TIME", "expression", "expected an angle", "length"),
     response("start: {O.theta: 2, O.theta_dot: »2 mm}, TIME", "expression", "an angular rate"),
@@ -84,7 +84,7 @@ DRIVES = [
     started("driven: {»D.q: {at: 1}}", "unknown-coordinate", "no coordinate q"),
     started("driven: {D.s: {at: »1 deg}}", "expression", "expected a length"),
     started("driven: {D.s: {law: »jump, at: 1}}", "unknown-word", "constant-rate"),
-    started("driven: {D.s: {with: »O.theta*1 mm/rad}}", "expression", "O.theta is no input"),
+    started("driven: {D.s: {with: »O.theta*1 mm/rad}}", "expression", "O.theta is not an input"),
     started(
         "driven: {D.s: {law: harmonic, from: 0, to: 1, duration: »0}}", "no-duration", "positive"
     ),
@@ -121,7 +121,7 @@ STOPS = [
     stopped("{value: O.theta, at: »3 mm}", "expression", "expected an angle"),
     stopped("{value: O.theta, direction: »left}", "unknown-word", "up, down, any"),
     stopped("{dead_centre: »O.q}", "unknown-coordinate", "no coordinate q"),
-    stopped("{dead_centre: »Z.theta}", "unknown-coordinate", "Z.theta is no coordinate"),
+    stopped("{dead_centre: »Z.theta}", "unknown-coordinate", "Z.theta is not a coordinate"),
     stopped("{dead_centre: O.theta, count: »0}", "out-of-range", "below the limit 1"),
     stopped("{turns: »D.s}", "no-angle", "slide", "write value:"),
     stopped("{value: O.theta, »contact: D}", "unknown-key", "a stop is a value"),

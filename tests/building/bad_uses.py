@@ -10,7 +10,7 @@ MOTION = [
         "its coordinates: theta",
     ),
     inputs("{»A.theta: {at: 0}}", "unknown-coordinate", "type S and has no coordinate theta"),
-    inputs("{»Q.theta: {at: 0}}", "unknown-coordinate", "Q.theta is no coordinate", "O.theta"),
+    inputs("{»Q.theta: {at: 0}}", "unknown-coordinate", "Q.theta is not a coordinate", "O.theta"),
     inputs("{O.theta: {from: 0, to: 9, step: »0}}", "zero-step", "step is zero"),
     inputs("{O.theta: {from: 0, to: 9, step: »1e-7}}", "too-many-numbers", "rows", "2666666"),
     inputs("{O.theta: {at: »1e308}}", "too-large", "1e+308 (limit 1e+100)"),
@@ -208,7 +208,7 @@ COLUMNS = [
 
 ACTUATORS = [
     added("actuators: [»A.s]", "unknown-coordinate", "A is of type S", "its coordinates: none"),
-    added("actuators: [»Q.theta]", "unknown-coordinate", "Q.theta is no coordinate", "O.theta"),
+    added("actuators: [»Q.theta]", "unknown-coordinate", "Q.theta is not a coordinate", "O.theta"),
     added("actuators: [D.s, »D.s]", "actuator-twice", "D.s is an actuator already"),
     added("actuators: [»D]", "wrong-form", "a joint coordinate", "joint.coordinate"),
     changed(

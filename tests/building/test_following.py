@@ -92,7 +92,7 @@ def test_an_input_may_follow_time() -> None:
 UNDRIVEN = "  G: {type: R, links: [ground, five], point: [0, 0, 0], axis: [0, 0, 1]}\n"
 BAD = [
     ("EX", "2*»D.x", "expression", "D.x follows itself", "name the inputs that it follows"),
-    ("EX", "»G.theta*a/1 rad", "expression", "G.theta is no input", "inputs are"),
+    ("EX", "»G.theta*a/1 rad", "expression", "G.theta is not an input", "inputs are"),
     ("EX", "a*»AA.theta", "expression", "nothing named AA.theta", "did you mean A.theta"),
     ("EX", "a + »time", "expression", "nothing named time"),
     ("EX", "»A.theta", "expression", "expected a length, found an angle"),

@@ -155,7 +155,7 @@ def test_driven_coordinates_follow_their_laws_between_the_moments() -> None:
     assert slide.values == pytest.approx(2e-3 * turn.values)
     assert slide.accelerations == pytest.approx(2e-3 * turn.accelerations)
     assert found.course is not None
-    at = evaluate(found.course.tape, [0.3, *found.course.constants[0]]).outputs
+    at = evaluate(found.course.tape, [0.3, *found.course.constants[0]])[0]
     expected = math.pi / 4 * (1 - math.cos(math.pi * 0.3))
     assert at == pytest.approx([expected, 2e-3 * expected])
 

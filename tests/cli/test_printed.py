@@ -246,7 +246,7 @@ def test_a_summary_stands_below_its_table(mechkin, write, folder) -> None:
 
 @pytest.mark.parametrize(
     ("written", "words"),
-    [("[max, max]", "max stands there twice"), ("[median]", "median"), ("[]", "summary")],
+    [("[max, max]", "max is named twice"), ("[median]", "median"), ("[]", "summary")],
 )
 def test_a_summary_that_cannot_be(mechkin, write, written, words) -> None:
     file = write("crank.yaml", SUMMED.replace("[max, peak, mean]", written))

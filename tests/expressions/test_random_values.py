@@ -41,7 +41,7 @@ def replayed(text: str) -> list[float]:
         none,
         none,
     )
-    return [evaluate(tape, row).outputs[0] for row in zip(*NAMES.values(), strict=True)]
+    return [evaluate(tape, row)[0][0] for row in zip(*NAMES.values(), strict=True)]
 
 
 def texts(count: int, seed: int) -> list[str]:

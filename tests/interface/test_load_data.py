@@ -90,7 +90,7 @@ def test_a_copy_and_a_pickle_keep_the_places() -> None:
         (changed("links", "arm", "mass", to=None), "at links.arm.mass: error: no value (None)"),
         (changed("links", "arm", "mass", to={1, 2}), "at links.arm.mass: error: a set; write"),
         (changed("links", "arm", "mass", to=1j), "at links.arm.mass: error: a complex; write"),
-        (changed("links", 3, to={}), "data at links: error: a key that is no text (int)"),
+        (changed("links", 3, to={}), "data at links: error: a key that is not a text (int)"),
         (changed("name", to="a\x00b"), "data at name: error: a NUL character in a text"),
         (changed("name", to="\ud800"), "data at name: error: the invisible character U+D800"),
         ({}, "data at the top: error:"),

@@ -106,7 +106,7 @@ def test_python_names_of_fields_are_not_keys() -> None:
 def test_keys_known_at_a_location(location: tuple[str | int, ...], key: str) -> None:
     known = known_keys(MechanismFile, location)
     assert known is not None
-    assert known.descriptions[key]
+    assert known[1][key]
 
 
 @pytest.mark.parametrize("location", [("joints",), ("links", "a", "mass"), ("nothing", 1)])

@@ -148,7 +148,7 @@ BAD: tuple[tuple[dict[str, Any], str], ...] = (
     ({"keep": [{"of": "O4.theta", "as": "value", "at": 171}]}, "no row has O1.theta = 171 deg"),
     ({"keep": [{"of": "O4.theta", "as": "max", "at": 170}]}, "at goes with as: value"),
     ({"keep": [{"of": "O4.theta", "as": "maxi"}]}, "did you mean max?"),
-    ({"keep": [{"of": "O4.theta", "as": ["max", "max"]}]}, "max stands there twice"),
+    ({"keep": [{"of": "O4.theta", "as": ["max", "max"]}]}, "max is named twice"),
     ({"keep": [{"of": "O4.theta", "as": "max", "label": "P1"}]}, "two columns 'P1'"),
     ({"run": "start_up"}, "there is no run start_up"),
     ({"set": {"P9": 1}}, "defines no parameter 'P9'"),
