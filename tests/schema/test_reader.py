@@ -12,7 +12,8 @@ import pytest
 from mechkin_cli.reading import read_document
 from mechkin_cli.schema import reader, validator
 from mechkin_cli.schema.base import Section
-from mechkin_cli.schema.validation import _form
+from mechkin_cli.schema.file import MechanismFile
+from mechkin_cli.schema.plane import PlaneFile
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = [ROOT / "mechanisms", ROOT / "tests"]
@@ -27,6 +28,10 @@ OTHERS: list[Any] = [
     *(1, 0, -1, 2.0, 1.5, True, None, float("nan"), 10**400),
     *([], ["1"], ["1", "2"], ["1", "2", "3"], {}, {"type": "R"}, {"law": "x"}, {"from": "1"}),
 ]
+
+
+def _form(data: object) -> type[Section]:
+    return PlaneFile if isinstance(data, dict) and "plane" in data else MechanismFile
 
 
 def plain(value: Any) -> Any:
