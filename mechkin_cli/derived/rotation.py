@@ -159,7 +159,7 @@ def continuous_quaternion(run: BasisQuantities, joint: str) -> Quaternion:
     if followed is not None:
         signs = continuous_signs(part, followed, 0)
     else:
-        # a joint of a leg turns with the leg's line, less than half a turn from row to row
+        # a joint of a hung body turns with its line, less than half a turn from row to row
         back = inner(_part(part, slice(1, None)), _part(part, slice(None, -1))) < 0.0
         signs = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
     first = -1.0 if part[0][0] < 0.0 else 1.0

@@ -15,8 +15,8 @@ freedom is gone). Their order does not matter. The bounds hold for isolated asse
   2; with two circle and quadric, or line and torus, 4; circle and torus 4, since four of their
   eight intersections lie on the circle at infinity;
 - no S (Raghavan, Roth 1993; Lee, Liang 1988 for 7R): 3R 3P 2, 4R 2P 8, 5R P 16, 6R 16;
-- a leg and one other freedom: circle or line and sphere, 2. A body on six legs: 40 (Ronga, Vust
-  1995).
+- a distance and one other freedom: circle or line and sphere, 2. A body at six distances: 40
+  (Ronga, Vust 1995).
 
 Loops that are drawn planar or spherical have fewer (`loop_equation`).
 """

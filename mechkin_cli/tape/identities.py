@@ -396,7 +396,7 @@ class Identities:
         self._circles[generator] = circle
         return Quotient(power(generator))
 
-    def other_leg(self, a: Quotient) -> Quotient:
+    def other_side(self, a: Quotient) -> Quotient:
         """sqrt(1 - a^2)."""
         return self.root(self.total(Quotient(ONE), _negative(self.product(a, a))))
 
@@ -428,8 +428,8 @@ _RULES: dict[Operation, Callable[..., Quotient]] = {
     Operation.SIN: Identities.sine,
     Operation.COS: Identities.cosine,
     Operation.TAN: lambda own, a: own.ratio(own.sine(a), own.cosine(a)),
-    Operation.ASIN: lambda own, a: own.angle_of(a, own.other_leg(a)),
-    Operation.ACOS: lambda own, a: own.angle_of(own.other_leg(a), a),
+    Operation.ASIN: lambda own, a: own.angle_of(a, own.other_side(a)),
+    Operation.ACOS: lambda own, a: own.angle_of(own.other_side(a), a),
     Operation.ATAN: lambda own, a: own.angle_of(a, Quotient(ONE)),
     Operation.ATAN2: Identities.angle_of,
 }

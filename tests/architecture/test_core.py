@@ -65,4 +65,4 @@ def test_the_page_names_the_folders_of_the_core() -> None:
     """The folders of the core are those that the pages name."""
     page = (ROOT.parent / "docs/internals.md").read_text(encoding="utf-8")
     folders = {path.name for path in (KERNEL / "core").iterdir() if path.is_dir()}
-    assert all(f"`{folder}/`" in page for folder in folders), folders
+    assert all(f"`core/{folder}/`" in page for folder in folders), folders
