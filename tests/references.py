@@ -5,7 +5,7 @@ in in, forces in lbm in/s^2, moments in lbm in^2/s^2 about the ground origin. Co
 Newton-Euler; `author_*` follow the inertia couples of the dissertation, which are wrong but
 reproduce its print. Other files of `exact/` have kinematics only, angles in degrees; how their
 branches are chosen is said where they are used. `raised/` has the kinematics of these tables, and
-reactions of the RCSR, at 60 digits (`python -P tests/precise/raised`). Cells as printed stand
+reactions of the RCSR, at 60 digits (`python -P tests/errors/raised`). Cells as printed stand
 beside the mechanisms, in `mechanisms/*/*/published/*.csv`.
 """
 

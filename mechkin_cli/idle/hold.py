@@ -367,7 +367,7 @@ def _centre(group: RigidGroup, size: float, origin: Vector) -> Line | None:
 def held_freedoms(
     mechanism: Mechanism, driven: Collection[Coordinate]
 ) -> tuple[tuple[LockedFreedom, ...], bool]:
-    """What holds the idle freedoms that joints have wherever they are, but the spins, small
+    """What holds the idle freedoms that joints have wherever they are, but spins, small
     groups of links first; and whether more, or other motions, may be idle because the mechanism
     keeps its joints as they are drawn."""
     size = mechanism.box_diagonal()

@@ -220,7 +220,7 @@ class PlanBuilder:
         parameter: float,
         loop: Sequence[tuple[int, float]],
     ) -> None: ...
-    def add_leg(
+    def add_hung_links(
         self,
         body: int,
         rod: int,
@@ -281,7 +281,7 @@ class PlanBuilder:
     ) -> None: ...
     def set_driven(self, inputs: int) -> None: ...
     def add_actuator(self, axis: int, reference: int, freedom: int) -> None: ...
-    def add_tie(self, input: int, leader: int) -> None: ...
+    def add_input_constraint(self, input: int, leader: int) -> None: ...
     def add_friction(
         self,
         place: int,
@@ -332,7 +332,7 @@ class Plan:
     @property
     def load_values(self) -> int: ...
     @property
-    def ties(self) -> int: ...
+    def input_constraints(self) -> int: ...
     @property
     def blocks(self) -> int: ...
     @property
@@ -359,7 +359,7 @@ class Plan:
         rates: Floats | None = None,
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
-        ties: Floats | None = None,
+        constraint_rates: Floats | None = None,
         turned: Floats | None = None,
         chart: Floats | None = None,
         chart_rates: Floats | None = None,
@@ -397,7 +397,7 @@ class Plan:
         rates: Floats | None = None,
         accelerations: Floats | None = None,
         jerks: Floats | None = None,
-        ties: Floats | None = None,
+        constraint_rates: Floats | None = None,
         turned: Floats | None = None,
         chart: Floats | None = None,
         chart_rates: Floats | None = None,

@@ -376,7 +376,7 @@ class Spin:
     """The idle turn of the links of a distance about the line of its spheres.
 
     Their pose is the shortest turn from the drawing, and their rate about the line is zero
-    (kernel/core/joints/legs.hpp).
+    (kernel/core/joints/hung_bodies.hpp).
     """
 
     distance: DistanceConstraint

@@ -203,7 +203,7 @@ def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
         code, parameter = constraint.code, constraint.parameter
         return record("add_closing_joint", code, first, second, *frames, parameter, loop)
     return record(
-        "add_leg",
+        "add_hung_links",
         layout.link_number[hung.body],
         layout.link_number[hung.rod] if hung.rod else -1,
         first,
@@ -334,7 +334,7 @@ def _drives(layout: Layout) -> Iterator[PlanRecord]:
     for joint, coordinate in drives.actuators:
         axis, reference, freedom, _ = load_coordinate(layout, joint, coordinate)
         yield record("add_actuator", axis, reference, freedom)
-    yield from (record("add_tie", *constraint) for constraint in drives.constraints)
+    yield from (record("add_input_constraint", *constraint) for constraint in drives.constraints)
 
 
 def _size_points(layout: Layout) -> Iterator[PlanRecord]:

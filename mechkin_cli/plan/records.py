@@ -26,7 +26,7 @@ _CONSTANTS = {
     "units": (0, 1, 2),
     "add_tree_joint": (2, 3),
     "add_closing_joint": (3, 4, 5),
-    "add_leg": (4, 5, 6, 7),
+    "add_hung_links": (4, 5, 6, 7),
     "add_place": (4,),
     "add_axis": (3, 5),
     "add_free_motion": (4,),
@@ -41,7 +41,7 @@ _CONSTANTS = {
 }
 """The arguments of each call that are constants; the others are structure."""
 
-PLACING = ("add_tree_joint", "add_closing_joint", "add_leg")
+PLACING = ("add_tree_joint", "add_closing_joint", "add_hung_links")
 """The calls whose constants place links."""
 
 

@@ -137,7 +137,9 @@ def enclose(
         rates=_rows(inputs.rates) if demand & Demand.VELOCITY else None,
         accelerations=_rows(inputs.accelerations) if demand & Demand.ACCELERATION else None,
         jerks=_rows(inputs.jerks) if demand & Demand.JERK else None,
-        ties=None if inputs.constraint_rates is None else _rows(inputs.constraint_rates),
+        constraint_rates=None
+        if inputs.constraint_rates is None
+        else _rows(inputs.constraint_rates),
         time=None if inputs.time is None else _rows(inputs.time),
         turned=turned,
         whole=inputs.whole,

@@ -252,7 +252,7 @@ def run(
         rates=given(rates) if moving else None,
         accelerations=given(accelerations) if accelerating else None,
         jerks=given(jerks) if demand & _JERK else None,
-        ties=given(transmitted) if forced else None,
+        constraint_rates=given(transmitted) if forced else None,
         turned=None if turned is None else given(turned),
         whole=None if whole is None else given(whole),
         full=None if full is None else given(full),

@@ -20,7 +20,7 @@ stands beside it with its reason (`kernel/core/`):
   steps of one path;
 * `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
   at most;
-* `legs.hpp`: `OPPOSITE_COSINE` again;
+* `hung_bodies.hpp`: `OPPOSITE_COSINE` again;
 * `closing_equations.hpp`, `tree_joints.hpp`: 1e-150, just above the root of the least normal
   double; `arithmetic/`: where one formula takes over from another.
 """

@@ -80,7 +80,7 @@ that pivots there are well above LOOP_RANK."""
 
 OPPOSITE_COSINE: Final = -1.0 + 1e-15
 """Cosine up to which two unit vectors are opposite, so that the shortest turn between them has no
-axis of its own: nine roundings from -1. The kernel has the same number in `legs.hpp`."""
+axis of its own: nine roundings from -1. The kernel has the same number in `hung_bodies.hpp`."""
 
 UNIT_SQUARE: Final = 4e-16
 """Distance of a vector's square from 1 up to which it counts as a unit vector and keeps its bits:

@@ -10,8 +10,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from sweep.dead_centre_texts import spatial
 
-from tests.analysis.dead_centre_texts import spatial
 from tests.cli.test_latex import HOSTILE, text
 
 DOCUMENT = r"""

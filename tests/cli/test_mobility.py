@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from analysis.classics.planes import polygon, quadrilateral
-from analysis.classics.platforms import parallel_legs, wren
+from classics.planes import polygon, quadrilateral
+from classics.platforms import parallel_legs, wren
 
 FIVE_BAR = polygon((0, 0), (0, 1), (1, 1.7), (2, 1.5), (2.5, 0))
 INPUT = "motion: {inputs: {J1.theta: {from: 0, to: 10, step: 5}}}\n"

@@ -77,9 +77,9 @@ int main(int count, char** names) {
   check("size", mechkin_plan_set_size(plan, tests[3], &message), &message);
   {
     const double** arrays[] = {&rows.inputs, &rows.guess,  &rows.rates, &rows.accelerations, &rows.jerks,
-                               &rows.ties,   &rows.turned, &rows.whole, &rows.full,          &rows.time};
+                               &rows.constraint_rates,   &rows.turned, &rows.whole, &rows.full,          &rows.time};
     const size_t columns[] = {sizes.inputs, sizes.states, sizes.inputs, sizes.inputs, sizes.inputs,
-                              sizes.ties,   sizes.turns,  sizes.inputs, sizes.inputs, 1};
+                              sizes.input_constraints,   sizes.turns,  sizes.inputs, sizes.inputs, 1};
     for (k = 0; k < sizeof columns / sizeof *columns; ++k)
       if (head[GIVEN] >> k & 1) *arrays[k] = numbers(given, columns[k] * rows.rows);
   }

@@ -109,7 +109,7 @@ class Hostile:
                 body, rod = self.index(0, links), self.index(-1, links)
                 line = self.numbers(3)
                 arguments = (body, rod, first, second, *ends, self.number(), line, self.sign())
-                self.attempt(builder.add_leg, *arguments, loop)
+                self.attempt(builder.add_hung_links, *arguments, loop)
         return closings
 
     def places(self, builder: Any, links: int, closings: int) -> tuple[int, int]:

@@ -56,7 +56,7 @@ PAGE = "| `Rg` | s, theta | pin of the second link in a `slot` of the first; `ax
 
 ADDITIONS = {
     "mechkin_cli/kernel/core/joints/pairs.hpp": (
-        ("// Two spheres with a leg between them: no pair of the file format.\n", KERNEL),
+        ("// Two points at a distance: no pair of the file format.\n", KERNEL),
         ("WeldInPlane>;", "PinInTrack, "),
     ),
     "mechkin_cli/mechanism/pairs.py": ((")\n\nJOINT_TYPES = {entry.letter", TABLE),),

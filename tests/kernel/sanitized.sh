@@ -41,7 +41,7 @@ for generator in hostile hostile_runs; do
 done
 # left out: tests that compile, compare whole tables in processes of their own, or check digits by mpmath
 "$python" -m pytest -q -p no:cacheprovider --rootdir "$here" --durations 8 \
-  "$here/tests/kernel" "$here/tests/tape" "$here/tests/variants" "$here/tests/solver/test_following_rows.py" \
+  "$here/tests/kernel" "$here/tests/tape" "$here/tests/variants" "$here/tests/session/test_following_rows.py" \
   --ignore "$here/tests/kernel/test_symbols.py" --ignore "$here/tests/kernel/test_linear.py" \
   --ignore "$here/tests/kernel/test_elementary.py" --ignore "$here/tests/kernel/test_bits.py" \
   --ignore "$here/tests/kernel/test_new_pair.py" \

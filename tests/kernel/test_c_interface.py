@@ -18,18 +18,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from kernel.compiler import COMPILER, SOURCES
-from mechkin_cli.variants.model import Base
 from references import FILE_OF
 
 from mechkin_cli import load
 from mechkin_cli.kernel.plan_text import plan_text
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.plan import plan_records
-from mechkin_cli.plan.records import _VERBS, Units, flatten
+from mechkin_cli.plan.records import flatten
 from mechkin_cli.session.kernel_run import POSITIONS, RESIDUAL_TESTS, Ask, Batch, RowInputs, run
 from mechkin_cli.session.session import Session
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Verdict
+from mechkin_cli.variants.design import Base
 
 C_COMPILER = shutil.which(os.environ.get("CC", "cc"))
 CMAKE = shutil.which("cmake")
@@ -80,7 +80,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 def calls_of(session: Session, size: float) -> Iterator[tuple[str, Any]]:
     for record in plan_records(session.layout, size):
-        yield "plan" if isinstance(record, Units) else _VERBS[type(record)], record
+        yield "plan" if record.call == "units" else record.call, record.arguments
 
 
 def outputs_of(session: Session, ask: Ask) -> list[Any]:
@@ -207,7 +207,7 @@ def test_a_tape_gives_the_rows_of_other_parameters(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     session, rows, ask, _ = caught(monkeypatch, stem)[-1]
-    variation = Base(load(FILE_OF[stem])).variation(names)
+    variation = Base(load(FILE_OF[stem]).design).variation(names)
     assert variation is not None
     assert ask.readout is not None
     assert variation.base.plan.constants.tobytes() == session.plan.constants.tobytes()

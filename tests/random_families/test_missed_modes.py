@@ -10,8 +10,8 @@ import os
 
 import numpy as np
 import pytest
-from analysis.forty import drawing as forty
-from analysis.test_sixteen import drawing as sixteen
+from modes.forty import drawing as forty
+from modes.test_sixteen import drawing as sixteen
 from references import FILE_OF
 
 import mechkin_cli as mk

@@ -15,9 +15,9 @@ from random import Random
 import numpy as np
 import pytest
 import yaml
-from analysis.classics.drawing import GROUND, platform, ring, rotation
-from analysis.classics.planes import complete, legs, polygon
-from analysis.classics.rings import great_circle
+from classics.drawing import GROUND, platform, ring, rotation
+from classics.planes import complete, legs, polygon
+from classics.rings import great_circle
 
 import mechkin_cli as mk
 

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 import yaml
-from analysis.classics import osculating, planes, platforms, rings, robots, sheets
-from analysis.classics.changes import CHANGES, braced
-from analysis.classics.drawing import Classic
+from classics import osculating, planes, platforms, rings, robots, sheets
+from classics.changes import CHANGES, braced
+from classics.drawing import Classic
 
 import mechkin_cli as mk
 

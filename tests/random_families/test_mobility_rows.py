@@ -13,8 +13,8 @@ from random import Random
 
 import numpy as np
 import pytest
-from analysis.classics.drawing import planar, platform, rotation
-from analysis.classics.planes import legs
+from classics.drawing import planar, platform, rotation
+from classics.planes import legs
 
 import mechkin_cli as mk
 

@@ -61,7 +61,7 @@ Refusal create(std::string_view text, mechkin_plan** to) {
   const Plan& p = plan->of.plan.view();
   mechkin_sizes& s = plan->sizes;
   s.inputs = (size_t)p.inputs, s.states = (size_t)p.states, s.columns = (size_t)p.columns;
-  s.values = (size_t)plan->of.outputs.view().slots, s.loads = (size_t)p.load_values, s.ties = (size_t)p.ties;
+  s.values = (size_t)plan->of.outputs.view().slots, s.loads = (size_t)p.load_values, s.input_constraints = (size_t)p.input_constraints;
   s.turns = (size_t)turn_slots(p, *kernel_unit(2)), s.blocks = (size_t)p.blocks, s.constants = plan->constants();
   if (plan->of.tape) {
     const Tape& tape = plan->of.tape->view();
@@ -78,7 +78,7 @@ Request request_of(const mechkin_rows& rows, const OutputList& outputs) {
   Request r = {};
   r.rows = (long)rows.rows;
   r.inputs = rows.inputs, r.guess = rows.guess, r.rates = rows.rates, r.accelerations = rows.accelerations;
-  r.jerks = rows.jerks, r.ties = rows.ties, r.turned = rows.turned, r.whole = rows.whole, r.full = rows.full;
+  r.jerks = rows.jerks, r.constraint_rates = rows.constraint_rates, r.turned = rows.turned, r.whole = rows.whole, r.full = rows.full;
   r.time = rows.time;
   r.wanted = outputs.view();
   r.states = rows.states, r.outputs = rows.values, r.velocities = rows.first, r.second = rows.second;

@@ -39,7 +39,7 @@ typedef struct mechkin_sizes {
   size_t inputs, states, columns;
   size_t values;     /* columns of the quantities that runs write */
   size_t loads;      /* values of loads that vary */
-  size_t ties;       /* inputs that others lead */
+  size_t input_constraints;       /* inputs that others lead */
   size_t turns;      /* angles and orientations of closing joints, whole turns of the tree's angles */
   size_t blocks;
   size_t constants;  /* of the plan, then of the quantities */
@@ -86,7 +86,7 @@ typedef struct mechkin_rows {
   const double* rates;         /* inputs: with velocities */
   const double* accelerations; /* inputs: with accelerations */
   const double* jerks;         /* inputs: with jerks */
-  const double* ties;          /* ties: rates of led inputs by their leaders', with forces */
+  const double* constraint_rates;          /* input_constraints: rates of led inputs by their leaders', with forces */
   const double* turned;        /* turns, optional: springs on angles and laws of loads go by them */
   const double* whole;         /* inputs, optional: whole turns that the inputs are without, likewise */
   const double* full;          /* inputs, optional: inputs with their whole turns, which laws of loads read */

@@ -75,7 +75,7 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.rates = given.read("rates", 3L * p.inputs);
   r.accelerations = given.read("accelerations", 3L * p.inputs);
   r.jerks = given.read("jerks", 3L * p.inputs);
-  r.ties = given.read("ties", 3L * p.ties);
+  r.constraint_rates = given.read("constraint_rates", 3L * p.input_constraints);
   r.turned = given.read("turned", turn_slots(p, *kernel_unit(2)));
   r.whole = given.read("whole", p.inputs);
   r.time = given.read("time", 3);

@@ -131,7 +131,7 @@ void bind_builder(nb::module_& m) {
       .def("add_tree_joint", raising(&PlanBuilder::add_tree_joint), "type"_a, "parent"_a, "pitch"_a, "at"_a)
       .def("add_closing_joint", raising(&PlanBuilder::add_closing_joint), "type"_a, "first"_a, "second"_a, "on_first"_a,
            "on_second"_a, "parameter"_a, "loop"_a)
-      .def("add_leg", raising(&PlanBuilder::add_leg), "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
+      .def("add_hung_links", raising(&PlanBuilder::add_hung_links), "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
            "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
       .def("add_place", raising(&PlanBuilder::add_place), "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,
            "sign"_a)
@@ -149,7 +149,7 @@ void bind_builder(nb::module_& m) {
       .def("set_load_program", raising(&PlanBuilder::set_load_program), "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
       .def("set_driven", raising(&PlanBuilder::set_driven), "inputs"_a)
       .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)
-      .def("add_tie", raising(&PlanBuilder::add_tie), "input"_a, "leader"_a)
+      .def("add_input_constraint", raising(&PlanBuilder::add_input_constraint), "input"_a, "leader"_a)
       .def("add_friction", raising(&PlanBuilder::add_friction), "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
            "radius"_a, "pitch"_a, "at_rest"_a, "sliding"_a, "speed"_a)
       .def("add_contact", raising(&PlanBuilder::add_contact), "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
@@ -194,7 +194,7 @@ void bind_plan(nb::module_& m) {
       .def_prop_ro("inputs", [](const FrozenPlan& p) { return p.view().inputs; })
       .def_prop_ro("charts", [](const FrozenPlan& p) { return p.view().charts; })
       .def_prop_ro("load_values", [](const FrozenPlan& p) { return p.view().load_values; })
-      .def_prop_ro("ties", [](const FrozenPlan& p) { return p.view().ties; })
+      .def_prop_ro("input_constraints", [](const FrozenPlan& p) { return p.view().input_constraints; })
       .def_prop_ro("blocks", [](const FrozenPlan& p) { return p.view().blocks; })
       .def_prop_ro("equations", [](const FrozenPlan& p) {
         int count = 0;

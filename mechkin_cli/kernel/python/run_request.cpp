@@ -12,7 +12,7 @@ const OutputList* read_request(Arguments& given, const FrozenPlan& plan, Request
   r.rates = given.read("rates", p.inputs);
   r.accelerations = given.read("accelerations", p.inputs);
   r.jerks = given.read("jerks", p.inputs);
-  r.ties = given.read("ties", p.ties);
+  r.constraint_rates = given.read("constraint_rates", p.input_constraints);
   const KernelUnit& narrow = *kernel_unit(2);
   r.turned = given.read("turned", turn_slots(p, narrow));
   r.whole = given.read("whole", p.inputs);

@@ -6,7 +6,7 @@ import random
 from typing import NamedTuple
 
 import numpy as np
-from analysis.random_loops import random_loop
+from modes.random_loops import random_loop
 from random_families.no_wrong_row.case import drawn
 
 import mechkin_cli as mk

@@ -28,8 +28,8 @@ inline void reach_contacts(Balance& balance) {
 }
 
 // As find_gains, the efforts acting at the actuators.
-template <class TieValue>
-inline void find_actuated_gains(Balance& balance, int shift, const TieValue& tie_value) {
+template <class RateByLeader>
+inline void find_actuated_gains(Balance& balance, int shift, const RateByLeader& rate_by_leader) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
   const Rubbing& r = w.rubbing;
@@ -42,7 +42,7 @@ inline void find_actuated_gains(Balance& balance, int shift, const TieValue& tie
     }
     distribute(p, w, 0);
     if (number) read_contacts(p, w, r.gain + number - 1, p.frictions);
-    find_motors(p, w, tie_value);
+    find_motors(p, w, rate_by_leader);
     want_efforts(p, at, number);
   }
   *at.least = solve_actuators(p, at, 1 + p.frictions, at.share);
@@ -58,15 +58,15 @@ inline void find_actuated_gains(Balance& balance, int shift, const TieValue& tie
 }
 
 // As apply_friction, the efforts acting at the actuators.
-template <class TieValue>
-inline void apply_actuated_friction(Balance& balance, bool accelerating, int shift, const TieValue& tie_value) {
+template <class RateByLeader>
+inline void apply_actuated_friction(Balance& balance, bool accelerating, int shift, const RateByLeader& rate_by_leader) {
   const Plan& p = balance.p;
   Workspace& w = balance.w;
   Rubbing& r = w.rubbing;
   const Pack rates = twist_level(p, w);
   aim_frictions(p, w, accelerating, rates);
   apply_told(balance);
-  find_actuated_gains(balance, shift, tie_value);
+  find_actuated_gains(balance, shift, rate_by_leader);
   solve_friction(p, r);
   mark_open(p, r);
   // a singular set has no efforts, whatever friction there is
@@ -88,26 +88,26 @@ inline void apply_actuated_friction(Balance& balance, bool accelerating, int shi
                                 [&](int a) { return actuator_rate(p, w, a); });
 }
 
-// `row_value` gives angles with their whole turns, `tie_value` rates of inputs by those that they follow.
-template <class RowValue, class TieValue>
+// `row_value` gives angles with their whole turns, `rate_by_leader` rates of inputs by those that they follow.
+template <class RowValue, class RateByLeader>
 inline Balance balance_with_actuators(const Plan& p, Workspace& w, bool moving, bool accelerating, int shift,
-                                      const RowValue& row_value, const TieValue& tie_value) {
+                                      const RowValue& row_value, const RateByLeader& rate_by_leader) {
   if (!p.actuators) {
     const Balance balance = balance_forces(p, w, moving, accelerating, shift, row_value);
-    find_motors(p, w, tie_value);
+    find_motors(p, w, rate_by_leader);
     return balance;
   }
   if (!p.frictions) {
     // the actuators' efforts will leave nothing to the inputs that they answer for but rounding
     balance_forces(p, w, moving, accelerating, 0, row_value);
-    find_motors(p, w, tie_value);
+    find_motors(p, w, rate_by_leader);
     want_efforts(p, w.actuation, 0);
     *w.actuation.least = solve_actuators(p, w.actuation, 1, w.actuation.motor);
   }
   Balance balance = {p, w, zero_wrench(), zero_wrench(), moving, Pack(0.0)};
   apply_loads(balance, accelerating, row_value);
   if (p.frictions) {
-    apply_actuated_friction(balance, accelerating, shift, tie_value);
+    apply_actuated_friction(balance, accelerating, shift, rate_by_leader);
   } else {
     for (int a = 0; a < p.actuators; ++a)
       apply_along_coordinate(balance, p.actuator[a].axis, w.actuation.motor[a]);

@@ -5,7 +5,7 @@
 //
 //     J^T t = Q
 //
-// Inputs that one motor moves through a tie, dx_k = c dx_i, add c Q_k to Q_i and c J_k to J_i. Both sides are taken for
+// Inputs that one motor moves through a constraint, dx_k = c dx_i, add c Q_k to Q_i and c J_k to J_i. Both sides are taken for
 // motions that are orthonormal over all coordinates of the tree, lengths in parts of the size, so that neither rank nor
 // solution knows which coordinates are the inputs. More actuators than freedoms have the efforts of least norm, forces
 // by the size beside moments.
@@ -26,15 +26,15 @@ MECHKIN_INLINE Pack actuator_weight(const Plan& p, int a) {
 
 // Influence coefficients (columns + actuators + 1, free inputs): rates of the tree's coordinates, then of the actuators,
 // for a unit rate of each free input, lengths in parts of the size. Leaves rates and velocities of the last input behind.
-template <class TieValue>
-inline void find_influence(const Plan& p, Workspace& w, const TieValue& tie_value) {
+template <class RateByLeader>
+inline void find_influence(const Plan& p, Workspace& w, const RateByLeader& rate_by_leader) {
   const int n = free_inputs(p);
   int f = 0;
   for (int input = 0; input < p.driven; ++input) {
-    if (is_tied(p, input)) continue;
+    if (is_led(p, input)) continue;
     for (int i = 0; i < p.inputs; ++i) w.rate[p.input_column[i]] = i == input ? 1.0 : 0.0;
-    for (int t = 0; t < p.ties; ++t)
-      if (p.tie[t].leader == input) w.rate[p.input_column[p.tie[t].input]] = tie_value(t);
+    for (int t = 0; t < p.input_constraints; ++t)
+      if (p.input_constraint[t].leader == input) w.rate[p.input_column[p.input_constraint[t].input]] = rate_by_leader(t);
     for (int b = 0; b < p.blocks; ++b) block_velocities(p, w, b);
     move_rest(p, w);
     Pack* const out = w.actuation.influence + f++;
@@ -63,7 +63,7 @@ inline void want_efforts(const Plan& p, const Actuation& at, int number) {
   Pack* const wanted = at.influence + (p.columns + p.actuators + number) * free_inputs(p);
   int f = 0;
   for (int i = 0; i < p.driven; ++i)
-    if (!is_tied(p, i)) wanted[f++] = at.motor[i];
+    if (!is_led(p, i)) wanted[f++] = at.motor[i];
 }
 
 // The actuators' efforts for what is wanted in each of `cases`, into `out`, efforts(plan) apart; not a number where the set

@@ -1,4 +1,4 @@
-// Efforts and rates of inputs, of the motors that move them through ties, and of actuators.
+// Efforts and rates of inputs, of the motors that move them through constraints, and of actuators.
 #pragma once
 
 #include "forces/wrenches.hpp"
@@ -6,16 +6,16 @@
 namespace {
 
 // Whether a motor of its own, or an actuator, answers for an input.
-MECHKIN_INLINE bool is_tied(const Plan& p, int input) {
-  for (int t = 0; t < p.ties; ++t)
-    if (p.tie[t].input == input) return true;
+MECHKIN_INLINE bool is_led(const Plan& p, int input) {
+  for (int t = 0; t < p.input_constraints; ++t)
+    if (p.input_constraint[t].input == input) return true;
   return false;
 }
 
-// The freedoms that actuators answer for: inputs of the motion that follow no other through a tie.
+// The freedoms that actuators answer for: inputs of the motion that follow no other through a constraint.
 MECHKIN_INLINE int free_inputs(const Plan& p) {
   int count = 0;
-  for (int i = 0; i < p.driven; ++i) count += !is_tied(p, i);
+  for (int i = 0; i < p.driven; ++i) count += !is_led(p, i);
   return count;
 }
 
@@ -26,12 +26,12 @@ MECHKIN_INLINE Pack actuator_rate(const Plan& p, const Workspace& w, int a) {
   return rate;
 }
 
-// The generalised effort of each free input with what its ties transmit, for the inputs' own motors.
-template <class TieValue>
-inline void find_motors(const Plan& p, Workspace& w, const TieValue& tie_value) {
+// The generalised effort of each free input with what its constraints transmit, for the inputs' own motors.
+template <class RateByLeader>
+inline void find_motors(const Plan& p, Workspace& w, const RateByLeader& rate_by_leader) {
   Pack* const motor = w.actuation.motor;
   for (int i = 0; i < p.inputs; ++i) motor[i] = w.effort[i];
-  for (int t = 0; t < p.ties; ++t) motor[p.tie[t].leader] += tie_value(t) * w.effort[p.tie[t].input];
+  for (int t = 0; t < p.input_constraints; ++t) motor[p.input_constraint[t].leader] += rate_by_leader(t) * w.effort[p.input_constraint[t].input];
 }
 
 // What a joint's first link exerts on the second in all, the moment about the joint's point: constraint, drives and
@@ -48,7 +48,7 @@ inline Wrench total_wrench(const Plan& p, const Workspace& w, const JointPlace& 
   };
   for (int d = j.drive_begin; d < j.drive_end; ++d) {
     const Drive& drive = p.drive[d];
-    const bool answered = p.actuators && drive.input < p.driven && !is_tied(p, drive.input);
+    const bool answered = p.actuators && drive.input < p.driven && !is_led(p, drive.input);
     if (!answered) add(drive.axis, Pack(drive.scale) * w.effort[drive.input]);
   }
   for (int a = 0; a < p.actuators; ++a)

@@ -68,7 +68,7 @@ inline void closing_wrenches(const Plan& p, Workspace& w, int shift, Pack level)
 inline void distribute(const Plan& p, Workspace& w, int shift) {
   sum_over_tree(p, w);
   closing_wrenches(p, w, shift, shift ? tree_level(p, w) : Pack(0.0));
-  stretch_legs(p, w);
+  stretch_hung_bodies(p, w);
   input_efforts(p, w);
 }
 

@@ -170,32 +170,32 @@ inline void apply_load(Balance& balance, const Load& l, const RowValue& row_valu
   }
 }
 
-// What a leg needs as a whole comes from its ends: across its line from the balance of moments about them, along its
+// What a hung body needs as a whole comes from its ends: across its line from the balance of moments about them, along its
 // line all from the start, but for the tension that the closing equation's multiplier adds to both. A moment about the
-// line is no end's to give: it is what would hold the leg from spinning.
+// line is no end's to give: it is what would hold the body from spinning.
 inline void hang_on_ends(const Plan& p, Workspace& w, int body) {
   const TreeJoint& j = p.joints[body];
-  const Leg& leg = p.leg[j.leg];
+  const HungBody& hung = p.hung[j.hung];
   const Wrench needed = w.carried[body];
-  const Vec3 A = w.pose[body].o, B = carried_point(w, leg.second, leg.point), d = B - A;
+  const Vec3 A = w.pose[body].o, B = carried_point(w, hung.second, hung.point), d = B - A;
   const Pack square = dot(d, d);
   const Vec3 moment = needed.moment - cross(A, needed.force);
   const Vec3 across = (Pack(1.0) / square) * cross(moment, d);
-  w.across[j.leg] = across;
-  w.holding[j.leg] = dot(moment, d) / sqrt(square);
+  w.across[j.hung] = across;
+  w.holding[j.hung] = dot(moment, d) / sqrt(square);
   const Wrench at_start = force_at(A, needed.force - across), at_end = force_at(B, across);
   w.carried[body] = at_start;
-  if (leg.rod >= 0) w.carried[leg.rod] -= at_end;
-  if (leg.first >= 0) w.carried[leg.first] += at_start;
-  if (leg.second >= 0) w.carried[leg.second] += at_end;
+  if (hung.rod >= 0) w.carried[hung.rod] -= at_end;
+  if (hung.first >= 0) w.carried[hung.first] += at_start;
+  if (hung.second >= 0) w.carried[hung.second] += at_end;
 }
 
-// The tension into the wrenches of the leg's two spheres; the rod has it from the loop.
-inline void stretch_legs(const Plan& p, Workspace& w) {
-  for (int l = 0; l < p.legs; ++l) {
-    const Leg& leg = p.leg[l];
-    w.carried[leg.body] += w.reaction[leg.closing];
-    w.reaction[leg.closing] -= force_at(carried_point(w, leg.second, leg.point), w.across[l]);
+// The tension into the wrenches of the body's two spheres; the rod has it from the loop.
+inline void stretch_hung_bodies(const Plan& p, Workspace& w) {
+  for (int l = 0; l < p.hung_bodies; ++l) {
+    const HungBody& hung = p.hung[l];
+    w.carried[hung.body] += w.reaction[hung.closing];
+    w.reaction[hung.closing] -= force_at(carried_point(w, hung.second, hung.point), w.across[l]);
   }
 }
 

@@ -90,13 +90,13 @@ struct WeldInPlane : Pair<Conditions<CommonPointInPlane, SameHeading>, Coordinat
   static constexpr char letter[] = "W2";
 };
 
-// Two spheres with a leg between them: no pair of the file format.
-struct LegEnds : Pair<Conditions<Distance>, Coordinates<>> {
+// Two points at a distance: no pair of the file format.
+struct PointsApart : Pair<Conditions<Distance>, Coordinates<>> {
   static constexpr char letter[] = "";
 };
 
-// The code of a pair is its place; LegEnds is PAIR_LEG.
-using Pairs = Entries<LegEnds, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
+// The code of a pair is its place; PointsApart is PAIR_DISTANCE.
+using Pairs = Entries<PointsApart, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
                       Weld, SphereInSlottedCylinder, CylinderOnPlane, RevoluteInPlane, PrismaticInPlane, PinInSlot,
                       WeldInPlane>;
 

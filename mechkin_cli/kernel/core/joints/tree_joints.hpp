@@ -1,5 +1,5 @@
 // Displacements that carry links in the tree: R, P, H, C, S, W. Every other pair is a chain of these; L is no
-// displacement, two points place the body of a leg (legs.hpp).
+// displacement, two points place the hung body (hung_bodies.hpp).
 //
 // An entry gives the displacement of its frame (z: the axis) and its freedom screws, which are fixed in the parent link;
 // how its state moves by increments of its columns: advance.hpp.

@@ -21,7 +21,7 @@ template <class Visit>
 void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_JOINT, p.joints, p.links);
   visit(ARRAY_CLOSING, p.closing, p.closings);
-  visit(ARRAY_LEG, p.leg, p.legs);
+  visit(ARRAY_HUNG_BODY, p.hung, p.hung_bodies);
   visit(ARRAY_PLACE, p.place, p.places);
   visit(ARRAY_AXIS, p.axis, p.axes);
   visit(ARRAY_DRIVE, p.drive, p.drives);
@@ -40,7 +40,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_INERTIA, p.inertia, p.links);
   visit(ARRAY_LOAD, p.load, p.loads);
   visit(ARRAY_ACTUATOR, p.actuator, p.actuators);
-  visit(ARRAY_TIE, p.tie, p.ties);
+  visit(ARRAY_INPUT_CONSTRAINT, p.input_constraint, p.input_constraints);
   visit(ARRAY_FRICTION, p.friction, p.frictions);
   visit(ARRAY_CONTACT, p.contact, p.contacts);
   visit(ARRAY_SIZE_POINT, p.size_point, p.size_points);

@@ -5,7 +5,7 @@
 //   PlanBuilder        length, origin (3), size
 //   add_tree_joint     pitch, at (12: axes x, y, z, origin)
 //   add_closing_joint  on_first (12), on_second (12), parameter
-//   add_leg            on_first (12), on_second (12), length, line (3)
+//   add_hung_links            on_first (12), on_second (12), length, line (3)
 //   add_place          point (3)
 //   add_axis           vector (3), other_vector (3)
 //   add_input          scale
@@ -33,7 +33,7 @@ enum PlanArray : int {
   ARRAY_PLAN = -1,
   ARRAY_JOINT = 0,
   ARRAY_CLOSING,
-  ARRAY_LEG,
+  ARRAY_HUNG_BODY,
   ARRAY_PLACE,
   ARRAY_AXIS,
   ARRAY_DRIVE,
@@ -52,7 +52,7 @@ enum PlanArray : int {
   ARRAY_INERTIA,
   ARRAY_LOAD,
   ARRAY_ACTUATOR,
-  ARRAY_TIE,
+  ARRAY_INPUT_CONSTRAINT,
   ARRAY_FRICTION,
   ARRAY_CONTACT,
   ARRAY_SIZE_POINT,

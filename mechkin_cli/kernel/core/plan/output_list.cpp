@@ -42,7 +42,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
     case OUT_CARRIED_FORCE:
     case OUT_CARRIED_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
-    case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.legs, "leg");
+    case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.hung_bodies, "body");
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
@@ -124,7 +124,7 @@ unsigned output_demand(int type, int order) {
 
 Refusal check_closing_coordinate(const Plan& p, int c, int freedom) {
   const int type = p.closing[c].type;
-  REQUIRE(type != PAIR_LEG, "a leg has no coordinates");
+  REQUIRE(type != PAIR_DISTANCE, "a hung body has no coordinates");
   REQUIRE(freedom >= 0 && freedom < 6 && kernel_unit()->pair_types[type].coordinates >> freedom & 1,
           "closing joint " + std::to_string(c) + " has no coordinate " + std::to_string(freedom));
   return {};

@@ -12,7 +12,7 @@
 #include "plan/program.hpp"
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
-// TREE_L hangs the body of a leg between two points (legs.hpp).
+// TREE_L hangs the hung body between two points (hung_bodies.hpp).
 enum TreeCode : int {
   TREE_R = 0,
   TREE_P = 1,
@@ -24,9 +24,9 @@ enum TreeCode : int {
   TREE_CODES = 7
 };
 
-// Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_LEG is no pair of the file format: the
-// distance of two points that a leg keeps.
-enum PairCode : int { PAIR_LEG = 0 };
+// Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_DISTANCE is no pair of the file format: the
+// distance of two points that a hung body keeps.
+enum PairCode : int { PAIR_DISTANCE = 0 };
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
 template <class Number>
@@ -41,7 +41,7 @@ struct TreeJointOf {
   int state;   // first entry of the state vector
   int column;  // first column (freedom)
   Number pitch;  // H: slide per radian
-  int leg;       // TREE_L: into Plan::leg
+  int hung;       // TREE_L: into Plan::hung
   FrameOf<Number> at;    // the joint's frame in the parent link
 };
 
@@ -51,9 +51,9 @@ struct ClosingJointOf {
   int first, second;        // links, -1: ground
   FrameOf<Number> on_first, on_second;
   Number parameter;         // U: cosine of the angle between its axes; Sc: of axis and pin at home, where the two
-                            // frames coincide in x; leg: its length, the slide at zero
-  int slide;                // leg: tree joint of its slide, -1 without one
-  double slide_sign;        // leg: rate of its length by the slide
+                            // frames coincide in x; a distance: its length, the slide at zero
+  int slide;                // a distance: tree joint of its slide, -1 without one
+  double slide_sign;        // a distance: rate of its length by the slide
   int row;                  // first closing equation within its block
   int loop_begin, loop_end;  // into Plan::loop
 };
@@ -64,10 +64,10 @@ struct LoopEntry {
   double sign;
 };
 
-// A leg: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
-// slides along the leg, too. It turns with its line and does not spin about it.
+// A hung body: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
+// slides along the body, too. It turns with its line and does not spin about it.
 template <class Number>
-struct LegOf {
+struct HungBodyOf {
   int body, rod;      // links; rod -1: one rigid body
   int first, second;  // links, -1: ground
   int closing;
@@ -143,7 +143,7 @@ struct JointPlaceOf {
   int first, second;    // links
   int point_on;         // link that carries the point (a sphere's centre rides on the first link)
   Number point[3];
-  double sign;          // -1: the tree or the leg passes the joint from its second link to its first
+  double sign;          // -1: the tree or the body passes the joint from its second link to its first
   int drive_begin, drive_end;  // into Plan::drive
   int free_begin, free_end;    // into Plan::free
 };
@@ -182,8 +182,8 @@ struct DriveOf {
   Number scale;
 };
 
-// An input that the motor of another one, which follows none, moves through a tie.
-struct Tie {
+// An input that the motor of another one, which follows none, moves through a constraint.
+struct InputConstraint {
   int input, leader;
 };
 
@@ -194,14 +194,14 @@ struct Actuator {
 
 // What plans of one structure share.
 struct PlanShape {
-  int links, states, columns, closings, legs, blocks, inputs, loads, load_values;
+  int links, states, columns, closings, hung_bodies, blocks, inputs, loads, load_values;
   int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points, frictions, contacts;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
-  int actuators, ties;
+  int actuators, input_constraints;
   const Actuator* actuator;
-  const Tie* tie;
+  const InputConstraint* input_constraint;
   const LoopEntry* loop;
   const Block* block;
   const int* order;
@@ -219,7 +219,7 @@ template <class Number>
 struct PlanOf : PlanShape {
   const TreeJointOf<Number>* joints;
   const ClosingJointOf<Number>* closing;
-  const LegOf<Number>* leg;
+  const HungBodyOf<Number>* hung;
   const JointPlaceOf<Number>* place;
   const CoordinateAxisOf<Number>* axis;
   const DriveOf<Number>* drive;
@@ -242,7 +242,7 @@ struct PlanOf : PlanShape {
 using Frame = FrameOf<double>;
 using TreeJoint = TreeJointOf<double>;
 using ClosingJoint = ClosingJointOf<double>;
-using Leg = LegOf<double>;
+using HungBody = HungBodyOf<double>;
 using LinkInertia = LinkInertiaOf<double>;
 using Load = LoadOf<double>;
 using JointPlace = JointPlaceOf<double>;
@@ -287,7 +287,7 @@ struct Request {
   const double* accelerations;  // inputs x rows, likewise
   const double* jerks;          // inputs x rows, with DEMAND_JERK
   const double* guess;          // states x rows
-  const double* ties;           // ties x rows: rates of tied inputs by those of their leaders, may be null without
+  const double* constraint_rates;           // constraints x rows: rates of led inputs by those of their leaders, may be null without
                                 // DEMAND_FORCES
   const double* turned;         // turn slots x rows, may be null: closing joints' continuous angles to less than half a
                                 // turn, whole turns of the tree's angles; springs go by them

@@ -21,9 +21,9 @@ Refusal PlanBuilder::place_joints(int block, const std::vector<int>& joints, std
     const int parent = joints_[k].parent;
     REQUIRE(parent < 0 || placed[parent] != NOT_PLACED, "a tree joint is placed after its parent");
     if (joints_[k].type == TREE_L) {
-      REQUIRE(joints_[k].leg >= 0, "TREE_L hangs a leg");
-      const int second = leg_[joints_[k].leg].second;
-      REQUIRE(second < 0 || placed[second] != NOT_PLACED, "a leg is placed after its ends");
+      REQUIRE(joints_[k].hung >= 0, "TREE_L hangs a hung body");
+      const int second = hung_[joints_[k].hung].second;
+      REQUIRE(second < 0 || placed[second] != NOT_PLACED, "a hung body is placed after its ends");
     }
     placed[k] = block;
   }
@@ -89,7 +89,7 @@ Refusal PlanBuilder::check_order() const {
   REQUIRE(block_.empty() ? closing_.empty() : block_.back().closing_end == (int)closing_.size(),
           "every closing joint must belong to a block");
   for (std::size_t k = 0; k < joints_.size(); ++k) {
-    REQUIRE((joints_[k].type == TREE_L) == (joints_[k].leg >= 0), "TREE_L hangs a leg");
+    REQUIRE((joints_[k].type == TREE_L) == (joints_[k].hung >= 0), "TREE_L hangs a hung body");
     REQUIRE(placed_by_[k] != NOT_PLACED, "every tree joint must be placed by a block or be of the rest");
   }
   for (int b = 0; b < (int)block_.size(); ++b) {
@@ -97,7 +97,7 @@ Refusal PlanBuilder::check_order() const {
     for (int c = block_[b].closing_begin; c < block_[b].closing_end; ++c) {
       const ClosingJoint& j = closing_[c];
       REQUIRE(placed(j.first) && placed(j.second), "a closing joint's links must be placed by its block or before");
-      REQUIRE(j.slide < 0 || placed(j.slide), "a leg's rod must be placed by its block or before");
+      REQUIRE(j.slide < 0 || placed(j.slide), "a hung body's rod must be placed by its block or before");
       for (int l = j.loop_begin; l < j.loop_end; ++l)
         REQUIRE(placed(loop_[l].joint), "a loop's joints must be placed by its block or before");
     }
@@ -111,9 +111,9 @@ Refusal PlanBuilder::check_order() const {
 Refusal PlanBuilder::check_actuators() const {
   int freedoms = plan_.driven;
   for (int i = 0; i < plan_.driven; ++i) {
-    bool tied = false;
-    for (const Tie& t : tie_) tied = tied || t.input == i;
-    freedoms -= tied;
+    bool led = false;
+    for (const InputConstraint& t : input_constraint_) led = led || t.input == i;
+    freedoms -= led;
   }
   REQUIRE(actuator_.empty() || (freedoms > 0 && freedoms <= (int)actuator_.size()),
           "actuators must be at least as many as the freedoms that they drive");
@@ -186,13 +186,13 @@ Plan PlanBuilder::arrays() const {
   Plan p = plan_;
   p.links = (int)joints_.size();
   p.closings = (int)closing_.size();
-  p.legs = (int)leg_.size();
+  p.hung_bodies = (int)hung_.size();
   p.blocks = (int)block_.size();
   p.inputs = (int)input_column_.size();
   p.loads = (int)load_.size();
   p.driven = driven_set_ ? plan_.driven : p.inputs;
   p.actuators = (int)actuator_.size();
-  p.ties = (int)tie_.size();
+  p.input_constraints = (int)input_constraint_.size();
   p.places = (int)place_.size();
   p.axes = (int)axis_.size();
   p.frees = (int)free_.size();
@@ -206,7 +206,7 @@ Plan PlanBuilder::arrays() const {
   p.contacts = (int)contact_.size();
   p.largest_block = 0;
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
-  p.joints = joints_.data(), p.closing = closing_.data(), p.leg = leg_.data();
+  p.joints = joints_.data(), p.closing = closing_.data(), p.hung = hung_.data();
   p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
   p.loop = loop_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
@@ -215,7 +215,7 @@ Plan PlanBuilder::arrays() const {
   p.column_block = column_block_.data(), p.column_place = column_place_.data();
   p.column_weight = column_weight_.data();
   p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
-  p.actuator = actuator_.data(), p.tie = tie_.data();
+  p.actuator = actuator_.data(), p.input_constraint = input_constraint_.data();
   p.law = program_.view();
   p.friction = friction_.data(), p.contact = contact_.data();
   return p;

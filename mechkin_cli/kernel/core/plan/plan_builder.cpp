@@ -104,7 +104,7 @@ Refusal PlanBuilder::add_tree_joint(int type, int parent, double pitch, const Fr
 Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const FrameData& on_first,
                                     const FrameData& on_second, double parameter, const Loop& loop) {
   CHECK(open());
-  REQUIRE(type > PAIR_LEG && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
+  REQUIRE(type > PAIR_DISTANCE && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
   CHECK(check_link(first));
   CHECK(check_link(second));
   CHECK(check_finite(on_first, on_second, parameter));
@@ -132,35 +132,35 @@ std::pair<int, int> PlanBuilder::add_loop(const Loop& loop) {
   return {begin, (int)loop_.size()};
 }
 
-Refusal PlanBuilder::add_leg(int body, int rod, int first, int second, const FrameData& on_first,
+Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, const FrameData& on_first,
                           const FrameData& on_second, double length, const Triple& line, double slide_sign,
                           const Loop& loop) {
   CHECK(open());
-  CHECK(check_joint(body, "unknown body of a leg"));
-  REQUIRE(joints_[body].type == TREE_L && joints_[body].leg < 0, "a leg hangs by a TREE_L of its own");
-  REQUIRE(joints_[body].parent == first && second >= -1 && second < body, "a leg comes after its ends");
+  CHECK(check_joint(body, "unknown hung body"));
+  REQUIRE(joints_[body].type == TREE_L && joints_[body].hung < 0, "a hung body hangs by a TREE_L of its own");
+  REQUIRE(joints_[body].parent == first && second >= -1 && second < body, "a hung body comes after its ends");
   REQUIRE(rod == -1 || (rod > body && rod < (int)joints_.size() && joints_[rod].type == TREE_P &&
-                        joints_[rod].parent == body), "a leg's rod slides on its body");
+                        joints_[rod].parent == body), "a hung body's rod slides on its body");
   CHECK(check_finite(on_first, on_second, length, line));
-  REQUIRE(rod == -1 || slide_sign == 1.0 || slide_sign == -1.0, "the sign of a leg's slide is 1 or -1");
+  REQUIRE(rod == -1 || slide_sign == 1.0 || slide_sign == -1.0, "the sign of a hung body's slide is 1 or -1");
   CHECK(check_finite(slide_sign));
   CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
-  Leg leg = {body, rod, first, second, (int)closing_.size(), {}, {}};
+  HungBody hung = {body, rod, first, second, (int)closing_.size(), {}, {}};
   const Frame at_end = frame(on_second);
-  std::memcpy(leg.point, at_end.o, sizeof leg.point);
-  copy(line, leg.line);
-  joints_[body].leg = (int)leg_.size();
-  const std::size_t at = closing_.size() * sizeof(ClosingJoint), leg_at = leg_.size() * sizeof(Leg);
-  leg_.push_back(leg);
-  closing_.push_back({PAIR_LEG, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end});
+  std::memcpy(hung.point, at_end.o, sizeof hung.point);
+  copy(line, hung.line);
+  joints_[body].hung = (int)hung_.size();
+  const std::size_t at = closing_.size() * sizeof(ClosingJoint), hung_at = hung_.size() * sizeof(HungBody);
+  hung_.push_back(hung);
+  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   const int end_point = (int)constants_.size() + 9;
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
   for (int i = 0; i < 3; ++i)
-    repeated_.push_back({end_point + i, {ARRAY_LEG, leg_at + offsetof(Leg, point) + i * sizeof(double)}});
+    repeated_.push_back({end_point + i, {ARRAY_HUNG_BODY, hung_at + offsetof(HungBody, point) + i * sizeof(double)}});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
-  number(ARRAY_LEG, leg_at + offsetof(Leg, line), 3);
+  number(ARRAY_HUNG_BODY, hung_at + offsetof(HungBody, line), 3);
   return {};
 }
 
@@ -306,16 +306,16 @@ Refusal PlanBuilder::add_actuator(int axis, int reference, int freedom) {
   return {};
 }
 
-Refusal PlanBuilder::add_tie(int input, int leader) {
+Refusal PlanBuilder::add_input_constraint(int input, int leader) {
   CHECK(open());
-  REQUIRE(driven_set_, "ties come after the driven inputs");
+  REQUIRE(driven_set_, "constraints come after the driven inputs");
   REQUIRE(input >= 0 && input < plan_.driven && leader >= 0 && leader < plan_.driven && input != leader,
-          "a tie joins two driven inputs");
-  for (const Tie& t : tie_) {
-    REQUIRE(t.leader != input && t.input != leader, "a tied input leads no other");
-    REQUIRE(t.input != input || t.leader != leader, "a tie is said once");
+          "a constraint joins two driven inputs");
+  for (const InputConstraint& t : input_constraint_) {
+    REQUIRE(t.leader != input && t.input != leader, "a led input leads no other");
+    REQUIRE(t.input != input || t.leader != leader, "a constraint is said once");
   }
-  tie_.push_back({input, leader});
+  input_constraint_.push_back({input, leader});
   return {};
 }
 

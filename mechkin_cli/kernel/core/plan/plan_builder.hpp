@@ -28,8 +28,8 @@ class PlanBuilder {
   Refusal add_tree_joint(int type, int parent, double pitch, const FrameData& at);
   Refusal add_closing_joint(int type, int first, int second, const FrameData& on_first, const FrameData& on_second,
                          double parameter, const Loop& loop);
-  // The next closing equation: a leg of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
-  Refusal add_leg(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
+  // The next closing equation: a hung body of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
+  Refusal add_hung_links(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
                double length, const Triple& line, double slide_sign, const Loop& loop);
   // The next joint as its user knows it, see JointPlace; returns its number.
   Result<int> add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
@@ -59,8 +59,8 @@ class PlanBuilder {
   Refusal set_driven(int inputs);
   // The next actuator: a coordinate as that of a load along it.
   Refusal add_actuator(int axis, int reference, int freedom);
-  // Input `input` is moved by the motor of input `leader`, see Tie.
-  Refusal add_tie(int input, int leader);
+  // Input `input` is moved by the motor of input `leader`, see InputConstraint.
+  Refusal add_input_constraint(int input, int leader);
   // The friction of a joint, see Friction; at most one a joint.
   Refusal add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
                     double pitch, double at_rest, double sliding, double speed);
@@ -104,7 +104,7 @@ class PlanBuilder {
   std::vector<Drive> drive_;
   std::vector<FreeMotion> free_;
   std::vector<ClosingJoint> closing_;
-  std::vector<Leg> leg_;
+  std::vector<HungBody> hung_;
   std::vector<LoopEntry> loop_;
   std::vector<Block> block_;
   std::vector<int> order_, unknown_, rest_, input_column_;
@@ -114,7 +114,7 @@ class PlanBuilder {
   std::vector<LinkInertia> inertia_;
   std::vector<Load> load_;
   std::vector<Actuator> actuator_;
-  std::vector<Tie> tie_;
+  std::vector<InputConstraint> input_constraint_;
   std::vector<Friction> friction_;
   std::vector<Contact> contact_;
   std::vector<Output> size_point_;

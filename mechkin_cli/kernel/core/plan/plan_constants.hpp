@@ -21,7 +21,7 @@ namespace {
 using Frame = FrameOf<PlanNumber>;
 using TreeJoint = TreeJointOf<PlanNumber>;
 using ClosingJoint = ClosingJointOf<PlanNumber>;
-using Leg = LegOf<PlanNumber>;
+using HungBody = HungBodyOf<PlanNumber>;
 using LinkInertia = LinkInertiaOf<PlanNumber>;
 using Load = LoadOf<PlanNumber>;
 using JointPlace = JointPlaceOf<PlanNumber>;
@@ -57,12 +57,12 @@ template <class Constants>
 inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w, Room& room) {
   TreeJoint* const joint = room.take<TreeJoint>(first.links);
   ClosingJoint* const closing = room.take<ClosingJoint>(first.closings);
-  Leg* const leg = room.take<Leg>(first.legs);
+  HungBody* const hung = room.take<HungBody>(first.hung_bodies);
   if (!room.memory) return;
   for (int k = 0; k < first.links; ++k) {
     const auto& j = first.joints[k];
     joint[k] = {j.type, j.parent, j.state, j.column, lanes.number([&](const LanePlan& p) { return p.joints[k].pitch; }),
-                j.leg, {}};
+                j.hung, {}};
     lanes.frame(&joint[k].at, [&](const LanePlan& p) -> const auto& { return p.joints[k].at; });
   }
   for (int c = 0; c < first.closings; ++c) {
@@ -73,13 +73,13 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
     lanes.frame(&closing[c].on_first, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_first; });
     lanes.frame(&closing[c].on_second, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_second; });
   }
-  for (int l = 0; l < first.legs; ++l) {
-    const auto& from = first.leg[l];
-    leg[l] = {from.body, from.rod, from.first, from.second, from.closing, {}, {}};
-    lanes.numbers(leg[l].point, 3, [&](const LanePlan& p) { return p.leg[l].point; });
-    lanes.numbers(leg[l].line, 3, [&](const LanePlan& p) { return p.leg[l].line; });
+  for (int l = 0; l < first.hung_bodies; ++l) {
+    const auto& from = first.hung[l];
+    hung[l] = {from.body, from.rod, from.first, from.second, from.closing, {}, {}};
+    lanes.numbers(hung[l].point, 3, [&](const LanePlan& p) { return p.hung[l].point; });
+    lanes.numbers(hung[l].line, 3, [&](const LanePlan& p) { return p.hung[l].line; });
   }
-  w->joints = joint, w->closing = closing, w->leg = leg;
+  w->joints = joint, w->closing = closing, w->hung = hung;
 }
 
 template <class Constants>

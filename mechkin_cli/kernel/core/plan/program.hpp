@@ -21,13 +21,13 @@ enum OutputCode : int {
   OUT_SHAKING_MOMENT = 14,
   OUT_INERTIA_FORCE = 15,
   OUT_INERTIA_MOMENT = 16,
-  OUT_HOLDING_MOMENT = 17,  // index: leg; about its line, on its body
+  OUT_HOLDING_MOMENT = 17,  // index: hung body; about its line, on its body
   OUT_JERK = 18,            // index: column
   OUT_REACTION_LEVEL = 19,  // largest component of force or moment (in length units) of all joints
   OUT_KINETIC_ENERGY = 20,
   OUT_POTENTIAL_ENERGY = 21,  // of gravity from the ground's origin, of springs from their free length or angle
   OUT_LOAD_POWER = 22,        // index: load, -1: gravity; what it puts in
-  OUT_MOTOR = 23,             // index: actuator, or where there are none input; with what ties transmit
+  OUT_MOTOR = 23,             // index: actuator, or where there are none input; with what constraints transmit
   OUT_ACTUATION = 24,         // least rate of the actuators, all together, in a motion of length one
   OUT_TOTAL_FORCE = 25,       // index: place; constraint, drive and actuators
   OUT_TOTAL_MOMENT = 26,      // about the joint's point

@@ -11,12 +11,12 @@ bool all_same(const Record* a, const Record* b, int count, const Same& same) {
 
 bool same_counts(const Plan& a, const Plan& b) {
   return a.links == b.links && a.states == b.states && a.columns == b.columns && a.closings == b.closings &&
-         a.legs == b.legs && a.blocks == b.blocks && a.inputs == b.inputs && a.unknowns == b.unknowns &&
+         a.hung_bodies == b.hung_bodies && a.blocks == b.blocks && a.inputs == b.inputs && a.unknowns == b.unknowns &&
          a.loop_entries == b.loop_entries && a.largest_block == b.largest_block;
 }
 
 bool same_joint(const TreeJoint& a, const TreeJoint& b) {
-  return a.type == b.type && a.parent == b.parent && a.state == b.state && a.column == b.column && a.leg == b.leg;
+  return a.type == b.type && a.parent == b.parent && a.state == b.state && a.column == b.column && a.hung == b.hung;
 }
 
 bool same_closing(const ClosingJoint& a, const ClosingJoint& b) {

@@ -28,8 +28,8 @@ inline int equations_of(const Plan& p) {
 
 inline const Pose* pose_at(const Enclosures& w, int link) { return link < 0 ? nullptr : &w.pose[link]; }
 
-// The body of a leg and its rod, which close no loop.
-inline bool is_of_leg(const Plan& p, int k) {
+// The hung body and its rod, which close no loop.
+inline bool is_hung(const Plan& p, int k) {
   const int parent = p.joints[k].parent;
   return p.joints[k].type == TREE_L || (parent >= 0 && p.joints[parent].type == TREE_L);
 }
@@ -39,7 +39,7 @@ inline void place_links(const Plan& p, Enclosures& w) {
     for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) {
       const int k = p.order[o];
       const TreeJoint& j = p.joints[k];
-      if (is_of_leg(p, k)) continue;
+      if (is_hung(p, k)) continue;
       const Pose* const parent = pose_at(w, j.parent);
       w.pose[k] = placed(j.at, parent);
       with_tree_joint(j.type, [&](auto entry) {
@@ -81,7 +81,7 @@ inline void enclose_closing(const Plan& p, Enclosures& w) {
         entry.sides(k, [&](const Pack& x) { w.side = min(w.side, lower_bound(x)); });
         for (int l = j.loop_begin; l < j.loop_end; ++l) {
           const TreeJoint& t = p.joints[p.loop[l].joint];
-          if (p.loop[l].joint == j.slide) {  // of a leg, whose length it is
+          if (p.loop[l].joint == j.slide) {  // whose length it is
             w.jacobian[equation * p.columns + t.column] = Pack(-j.slide_sign);
             continue;
           }

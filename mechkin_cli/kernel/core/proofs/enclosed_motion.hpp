@@ -61,7 +61,7 @@ inline void enclose_distribution(const Plan& p, Workspace& w, const Solving& s) 
     solve_enclosed_transposed(matrix_of(p, w, s, index), effort, s.room, s.across, multiplier);
     take_closing_wrenches(p, w, index, multiplier);
   }
-  stretch_legs(p, w);
+  stretch_hung_bodies(p, w);
   input_efforts(p, w);
 }
 

@@ -73,7 +73,7 @@ inline void enclosed_derivatives(const Plan& p, const Workspace& w, const Box& b
       const int freedoms = freedoms_of(t.type);
       Pack column[3 * MAX_CLOSING_ROWS];
       closing_columns(p, w, c, p.loop[l], column);
-      // a leg's length goes by its slide exactly
+      // a hung body's length goes by its slide exactly
       if (p.loop[l].joint == j.slide) column[0] = -j.slide_sign;
       for (int i = 0; i < equations; ++i) {
         Pack* const row = out + (j.row + i) * p.columns + t.column;

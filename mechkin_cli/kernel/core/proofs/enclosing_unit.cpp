@@ -174,7 +174,7 @@ void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Loo
   if (r.forces) {
     const Balance found = enclose_forces(p, m, row_values, r);
     balance.inertia = found.inertia, balance.outside = found.outside;
-    if (!p.actuators) find_motors(p, w, [&](int t) { return r.ties ? in.get(r.ties, t) : UNKNOWN_NUMBER; });
+    if (!p.actuators) find_motors(p, w, [&](int t) { return r.constraint_rates ? in.get(r.constraint_rates, t) : UNKNOWN_NUMBER; });
   }
   if (!r.wanted) return;
   for (int o = 0; o < r.wanted->count; ++o) {

@@ -16,7 +16,7 @@ struct EnclosingRequest {
   const double* rates;          // inputs x 3 x rows, may be null: no velocities
   const double* accelerations;  // inputs x 3 x rows, may be null: no accelerations
   const double* jerks;          // inputs x 3 x rows, may be null: no third derivatives
-  const double* ties;           // ties x 3 x rows, may be null
+  const double* constraint_rates;           // constraints x 3 x rows, may be null
   const double* turned;         // as in Request: turn slots x rows, inputs x rows
   const double* whole;
   const double* time;           // 3 x rows, may be null: what laws of loads read as time (s)

@@ -9,10 +9,10 @@ namespace {
 // Of a link, or of ground (-1).
 MECHKIN_INLINE const Motion& motion_of(const Workspace& w, int link) { return w.motion[link]; }
 
-inline void move_leg(const Plan& p, Workspace& w, int k, bool second) {
-  const Leg& leg = p.leg[p.joints[k].leg];
-  const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
-  w.motion[k] = leg_motion(A, B, motion_of(w, p.joints[k].parent), motion_of(w, leg.second), second);
+inline void move_hung(const Plan& p, Workspace& w, int k, bool second) {
+  const HungBody& hung = p.hung[p.joints[k].hung];
+  const Vec3 A = w.pose[k].o, B = carried_point(w, hung.second, hung.point);
+  w.motion[k] = hung_motion(A, B, motion_of(w, p.joints[k].parent), motion_of(w, hung.second), second);
 }
 // Sum of the screws of tree joint k, each times its entry of `rate`.
 MECHKIN_INLINE Twist joint_twist(const Plan& p, const Workspace& w, int k, const Pack* rate) {
@@ -27,14 +27,14 @@ MECHKIN_INLINE Twist joint_twist(const Plan& p, const Workspace& w, int k, const
 // Twist of the link of tree joint k from its parent's: V = V_p + S q'.
 inline void move_link(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
-  if (j.type == TREE_L) return move_leg(p, w, k, false);
+  if (j.type == TREE_L) return move_hung(p, w, k, false);
   w.motion[k].velocity = motion_of(w, j.parent).velocity + joint_twist(p, w, k, w.rate);
 }
 // Its spatial acceleration, where the twists are known: V' = V_p' + S q'' + [V_p, S q']. With `again` only q'' and V_p' are
 // others than they were.
 inline void accelerate_link(const Plan& p, Workspace& w, int k, bool again) {
   const TreeJoint& j = p.joints[k];
-  if (j.type == TREE_L) return move_leg(p, w, k, true);
+  if (j.type == TREE_L) return move_hung(p, w, k, true);
   const Motion& parent = motion_of(w, j.parent);
   if (!again) w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
   w.motion[k].acceleration = parent.acceleration + joint_twist(p, w, k, w.acceleration) + w.convective[k];
@@ -103,9 +103,9 @@ inline void jerk_link(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   const MotionToJerk parent = motion_to_jerk(w, j.parent);
   if (j.type == TREE_L) {
-    const Leg& leg = p.leg[j.leg];
-    const Vec3 A = w.pose[k].o, B = carried_point(w, leg.second, leg.point);
-    w.link_jerk[k] = leg_jerk(A, B, w.motion[k], parent, motion_to_jerk(w, leg.second));
+    const HungBody& hung = p.hung[j.hung];
+    const Vec3 A = w.pose[k].o, B = carried_point(w, hung.second, hung.point);
+    w.link_jerk[k] = hung_jerk(A, B, w.motion[k], parent, motion_to_jerk(w, hung.second));
     return;
   }
   Twist first = zero_twist(), second = zero_twist(), third = zero_twist();

@@ -16,16 +16,16 @@ MECHKIN_INLINE Vec3 carried_vector(const Workspace& w, int link, const Number* a
   return link < 0 ? constant(a) : w.pose[link].vector(a);
 }
 
-// Only legs are placed through memory; the pose of any other joint stays in registers until it is whole.
-inline void place_leg(const Plan& p, Workspace& w, int k) {
-  const Leg& leg = p.leg[p.joints[k].leg];
+// Only hung bodies are placed through memory; the pose of any other joint stays in registers until it is whole.
+inline void place_hung(const Plan& p, Workspace& w, int k) {
+  const HungBody& hung = p.hung[p.joints[k].hung];
   Pose pose = placed(p.joints[k].at, pose_of(w, p.joints[k].parent));
-  aim(pose, leg, carried_point(w, leg.second, leg.point));
+  aim(pose, hung, carried_point(w, hung.second, hung.point));
   w.pose[k] = pose;
 }
 inline void place_joint(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
-  if (j.type == TREE_L) return place_leg(p, w, k);
+  if (j.type == TREE_L) return place_hung(p, w, k);
   Pose pose = placed(j.at, pose_of(w, j.parent));
   if (w.stands[k]) w.frame[k] = pose;
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });

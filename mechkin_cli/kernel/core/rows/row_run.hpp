@@ -203,8 +203,8 @@ struct RowPack {
       else
         write_output(p, w, balance, RowValues{r, in}, output_of(r, o), out);
   }
-  template <class TieValue>
-  void balance(const TieValue& tie_value) {
+  template <class RateByLeader>
+  void balance(const RateByLeader& rate_by_leader) {
     const bool velocities = r.demand & DEMAND_VELOCITY, accelerations = r.demand & DEMAND_ACCELERATION;
     const RowValues row_values = {r, in};
     const Mask undefined = evaluate_loads(p, w, row_values);
@@ -212,7 +212,7 @@ struct RowPack {
       for (int v = 0; v < p.load_values; ++v) writer(r.loads).put(v, w.load[v]);
     if (r.undefined)
       for (int i = 0; i < in.count; ++i) r.undefined[in.row + i] = lane(undefined, i);
-    Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, tie_value);
+    Balance balance = balance_with_actuators(p, w, velocities, accelerations, r.shift, row_values, rate_by_leader);
     if (wants_level) balance.level = reaction_level(p, w);
     // the chart stands in the one block, behind its closing equations
     if (PARTS > 1 && r.chart_forces)
@@ -268,7 +268,7 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
       find_screws(p, k.w, p.rest[j]);
     }
     if (r.demand & DEMAND_FORCES && p.actuators)
-      find_influence(p, k.w, [&](int t) { return k.in.get(r.ties, t); });
+      find_influence(p, k.w, [&](int t) { return k.in.get(r.constraint_rates, t); });
   });
   if (r.demand & DEMAND_VELOCITY) {
     each([&](RowPack& k) { k.read_columns(r.rates, k.w.rate); });
@@ -290,7 +290,7 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
   each([&](RowPack& k) { k.write_motion(); });
   each([&](RowPack& k) {
     if (r.demand & DEMAND_FORCES)
-      k.balance([&](int t) { return k.in.get(r.ties, t); });
+      k.balance([&](int t) { return k.in.get(r.constraint_rates, t); });
     else if (r.outputs)
       k.write_outputs(nullptr);
   });

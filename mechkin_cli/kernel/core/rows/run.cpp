@@ -52,7 +52,7 @@ Refusal check_demand(const Request& r, const OutputList* outputs, const Plan& p)
   REQUIRE(!jerk || (acceleration && r.jerks), "jerks need accelerations, and jerks of the inputs");
   REQUIRE(forces || (!r.loads && !r.undefined), "the values of loads go with forces");
   REQUIRE(!forces || !(program_demand(p.law) & ~r.demand), "loads that vary need more than is demanded");
-  REQUIRE(!forces || !p.ties || r.ties, "forces need the rates of tied inputs");
+  REQUIRE(!forces || !p.input_constraints || r.constraint_rates, "forces need the rates of led inputs");
   REQUIRE(!forces || !p.frictions || acceleration, "forces with friction need accelerations");
   REQUIRE(!power || forces, "the power error needs forces");
   REQUIRE(condition == (r.condition != nullptr), "an array for the condition goes with its demand");

@@ -4,7 +4,7 @@
 #include "forces/actuation_memory.hpp"
 #include "rows/chart.hpp"
 #include "forces/friction_memory.hpp"
-#include "joints/legs.hpp"
+#include "joints/hung_bodies.hpp"
 #include "joints/pairs.hpp"
 
 namespace {
@@ -32,8 +32,8 @@ struct Workspace {
   Pack* effort;                   // inputs
   Actuation actuation;
   Rubbing rubbing;
-  Vec3* across;                   // legs: what its end needs across its line
-  Pack* holding;                  // legs: couple about its line
+  Vec3* across;                   // hung bodies: what its end needs across its line
+  Pack* holding;                  // hung bodies: couple about its line
   Pack* saved;                    // states before a trial step
   Pack* kept;                     // largest block squared: factors of lanes that are done
   Mask* kept_swap;
@@ -89,8 +89,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->effort = (Pack*)take((p.inputs + 1) * pack);
   lay_out_actuation(p, take, &w->actuation);
   lay_out_friction(p, take, &w->rubbing);
-  w->across = (Vec3*)take((p.legs + 1) * sizeof(Vec3));
-  w->holding = (Pack*)take((p.legs + 1) * pack);
+  w->across = (Vec3*)take((p.hung_bodies + 1) * sizeof(Vec3));
+  w->holding = (Pack*)take((p.hung_bodies + 1) * pack);
   w->saved = (Pack*)take(p.states * pack);
   w->direction = (Pack*)take(p.charts * p.columns * pack);
   w->origin = (Pack*)take((p.charts ? p.states : 0) * pack);

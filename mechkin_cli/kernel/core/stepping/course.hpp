@@ -1,4 +1,4 @@
-// The course of the inputs between rows: their own laws and ties, as a tape over one parameter (time, or the input that
+// The course of the inputs between rows: their own laws and what follows them, as a tape over one parameter (time, or the input that
 // the others follow), in pieces on which it is smooth.
 #pragma once
 

@@ -27,7 +27,7 @@ Refusal Positions::prepare() {
   REQUIRE(rows_.turn.size() == n * turn_slots_, "turns: wrong shape");
   REQUIRE(!(outputs_.demand() & ~demand), "the outputs need more than is demanded");
   REQUIRE(!(demand & DEMAND_FORCES) || !(program_demand(p.law) & ~demand), "loads that vary need more than is demanded");
-  REQUIRE(!(demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  REQUIRE(!(demand & DEMAND_FORCES) || p.input_constraints == 0, "rates of led inputs by row have no place here");
   REQUIRE(!(demand & DEMAND_POWER), "no place for a power error");
   REQUIRE(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
   REQUIRE(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");

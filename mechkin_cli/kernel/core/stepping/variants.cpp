@@ -277,7 +277,7 @@ Refusal Variants::prepare() const {
   REQUIRE(base_.size > 0.0 && std::isfinite(base_.size), "size: not positive");
   REQUIRE(!(outputs_.demand() & ~base_.demand), "the outputs need more than is demanded");
   REQUIRE(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
-  REQUIRE(!(base_.demand & DEMAND_FORCES) || p.ties == 0, "rates of tied inputs by row have no place here");
+  REQUIRE(!(base_.demand & DEMAND_FORCES) || p.input_constraints == 0, "rates of led inputs by row have no place here");
   REQUIRE(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
   REQUIRE(!(base_.demand & DEMAND_POWER), "no place for the power error");
   const unsigned demand = base_.demand;

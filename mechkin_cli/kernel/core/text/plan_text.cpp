@@ -137,7 +137,7 @@ struct Verb {
 constexpr Verb VERBS[] = {
     {"add_tree_joint", said<&PlanBuilder::add_tree_joint>},
     {"add_closing_joint", said<&PlanBuilder::add_closing_joint>},
-    {"add_leg", said<&PlanBuilder::add_leg>},
+    {"add_hung_links", said<&PlanBuilder::add_hung_links>},
     {"add_place", said<&PlanBuilder::add_place>},
     {"add_axis", said<&PlanBuilder::add_axis>},
     {"add_free_motion", said<&PlanBuilder::add_free_motion>},
@@ -150,7 +150,7 @@ constexpr Verb VERBS[] = {
     {"set_load_program", said<&PlanBuilder::set_load_program>},
     {"set_driven", said<&PlanBuilder::set_driven>},
     {"add_actuator", said<&PlanBuilder::add_actuator>},
-    {"add_tie", said<&PlanBuilder::add_tie>},
+    {"add_input_constraint", said<&PlanBuilder::add_input_constraint>},
     {"add_friction", said<&PlanBuilder::add_friction>},
     {"add_contact", said<&PlanBuilder::add_contact>},
     {"add_size_point", said<&PlanBuilder::add_size_point>},

@@ -1,0 +1,170 @@
+"""Mobility against theory: known linkages, general loops of any pairs, idle and redundant
+freedoms."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from classics import platforms, rings
+from classics.drawing import Classic
+from classics.platforms import wren
+from mobility.overconstrained import (
+    Z,
+    bricard,
+    coaxial_hinge,
+    double_spherical,
+    general,
+    leg,
+    planar,
+    ring,
+    sarrus,
+    stretched,
+)
+from references import FILE_OF
+
+import mechkin_cli as mk
+
+SCREW_JACK = ring("RHP", [(0, 0, 0), (0, 0, 1), (0, 0, 2)], [Z] * 3, lead=0.1)
+
+
+@pytest.mark.parametrize(
+    ("text", "count", "mobility", "redundant"),
+    [
+        pytest.param(planar(), -2, 1, 3, id="planar four-bar"),
+        pytest.param(sarrus(), 0, 1, 1, id="Sarrus"),
+        pytest.param(bricard(), 0, 1, 1, id="Bricard"),
+        pytest.param(SCREW_JACK, -3, 1, 4, id="R-H-P on one axis"),
+        pytest.param(general("PRPRRH", lead=0.3), 0, 0, 0, id="PRPRRH"),
+        pytest.param(general("RPRHRRR", lead=0.3), 1, 1, 0, id="RPRHRRR"),
+        pytest.param(general("RRRRRRH", lead=0.3), 1, 1, 0, id="RRRRRRH"),
+        pytest.param(general("RPRRHC", lead=0.3), 1, 1, 0, id="RPRRHC"),
+        pytest.param(general("PPHCHP", lead=0.3), 1, 1, 0, id="PPHCHP"),
+        pytest.param(general("RCSR"), 1, 1, 0, id="RCSR"),
+        pytest.param(double_spherical(), 2, 2, 0, id="RSSR"),
+        pytest.param(general("RRRR"), -2, 0, 2, id="general 4R"),
+    ],
+)
+def test_count_truth_and_redundancy(text: str, count: int, mobility: int, redundant: int) -> None:
+    found = mk.loads(text).mobility()
+    assert found.diagnostics == ()
+    assert (found.count, found.mobility, found.loops) == (count, mobility, 1)
+    assert sum(item.number for item in found.redundant) == redundant
+
+
+@pytest.mark.parametrize("name", ["bennett", "parallelogram", "hooke", "slider_crank"])
+def test_committed_overconstrained_mechanisms(name: str) -> None:
+    found = mk.load(FILE_OF[name]).mobility()
+    assert (found.count, found.mobility) == (-2, 1)
+    assert [item.number for item in found.redundant] == [3]
+    assert "3 constraints are redundant" in found.verdict
+
+
+def test_a_planar_loop_carries_a_force_and_two_moments() -> None:
+    (item,) = mk.loads(planar()).mobility().redundant
+    assert item.joints == ("J1", "J2", "J3", "J4")
+    assert item.wrenches == "moments about x and y, force along z"
+    assert item.sentence.startswith("the loop through J1, J2, J3, J4 carries 3 redundant")
+
+
+def test_a_cure_leaves_nothing_redundant() -> None:
+    text = planar()
+    (item,) = mk.loads(text).mobility().redundant
+    assert item.cure == "none is left with J1 as S and J2 as C"
+    cured = text.replace("J1: {type: R", "J1: {type: S").replace("J2: {type: R", "J2: {type: C")
+    cured = cured.replace("point: [0, 0, 0], axis: [0, 0, 1]", "point: [0, 0, 0]")
+    found = mk.loads(cured).mobility()
+    assert (found.count, found.mobility, found.redundant) == (1, 1, ())
+
+
+def test_the_axes_of_a_spherical_linkage_bear_forces_through_their_point() -> None:
+    axes = [(1, 0, 0), (1, 1, 0.2), (0.3, 1, 1), (0, 0, 1)]
+    points = [tuple(2 * c for c in axis) for axis in axes]
+    found = mk.loads(ring("RRRR", points, axes)).mobility()
+    assert found.mobility == 1
+    assert [item.wrenches for item in found.redundant] == [
+        "forces along all axes through one point"
+    ]
+
+
+def test_a_link_between_two_spheres_spins() -> None:
+    found = mk.loads(double_spherical()).mobility()
+    assert [item.sentence for item in found.idle] == ["L2 spins freely about J2-J3"]
+    assert found.useful == 1
+
+
+def test_the_two_halves_of_a_leg_spin_together() -> None:
+    found = mk.loads(leg()).mobility()
+    assert found.mobility == 2
+    assert [item.sentence for item in found.idle] == ["tube and rod spin together freely about A-C"]
+
+
+def test_a_collar_between_coaxial_hinges_turns() -> None:
+    found = mk.loads(coaxial_hinge()).mobility()
+    assert found.mobility == 2
+    (idle,) = found.idle
+    assert idle.sentence == "L2 turns freely about the common axis of J2, J3"
+
+
+def test_a_motion_of_first_order_is_no_mobility() -> None:
+    found = mk.loads(stretched()).mobility()
+    assert (found.first_order, found.mobility) == (1, 0)
+    assert found.verdict.startswith("nothing can move but to first order")
+
+
+def test_coordinates_that_never_move_are_named() -> None:
+    text = planar().replace("J2: {type: R", "J2: {type: C")
+    found = mk.loads(text).mobility()
+    assert (found.mobility, found.fixed) == (1, ("J2.s",))
+
+
+def test_inputs_are_not_needed_but_checked() -> None:
+    text = planar() + "motion: {inputs: {J1.theta: {at: 0}, J4.theta: {at: 0}}}\n"
+    (error,) = mk.loads(text).mobility().diagnostics
+    assert (error.code, error.measured) == ("inputs-dependent", "2 inputs drive one freedom")
+
+
+def test_a_locked_input_is_named() -> None:
+    text = planar().replace("J2: {type: R", "J2: {type: C")
+    found = mk.loads(text + "motion: {inputs: {J2.s: {at: 0}}}\n").mobility()
+    assert [d.code for d in found.diagnostics] == ["input-locked", "undriven-freedom"]
+
+
+def test_what_cannot_be_assembled_has_a_count_only() -> None:
+    text = ring("RRR", [(0, 0, 0), (1, 0, 0), (3, 0, 0)], [Z] * 3)
+    text = text.replace("point: [3, 0, 0]", "point: {L2: [3, 0, 0], ground: [9, 0, 0]}")
+    found = mk.loads(text).mobility()
+    assert (found.mobility, found.count) == (None, -3)
+    (error,) = found.diagnostics
+    assert error.code == "not-assembled"
+
+
+def test_motions_of_several_dimensions_are_named() -> None:
+    found = mk.loads(wren(5)).mobility()
+    assert (found.mobility, found.dimensions, found.first_order) == (2, (2, 1), 3)
+    assert found.verdict.startswith("motions of 1 and 2 freedoms meet (3 to first order); ")
+
+
+def test_dimensions_that_nearly_fit_are_no_motion_of_their_own() -> None:
+    """Bricard's loop with seven digits is open by more than a motion, by less than what is surely
+    rigid."""
+    bricard = next(case.text for case in rings.CASES if case.name == "Bricard trihedral")
+    found = mk.loads(rounded(bricard, 7)).mobility()
+    (error,) = found.diagnostics
+    assert (found.mobility, found.first_order) == (None, 1)
+    assert error.code == "mobility-unclear"
+    assert "the loops are open by" in (error.measured or "")
+
+
+@pytest.mark.parametrize(
+    "case", [case for case in platforms.CASES if "6" in case.name], ids=lambda case: case.name
+)
+def test_nine_digits_are_enough(case: Classic) -> None:
+    found = mk.loads(rounded(case.text, 9)).mobility()
+    assert (found.dimensions, found.first_order) == (case.dimensions, case.first_order)
+
+
+def rounded(text: str, digits: int) -> str:
+    """A file whose numbers have some digits behind the point."""
+    number = re.compile(r"-?\d+\.\d+(e-?\d+)?")
+    return number.sub(lambda found: f"{float(found.group()):.{digits}f}", text)
