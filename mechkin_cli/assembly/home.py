@@ -135,8 +135,8 @@ def _letters(
 ) -> dict[int, str]:
     """The name of each assembly, by its number, in the order of the names.
 
-    Assemblies with the same coordinates, as of a platform on rods, follow their joint points (points,
-    3, assemblies).
+    Assemblies with the same coordinates, as of a platform on rods, follow their joint points
+    (points, 3, assemblies).
     """
     grid = mechanism.box_diagonal() * tolerances.MODE_ORDER
 

@@ -16,7 +16,6 @@ from mechkin_cli.diagnostics import legible
 from mechkin_cli.tables.columns import INFINITE, TableColumn, TableSource, Words
 from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.markdown import footnotes
-from mechkin_cli.tables.summary import written_notes
 from mechkin_cli.tables.table import Columns
 
 if TYPE_CHECKING:
@@ -98,7 +97,7 @@ def latex_bytes(columns: Columns, source: TableSource) -> bytes:
     notes = footnotes(columns, source)
     below = [] if columns.summary is None else _below(columns.summary)
     if columns.summary is not None:
-        notes = [*written_notes(columns.summary), *notes]
+        notes = [*columns.summary.written_notes(), *notes]
     if len(rows) > PAGE_ROWS:
         lines = [r"% \usepackage{booktabs,longtable}", *_longtable(aligned, heads, rows, caption)]
     else:

@@ -26,7 +26,6 @@ from mechkin_cli.tables.columns import (
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.decimals import DecimalColumn, column_texts, decimal_column
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_PROOF, markdown_text
-from mechkin_cli.tables.summary import written_notes
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP, Status, has_rates
 
@@ -123,7 +122,7 @@ def _below(summary: Summary) -> str:
         for row in zip(*columns, strict=True)
     )
     rule = [f":{'-' * (widths[0] - 1)}", *(f"{'-' * (width - 1)}:" for width in widths[1:])]
-    said = "".join(f"- {note}\n" for note in written_notes(summary, markdown_text))
+    said = "".join(f"- {note}\n" for note in summary.written_notes(markdown_text))
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
 
 
