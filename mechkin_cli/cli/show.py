@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import response, tables
+from mechkin_cli import response
 from mechkin_cli.assembly import NEAR
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.errors import WORDS
@@ -57,7 +57,7 @@ def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
         if left_out:
             lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
         if table.summary is not None:
-            notes = tables.written_notes(table.summary, _one_line)
+            notes = table.summary.written_notes(_one_line)
             lines += [line for note in notes for line in wrap(f"({note})", width)]
         yield "\n".join(lines) + "\n\n"
 

@@ -97,7 +97,6 @@ if TYPE_CHECKING:
         row_weights as row_weights,
         statistics as statistics,
         summary_of as summary_of,
-        written_notes as written_notes,
     )
     from mechkin_cli.tables.table import (
         Columns as Columns,
@@ -188,7 +187,6 @@ __getattr__, __dir__ = lazy_names(
             "row_weights",
             "statistics",
             "summary_of",
-            "written_notes",
         ],
         "table": ["Columns", "evaluate", "summary_table"],
         "writers": ["USUAL_FORMATS", "WRITERS", "written_files"],

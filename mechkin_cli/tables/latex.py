@@ -97,9 +97,7 @@ def latex_bytes(columns: Columns, source: TableSource) -> bytes:
     notes = footnotes(columns, source)
     below = [] if columns.summary is None else _below(columns.summary)
     if columns.summary is not None:
-        from mechkin_cli.tables.summary import written_notes
-
-        notes = [*written_notes(columns.summary), *notes]
+        notes = [*columns.summary.written_notes(), *notes]
     if len(rows) > PAGE_ROWS:
         lines = [r"% \usepackage{booktabs,longtable}", *_longtable(aligned, heads, rows, caption)]
     else:

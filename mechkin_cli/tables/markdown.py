@@ -111,8 +111,6 @@ def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> b
 
 
 def _below(summary: Summary) -> str:
-    from mechkin_cli.tables.summary import written_notes
-
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
         header = _header(TableColumn(each.label, each.unit, np.empty(0)))
@@ -124,7 +122,7 @@ def _below(summary: Summary) -> str:
         for row in zip(*columns, strict=True)
     )
     rule = [f":{'-' * (widths[0] - 1)}", *(f"{'-' * (width - 1)}:" for width in widths[1:])]
-    said = "".join(f"- {note}\n" for note in written_notes(summary, markdown_text))
+    said = "".join(f"- {note}\n" for note in summary.written_notes(markdown_text))
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
 
 

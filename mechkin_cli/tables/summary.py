@@ -216,17 +216,6 @@ def summary_of(
     return Summary(words, name, unit, summed, tuple(_notes(words, summed, source)))
 
 
-def written_notes(summary: Summary, written: Callable[[str], str] = str) -> list[str]:
-    """What is said below the rows; `written` makes of a label what is to stand in the file."""
-    over = "" if summary.parameter == ROW_NUMBER else f"; mean and rms over {summary.parameter}"
-    has_mean = {"mean", "rms"}.intersection(summary.words)
-    has_place = set(_WITH_PLACE).intersection(summary.words)
-    said = [f"{AT}: {summary.places}{over if has_mean else ''}"] if has_place else []
-    if has_mean and not has_place and over:
-        said = [over.removeprefix("; ")]
-    return [written(text) for text in (*said, *summary.notes)]
-
-
 def _notes(
     words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
 ) -> list[str]:
@@ -285,6 +274,16 @@ class Summary(NamedTuple):
     unit: str
     columns: tuple[SummaryColumn, ...]
     notes: tuple[str, ...]
+
+    def written_notes(self, written: Callable[[str], str] = str) -> list[str]:
+        """What is said below the rows; `written` makes of a label what is to stand in the file."""
+        over = "" if self.parameter == ROW_NUMBER else f"; mean and rms over {self.parameter}"
+        has_mean = {"mean", "rms"}.intersection(self.words)
+        has_place = set(_WITH_PLACE).intersection(self.words)
+        said = [f"{AT}: {self.places}{over if has_mean else ''}"] if has_place else []
+        if has_mean and not has_place and over:
+            said = [over.removeprefix("; ")]
+        return [written(text) for text in (*said, *self.notes)]
 
     @property
     def lines(self) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.json import table_record
 from mechkin_cli.tables.layout import ROW_NUMBER
 from mechkin_cli.tables.markdown import markdown_bytes
-from mechkin_cli.tables.summary import statistics, written_notes
+from mechkin_cli.tables.summary import statistics
 from mechkin_cli.units.dimension import LENGTH
 
 WORDS = ("max", "min", "peak", "mean", "rms", "range")
@@ -94,7 +94,7 @@ def test_places_of_what_stands_still_are_numbers_of_rows(all_ok, layout):
     assert table.summary.parameter == ROW_NUMBER
     assert column.statistics.peak == (7.0, 2.0)  # the first of two as large
     assert column.statistics.mean == pytest.approx(1.0, rel=1e-15)
-    assert written_notes(table.summary) == ["at: row.number"]
+    assert table.summary.written_notes() == ["at: row.number"]
 
 
 def test_a_column_without_cells_has_an_empty_summary(source, layout):
