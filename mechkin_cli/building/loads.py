@@ -6,7 +6,7 @@ wrong: so bare numbers of gravity are checked against usual units.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Literal
@@ -30,6 +30,7 @@ from mechkin_cli.mechanism import (
     Attached,
     Damper,
     Drives,
+    Effort,
     Joint,
     JointLoad,
     LinkLoad,
@@ -44,6 +45,7 @@ from mechkin_cli.mechanism import (
     add,
     is_angle,
     renumbered,
+    renumbered_amount,
     scale,
     varying,
 )
@@ -135,16 +137,24 @@ def _like_gravity(in_si: float) -> bool:
 
 
 class RunLoads(NamedTuple):
-    """The loads of one run: loads, gravity, the laws of the loads that vary, friction."""
+    """The loads of one run: loads, gravity, the laws of the loads that vary, friction; `numbers` of
+    these laws by those that they have among the laws of all runs."""
 
     loads: tuple[Load, ...]
     gravity: Vector
     laws: tuple[LoadLaw, ...]
     frictions: tuple[Rubbing, ...]
+    numbers: Mapping[int, int]
 
     def on(self, mechanism: Mechanism) -> Mechanism:
         """The mechanism with these loads."""
         return replace(mechanism, loads=self.loads, gravity=self.gravity, frictions=self.frictions)
+
+    def efforts(self, efforts: Iterable[Effort]) -> tuple[Effort, ...]:
+        """Efforts of the run with the laws of their amounts by this run's numbers."""
+        return tuple(
+            each._replace(amount=renumbered_amount(each.amount, self.numbers)) for each in efforts
+        )
 
 
 class LoadBuilder:
@@ -209,7 +219,7 @@ class LoadBuilder:
                 numbers.setdefault(amount.number, len(numbers))
             loads.append(renumbered(item, numbers))
         laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
-        return RunLoads(tuple(loads), gravity, laws, tuple(frictions))
+        return RunLoads(tuple(loads), gravity, laws, tuple(frictions), numbers)
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
         """The runs in which a load acts; unknown ones are noted."""

@@ -224,7 +224,7 @@ class _ResponseBuilder:
             place=self.fields.document.key_place(path),
             start=start,
             assembly=self._assembly(path, section),
-            efforts=efforts,
+            efforts=acting.efforts(efforts),
             driven=driven.inputs,
             course=driven.course,
             moments=timed.time,
@@ -246,7 +246,7 @@ class _ResponseBuilder:
             known,
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
-            efforts=efforts,
+            efforts=acting.efforts(efforts),
             mechanism=replace(acting.on(self.problem.mechanism), drives=None),
             load_laws=acting.laws,
         )

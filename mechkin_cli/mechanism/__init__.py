@@ -69,6 +69,7 @@ if TYPE_CHECKING:
         Varying as Varying,
         diagonal as diagonal,
         renumbered as renumbered,
+        renumbered_amount as renumbered_amount,
         varying as varying,
         without_effort as without_effort,
     )
@@ -208,6 +209,7 @@ __getattr__, __dir__ = lazy_names(
             "Varying",
             "diagonal",
             "renumbered",
+            "renumbered_amount",
             "varying",
             "without_effort",
         ],

@@ -205,14 +205,15 @@ def varying(load: Load) -> tuple[Varying, ...]:
 def renumbered(load: Load, numbers: Mapping[int, int]) -> Load:
     """The load with the laws of its values under other numbers."""
     if isinstance(load, JointLoad):
-        return load._replace(value=_renumbered(load.value, numbers))
+        return load._replace(value=renumbered_amount(load.value, numbers))
     if isinstance(load, LinkLoad):
-        x, y, z = (_renumbered(amount, numbers) for amount in load.value)
+        x, y, z = (renumbered_amount(amount, numbers) for amount in load.value)
         return load._replace(value=(x, y, z))
     return load
 
 
-def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
+def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
+    """The amount with its law, if it has one, under another number."""
     if isinstance(amount, Varying):
         return amount._replace(number=numbers[amount.number])
     return amount

@@ -153,7 +153,8 @@ def follow(
     """
     rows = inputs.shape[1]
     guess, limit = np.empty((start.size, rows)), np.empty(rows)
-    along = np.empty((turn_count(plan), rows)) if turns else None
+    # a branch that ends at its first row leaves them as they are
+    along = np.zeros((turn_count(plan), rows)) if turns else None
     given = [] if turn is None else turn.tolist()
     found = _kernel.follow_rows(
         plan,

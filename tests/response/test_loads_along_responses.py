@@ -134,3 +134,39 @@ def test_a_law_that_ends() -> None:
     assert not found.solved.all()
     (error,) = (d for d in found.diagnostics if d.severity == "error")
     assert error.code == "load-undefined"
+
+
+TWO_RUNS = """format: 1
+units: {length: mm, force: N}
+links:
+  k1: {mass: 1, center_of_mass: [10, 0, 0]}
+  k2: {mass: 1, center_of_mass: [30, 0, 0]}
+joints:
+  A: {type: R, links: [ground, k1], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [k1, k2], point: [20, 0, 0], axis: [0, 0, 1]}
+loads:
+  - {type: torque, joint: A, value: "7 N*mm - 0.2 N*mm*s/rad*A.theta_dot", runs: [RUNS]}
+responses:
+  a:
+    start: {A.theta: 0, B.theta: 0}
+    time: {values: [0, 0.1]}
+    efforts: {B.theta: "1 N*mm - 0.4 N*mm*s/rad*B.theta_dot"}
+  b:
+    start: {A.theta: 0, B.theta: 0}
+    time: {values: [0, 0.1]}
+    efforts:
+      A.theta: "2 N*mm - 0.1 N*mm*s/rad*A.theta_dot"
+      B.theta: "3 N*mm - 0.1 N*mm*s/rad*B.theta_dot"
+"""
+
+
+@pytest.mark.parametrize("runs", ["a", "b", "a, b"])
+def test_efforts_are_those_of_their_own_run(runs: str) -> None:
+    """Whatever loads and efforts by expression other runs have before."""
+    model = mk.loads(TWO_RUNS.replace("RUNS", runs))
+    laws = {("a", "B"): (1, 0.4), ("b", "A"): (2, 0.1), ("b", "B"): (3, 0.1)}
+    for (run, joint), (begin, falls) in laws.items():
+        rows = model.respond(run)
+        assert (rows.unit(f"{joint}.theta_dot"), rows.unit(f"{joint}.effort")) == ("rad/s", "N*mm")
+        rate = rows[f"{joint}.theta_dot"]
+        assert rows[f"{joint}.effort"] == pytest.approx(begin - falls * rate, rel=1e-13)
