@@ -118,6 +118,9 @@ class InvalidFile(MechkinError):
         self.diagnostics = tuple(diagnostics)
         super().__init__("\n".join(map(str, self.diagnostics)))
 
+    def __reduce__(self) -> tuple[type[InvalidFile], tuple[tuple[Diagnostic, ...]]]:
+        return InvalidFile, (self.diagnostics,)
+
 
 class UsageError(MechkinError):
     """A call that asks for something that does not exist (a table, a mode, a file to write to)."""

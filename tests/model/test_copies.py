@@ -87,3 +87,20 @@ def test_answers_are_copied(again) -> None:
         assert len(again(answer) if hasattr(answer, "__len__") else [again(answer)]) > 0
     for answer in (model.mobility(), run.certificate, run.summary(), run.peak("O1.effort")):
         assert repr(again(answer)) == repr(answer)
+
+
+@pytest.mark.parametrize(
+    "raised",
+    [
+        lambda: mk.loads("format: 1\nlinks: {a: {mas: 1}}\n"),
+        lambda: mk.load(FILE_OF["rcsr"]).analyze(["O4.thet"]),
+        lambda: mk.load(FILE_OF["rcsr"]).analyze()["1 +"],
+    ],
+)
+def test_a_copy_of_an_error_says_the_same(raised) -> None:
+    with pytest.raises(mk.MechkinError) as caught:
+        raised()
+    other = pickle.loads(pickle.dumps(caught.value))
+    assert type(other) is type(caught.value)
+    assert str(other) == str(caught.value)
+    assert vars(other) == vars(caught.value)
