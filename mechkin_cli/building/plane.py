@@ -106,6 +106,7 @@ def _joint(joint: spatial.JointBase) -> spatial.AnyJoint:
     if isinstance(joint, written.PinInSlotJoint):
         of_slot = {"point": _each(joint.point), "normal": _NORMAL, "slot": _flat(joint.slot)}
         return section_of(_PinInSlot, type=joint.type, links=links, **of_slot)  # type: ignore[return-value]
+    assert isinstance(joint, written.PlaneWeldJoint)
     return section_of(spatial.WeldJoint, type="W", links=links)
 
 

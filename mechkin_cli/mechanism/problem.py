@@ -174,7 +174,7 @@ class Problem:
 
 # Loads that vary: laws of coordinates, rates and time.
 #
-# The kernel evaluates them row by row before the forces (`solver.quantity_program`); here is what
+# The kernel evaluates them row by row before the forces (`plan/programs.py`); here is what
 # they are over rows of numbers.
 #
 # A law is an expression of quantities that are known without forces, or a table's curve over one of

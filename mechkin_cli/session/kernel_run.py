@@ -78,7 +78,7 @@ class RowInputs(NamedTuple):
         jerks: (inputs, rows), needed for third derivatives.
         constraint_rates: rates of inputs by those that lead them (constraints, rows), needed for
             forces where there are any.
-        turned: (turn slots, rows) as `solver.closing_turns` has them; springs on angles and laws of
+        turned: (turn slots, rows) as `kernel.closing_turns` has them; springs on angles and laws of
             loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
         full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
@@ -135,7 +135,7 @@ POSITIONS = Ask()
 
 class PreciseConstants(NamedTuple):
     """The constants (constants, 2) of a run in double-double, of its `plan` and of its `outputs`,
-    as `solver.precise.Precise` gives them; None: the doubles that they have."""
+    as `session.Precise` gives them; None: the doubles that they have."""
 
     plan: Floats | None = None
     outputs: Floats | None = None

@@ -1,10 +1,10 @@
 """A session: one problem's structure in the kernel, its inputs, and its verbs.
 
-Everything that is computed about a mechanism goes through four verbs: *close*, *follow*, *search*
-and *run*. A session is a frozen value: other rows, another first assembly, size or packing make
-another session, by `dataclasses.replace`. What follows from it is remembered with it, by the
-arguments of the question (`memo.remembered`); only a `Structure` is shared between sessions, and it
-knows nothing of rows or of the first assembly.
+Everything that is computed about a mechanism goes through three verbs: *close*, *follow* and *run*;
+the room `search` finds all assemblies by them. A session is a frozen value: other rows, another
+first assembly, size or packing make another session, by `replace`. What follows from it is
+remembered with it, by the arguments of the question (`memo.remembered`); only a `Structure` is
+shared between sessions, and it knows nothing of rows or of the first assembly.
 """
 
 from __future__ import annotations
@@ -312,7 +312,7 @@ class Session:
         whole: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
-        those of `solver.follow.follow`."""
+        those of `session.following.follow`."""
         return follow_path(
             self.plan,
             path,
@@ -351,9 +351,8 @@ class Session:
     def run(
         self, rows: RowInputs, ask: Ask = POSITIONS, constants: PreciseConstants | None = None
     ) -> Batch:
-        """Closes all rows and computes what is asked for; arguments as those of `solver.batch.run`,
-        the constants `session.precise.constants(session)` and
-        `session.precise.outputs(session, wanted)`."""
+        """Closes all rows and computes what is asked for; the constants are
+        `session.precise.constants(session)` and `session.precise.outputs(session, wanted)`."""
         packing = self.packing
         return run_kernel(
             self.plan, rows, ask, constants, lanes=packing.lanes, threads=packing.threads

@@ -166,7 +166,7 @@ SPELLED = {
 
 
 def test_conditions_are_those_of_the_kernel_in_their_order() -> None:
-    """What `solver.redundancy` knows of an equation is said of the right one."""
+    """What `session.redundancy` knows of an equation is said of the right one."""
     source = Path(__file__).parents[2] / "mechkin_cli/kernel/core/joints/pairs.hpp"
     text = source.read_text("utf-8")
     kernel = {}
