@@ -117,6 +117,8 @@ if TYPE_CHECKING:
         differentiation as differentiation,
         law_value as law_value,
         quantities_read as quantities_read,
+        read_by as read_by,
+        response_problem as response_problem,
         undefined_laws as undefined_laws,
     )
     from mechkin_cli.mechanism.quantities import (
@@ -146,7 +148,6 @@ if TYPE_CHECKING:
         Stop as Stop,
         TurnsEnd as TurnsEnd,
     )
-    from mechkin_cli.mechanism.runs import read_by as read_by, response_problem as response_problem
     from mechkin_cli.mechanism.vectors import (
         GROUND as GROUND,
         ZERO as ZERO,
@@ -256,6 +257,8 @@ __getattr__, __dir__ = lazy_names(
             "differentiation",
             "law_value",
             "quantities_read",
+            "read_by",
+            "response_problem",
             "undefined_laws",
         ],
         "quantities": [
@@ -285,7 +288,6 @@ __getattr__, __dir__ = lazy_names(
             "Stop",
             "TurnsEnd",
         ],
-        "runs": ["read_by", "response_problem"],
         "vectors": [
             "Frame",
             "GROUND",

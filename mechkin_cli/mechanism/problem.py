@@ -1,4 +1,5 @@
-"""Everything that one mechanism file asks for, in SI and checked."""
+"""Everything that one mechanism file asks for, in SI and checked; a response as a problem of its
+own."""
 
 from __future__ import annotations
 
@@ -39,11 +40,13 @@ from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Differentiate
     from mechkin_cli.mechanism.curve import Curve
-    from mechkin_cli.mechanism.response import ResponseProblem
+    from mechkin_cli.mechanism.response import AnyBalance, ResponseProblem
     from mechkin_cli.show import Bools, Floats
 
 
@@ -370,3 +373,41 @@ class _Influence:
             text = f"{name.text} has no derivative by {self.input}"
             raise ExpressionError(text, name.offset, _POSITIONS)
         return (Name(found, name.offset, whole=True),)
+
+
+def response_problem(
+    problem: Problem, response: ResponseProblem, motion: MotionInputs | None = None
+) -> Problem:
+    """The problem at the first moment of a response, with its loads, laws and quantities.
+
+    Its motion, or the `motion` that is given, has one row, in which the start's coordinates are
+    inputs; a solver graph of its `driven` is that of the assembly at the start.
+    """
+    from mechkin_cli.mechanism.response import first_motion  # only for responses
+
+    return replace(
+        problem,
+        mechanism=response.mechanism,
+        motion=first_motion(response, problem.units) if motion is None else motion,
+        assembly=response.assembly,
+        load_laws=response.load_laws,
+        held=response.held,
+        follow=None,
+        response=response,
+    )
+
+
+def read_by(balances: Iterable[AnyBalance], problem: Problem) -> list[str]:
+    """Names of the quantities that balances read at once."""
+    from mechkin_cli.mechanism.response import Harmonics  # only for balances
+
+    found: list[str] = []
+    for balance in balances:
+        if isinstance(balance, Harmonics):
+            known = problem.quantities()
+            for _, expression in balance.of:
+                names = sorted(expression.names)
+                found += [n if n in known else n.rpartition(".")[0] for n in names]
+        else:
+            found += [f"{joint}.{coordinate}.effort" for joint, coordinate in problem.acting]
+    return [name for name in dict.fromkeys(found) if name in problem.quantities()]

@@ -1,4 +1,5 @@
-"""The records of a kernel plan as plain data, and the one place that hands them over.
+"""The records of a kernel plan as plain data, the kernel's enumerations in them, and the one place
+that hands them over.
 
 A record is a call of the kernel's `PlanBuilder` with its arguments in their order (`_kernel.pyi`).
 Its *constants* are the numbers that parameters may vary; the others (codes, indices, signs) are
@@ -16,7 +17,34 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Outputs, Plan
+    from mechkin_cli.kernel._kernel import (
+        ContactCode as ContactCode,
+        Demand as Demand,
+        FreeCode as FreeCode,
+        FrictionState as FrictionState,
+        LoadCode as LoadCode,
+        OutputCode as OutputCode,
+        Outputs,
+        PassageEnd as PassageEnd,
+        Plan,
+        ReadCode as ReadCode,
+        RowFlag as RowFlag,
+        TrackEnd as TrackEnd,
+        TreeCode as TreeCode,
+    )
+else:
+    # the kernel's enumerations, defined only in its sources
+    ContactCode = _kernel.ContactCode
+    Demand = _kernel.Demand
+    FreeCode = _kernel.FreeCode
+    FrictionState = _kernel.FrictionState
+    LoadCode = _kernel.LoadCode
+    OutputCode = _kernel.OutputCode
+    PassageEnd = _kernel.PassageEnd
+    ReadCode = _kernel.ReadCode
+    RowFlag = _kernel.RowFlag
+    TrackEnd = _kernel.TrackEnd
+    TreeCode = _kernel.TreeCode
 
 
 Number = Any
