@@ -37,7 +37,7 @@ from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, respo
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
-from mechkin_cli.units import UnitSystem
+from mechkin_cli.units import Dimension, UnitSystem
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Differentiate
-    from mechkin_cli.mechanism.curve import Curve
     from mechkin_cli.mechanism.response import AnyBalance, ResponseProblem
     from mechkin_cli.show import Bools, Floats
 
@@ -236,15 +235,18 @@ def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diag
         rows = np.flatnonzero(lost & np.isnan(law_value(law, resolve, lost.size)))
         if not rows.size:
             continue
-        place = _LawPlaces(law, resolve, problem.units, lost.size)
         if law.curve is not None:
-            words, limit = "lies outside its table", place.limit(law.curve)
+            dimension = resolve(law.reads[0]).dimension
+            ends = (
+                _in_file(x, dimension, problem.units) for x in (law.curve.first, law.curve.last)
+            )
+            words, limit = "lies outside its table", " to ".join(ends)
             hint = "extend the table, or keep the motion within it"
         else:
             words, limit = "has no finite value", None
             hint = "write an expression that holds in all rows, or move the rows"
         text = f"this load {words} in {_count(rows)}; cells that depend on it stay empty"
-        at = place.measured(int(rows[0]))
+        at = _read_by_law(law, resolve, problem.units, int(rows[0]))
         diagnostics.append(Diagnostic("load-undefined", "error", text, law.place, at, limit, hint))
     return diagnostics
 
@@ -254,37 +256,19 @@ def _count(rows: Sequence[int] | NDArray[np.intp]) -> str:
     return first if len(rows) == 1 else f"{len(rows)} rows, first in {first}"
 
 
-class _LawPlaces(NamedTuple):
-    """What a law reads, row by row and in words."""
+def _read_by_law(law: LoadLaw, resolve: Resolve, units: UnitSystem, row: int) -> str:
+    """`O1.theta = 90 deg, time = 1 s`: what a law reads in a row; vectors are left out."""
+    words = []
+    for name in law.reads:
+        value, dimension = resolve(name).value, resolve(name).dimension
+        if isinstance(value, float | np.ndarray):
+            at_row = np.ravel(value)[row if np.size(value) > 1 else 0]
+            words.append(f"{name} = {_in_file(float(at_row), dimension, units)}")
+    return ", ".join(words) or f"row {row + 1}"
 
-    law: LoadLaw
-    resolve: Resolve
-    units: UnitSystem
-    size: int
 
-    def rows(self, name: str) -> Floats:
-        """A scalar quantity over the rows, in SI."""
-        value = np.asarray(self.resolve(name).value, dtype=np.float64)
-        return np.broadcast_to(value, (self.size,))
-
-    def measured(self, row: int) -> str:
-        """`O1.theta = 90 deg, time = 1 s`: what the law reads in a row; vectors are left out."""
-        words = []
-        for name in self.law.reads:
-            quantity = self.resolve(name)
-            if isinstance(quantity.value, float | np.ndarray):
-                words.append(f"{name} = {self._text(float(self.rows(name)[row]), name)}")
-        return ", ".join(words) or f"row {row + 1}"
-
-    def limit(self, curve: Curve) -> str:
-        """The range of a table."""
-        name = self.law.reads[0]
-        return f"{self._text(curve.first, name)} to {self._text(curve.last, name)}"
-
-    def _text(self, value: float, name: str) -> str:
-        dimension = self.resolve(name).dimension
-        in_file = float(self.units.from_si(value, dimension))
-        return f"{in_file:.12g} {self.units.label(dimension)}".rstrip()
+def _in_file(value: float, dimension: Dimension, units: UnitSystem) -> str:
+    return f"{float(units.from_si(value, dimension)):.12g} {units.label(dimension)}".rstrip()
 
 
 _AXES = ("x", "y", "z")
