@@ -47,7 +47,7 @@ from mechkin_cli.mechanism import (
     scale,
     varying,
 )
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyLoad,
     DamperAtJoint,
@@ -134,19 +134,6 @@ def _like_gravity(in_si: float) -> bool:
     return abs(in_si - STANDARD) <= GRAVITY_ON_EARTH * STANDARD
 
 
-class RunLoads(NamedTuple):
-    """The loads of one run: loads, gravity, the laws of the loads that vary, friction."""
-
-    loads: tuple[Load, ...]
-    gravity: Vector
-    laws: tuple[LoadLaw, ...]
-    frictions: tuple[Rubbing, ...]
-
-    def on(self, mechanism: Mechanism) -> Mechanism:
-        """The mechanism with these loads."""
-        return replace(mechanism, loads=self.loads, gravity=self.gravity, frictions=self.frictions)
-
-
 class LoadBuilder:
     """Turns load sections into loads; errors are noted in `fields`.
 
@@ -191,8 +178,9 @@ class LoadBuilder:
         self._put(JointLoad(joint, coordinate, amount))
         return amount
 
-    def of_run(self, run: str) -> RunLoads:
-        """The loads of a run; its laws are numbered in the order of its loads."""
+    def of_run(self, run: str, mechanism: Mechanism) -> tuple[Mechanism, tuple[LoadLaw, ...]]:
+        """The mechanism with the loads of a run, and the laws of those that vary, numbered in the
+        order of the loads."""
         loads: list[Load] = []
         frictions: list[Rubbing] = []
         gravity, numbers = ZERO, dict[int, int]()
@@ -209,7 +197,8 @@ class LoadBuilder:
                 numbers.setdefault(amount.number, len(numbers))
             loads.append(renumbered(item, numbers))
         laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
-        return RunLoads(tuple(loads), gravity, laws, tuple(frictions))
+        acting, rubbing = tuple(loads), tuple(frictions)
+        return replace(mechanism, loads=acting, gravity=gravity, frictions=rubbing), laws
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
         """The runs in which a load acts; unknown ones are noted."""

@@ -214,7 +214,7 @@ class _ResponseBuilder:
         timed = self._timed(path, section)
         driven = build_inputs(self.fields, timed, self.joints, self.per_row) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
-        acting = self.loads.of_run(name)
+        mechanism, laws = self.loads.of_run(name, self.problem.mechanism)
         start = build_start(self.fields, path, section, self.joints)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
@@ -231,8 +231,8 @@ class _ResponseBuilder:
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
-            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
-            load_laws=acting.laws,
+            mechanism=replace(mechanism, drives=None),
+            load_laws=laws,
         )
 
     def recorded(
@@ -241,14 +241,14 @@ class _ResponseBuilder:
         """A known response whose start, loads and links are those of the recording."""
         path: Path = ("responses", name)
         efforts = self._efforts(path, section, name)
-        acting = self.loads.of_run(name)
+        mechanism, laws = self.loads.of_run(name, self.problem.mechanism)
         return replace(
             known,
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
             efforts=efforts,
-            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
-            load_laws=acting.laws,
+            mechanism=replace(mechanism, drives=None),
+            load_laws=laws,
         )
 
     def _timed(self, path: Path, section: written.Response) -> Written:
