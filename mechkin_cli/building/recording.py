@@ -24,7 +24,6 @@ from mechkin_cli.building.fields import Fields
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Move, Quantity, numbers_read_by
 from mechkin_cli.mechanism import (
-    ExactMoments,
     ExactMotion,
     LockedFreedom,
     Problem,
@@ -180,9 +179,8 @@ def precise_response(
     _refuse_errors(fields)
     problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
     problem = replace(problem, held=_held(first, problem, recorder))
-    return Precise(
-        recorder, settled(problem), motion, first, ExactMoments(*over.double_doubles(both))
-    )
+    in_si, written = over.double_doubles(both)
+    return Precise(recorder, settled(problem), motion, first, (in_si, written))
 
 
 def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:

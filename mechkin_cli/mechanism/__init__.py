@@ -78,7 +78,6 @@ if TYPE_CHECKING:
         CellKind as CellKind,
         Course as Course,
         DrivenInput as DrivenInput,
-        ExactMoments as ExactMoments,
         ExactMotion as ExactMotion,
         Moments as Moments,
         MotionInputs as MotionInputs,
@@ -181,7 +180,7 @@ __getattr__, __dir__ = lazy_names(
         "joint": "GROUND_NAME Joint frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal renumbered varying without_effort",
-        "motion": "Assembly CellKind Course DrivenInput ExactMoments ExactMotion Moments "
+        "motion": "Assembly CellKind Course DrivenInput ExactMotion Moments "
         "MotionInputs ORDERS Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
         "FrictionLaw JointType Motion Part Rubbing SECOND Screw screws_at",

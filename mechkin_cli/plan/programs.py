@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle, varying
-from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.records import Output, OutputCode, Program, ReadCode
 from mechkin_cli.tape import Operation, RowRecorder, register

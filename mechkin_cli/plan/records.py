@@ -73,17 +73,14 @@ PLACING = ("add_tree_joint", "add_closing_joint", "add_hung_links")
 """The calls whose constants place links."""
 
 
-class PlanRecord(NamedTuple):
-    """A call of the kernel's `PlanBuilder`; `units` is its constructor, with length unit, origin
-    and size of the mechanism in m."""
-
-    call: str
-    arguments: tuple[Any, ...]
+PlanRecord = tuple[str, tuple[Any, ...]]
+"""A call of the kernel's `PlanBuilder` and its arguments; `units` is its constructor, with length
+unit, origin and size of the mechanism in m."""
 
 
 def record(call: str, *arguments: Any) -> PlanRecord:
     """The record of a call."""
-    return PlanRecord(call, arguments)
+    return call, arguments
 
 
 class Program(NamedTuple):
@@ -123,8 +120,9 @@ def flatten(records: Iterable[PlanRecord | Output]) -> list[Number]:
         if isinstance(record, Output):
             constants += [*record.data, record.factor]
             continue
-        for place in _CONSTANTS.get(record.call, ()):
-            value = record.arguments[place]
+        call, arguments = record
+        for place in _CONSTANTS.get(call, ()):
+            value = arguments[place]
             constants += value if isinstance(value, tuple | list) else [value]
     return constants
 
@@ -135,8 +133,8 @@ def hand_over(records: Sequence[PlanRecord]) -> Plan:
     Raises:
         ValueError: records that do not fit together; numbers that are not finite.
     """
-    units, *others = records
-    builder = _kernel.PlanBuilder(*units.arguments)
+    (_, units), *others = records
+    builder = _kernel.PlanBuilder(*units)
     for call, arguments in others:
         getattr(builder, call)(*arguments)
     return builder.finish()

@@ -151,7 +151,7 @@ SECTION_MISTAKES = [
     ),
     _after("motion: {inputs: {O1: {at: 1}}}", 19, "not a joint coordinate"),
     _after("motion: {inputs: {O1.theta: {from: 0, to: 9}}}", 29, "a step or a count"),
-    _after("motion: {inputs: {O1.theta: {from: 0, to: 9, step: 1, count: 9}}}", 62, "both say"),
+    _after("motion: {inputs: {O1.theta: {from: 0, to: 9, step: 1, count: 9}}}", 62, "both define"),
     _after("motion: {inputs: {O1.theta: {from: 0, to: 9, count: 2.5}}}", 53, "whole number"),
     _after("motion: {inputs: {O1.theta: {from: 0, to: 9, count: 0}}}", 53, "below the limit 1"),
     _after("motion: {inputs: {O1.theta: {from: 0, to: 9, stp: 1}}}", 46, "did you mean step?"),

@@ -62,7 +62,7 @@ def test_the_structure_of_the_plan_is_the_same() -> None:
     records = [
         plan_records(Layout(built.problem.mechanism, built.graph)) for built in (base, fresh)
     ]
-    assert [one.call for one in records[0]] == [one.call for one in records[1]]
+    assert [call for call, _ in records[0]] == [call for call, _ in records[1]]
     assert flatten(records[0]) != flatten(records[1])
 
 
