@@ -201,7 +201,6 @@ class LoadBuilder:
         return replace(mechanism, loads=acting, gravity=gravity, frictions=rubbing), laws
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
-        """The runs in which a load acts; unknown ones are noted."""
         for i, name in enumerate(names or ()):
             if name not in self.runs and not self.fields.is_refused(name):
                 unknown_run(self.fields, (*path, "runs", i), name, self.runs)

@@ -169,8 +169,7 @@ class StopBuilder:
             return None
         law, dimension = watched
         at = self.fields.number((*path, "at"), section.at, dimension)
-        in_file = float(self.fields.units.from_si(at, dimension)) + 0.0  # no -0
-        amount = f"{in_file:.12g} {self.fields.units.label(dimension)}".rstrip()
+        amount = self.fields.units.text(at + 0.0, dimension)  # no -0
         words = f"{section.value.strip()} = {amount}{_DIRECTIONS[section.direction]}"
         return CrossingEnd(words, law.place, law, dimension, at, section.direction)
 

@@ -37,7 +37,7 @@ from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, respo
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
-from mechkin_cli.units import Dimension, UnitSystem
+from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -231,22 +231,21 @@ def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diag
         lost: the rows (rows,) to look at.
     """
     diagnostics = []
+    units = problem.units
     for law in problem.load_laws:
         rows = np.flatnonzero(lost & np.isnan(law_value(law, resolve, lost.size)))
         if not rows.size:
             continue
         if law.curve is not None:
             dimension = resolve(law.reads[0]).dimension
-            ends = (
-                _in_file(x, dimension, problem.units) for x in (law.curve.first, law.curve.last)
-            )
-            words, limit = "lies outside its table", " to ".join(ends)
+            first, last = (units.text(x, dimension) for x in (law.curve.first, law.curve.last))
+            words, limit = "lies outside its table", f"{first} to {last}"
             hint = "extend the table, or keep the motion within it"
         else:
             words, limit = "has no finite value", None
             hint = "write an expression that holds in all rows, or move the rows"
         text = f"this load {words} in {_count(rows)}; cells that depend on it stay empty"
-        at = _read_by_law(law, resolve, problem.units, int(rows[0]))
+        at = _read_by_law(law, resolve, units, int(rows[0]))
         diagnostics.append(Diagnostic("load-undefined", "error", text, law.place, at, limit, hint))
     return diagnostics
 
@@ -263,15 +262,8 @@ def _read_by_law(law: LoadLaw, resolve: Resolve, units: UnitSystem, row: int) ->
         value, dimension = resolve(name).value, resolve(name).dimension
         if isinstance(value, float | np.ndarray):
             at_row = np.ravel(value)[row if np.size(value) > 1 else 0]
-            words.append(f"{name} = {_in_file(float(at_row), dimension, units)}")
+            words.append(f"{name} = {units.text(float(at_row), dimension)}")
     return ", ".join(words) or f"row {row + 1}"
-
-
-def _in_file(value: float, dimension: Dimension, units: UnitSystem) -> str:
-    return f"{float(units.from_si(value, dimension)):.12g} {units.label(dimension)}".rstrip()
-
-
-_AXES = ("x", "y", "z")
 
 
 _POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"
@@ -315,7 +307,7 @@ class _Influence:
         text, axis = name.text, ""
         if text in self.problem.parameters:
             return None
-        if text not in self.known and text.rpartition(".")[2] in _AXES:
+        if text not in self.known and text.rpartition(".")[2] in ("x", "y", "z"):
             text, _, axis = text.rpartition(".")
         wanted = self.known.get(text)
         if wanted is None:
@@ -348,7 +340,6 @@ class _Influence:
         return self._per(f"{text}_ddot", name)
 
     def _per(self, acceleration: str, name: Name) -> tuple[Node, ...]:
-        """The coefficient of an acceleration."""
         leading = self.problem.motion.leading
         found = f"{acceleration}.per.{self.input}_ddot"
         if found not in self.known and leading is not None and leading.name == self.input:
