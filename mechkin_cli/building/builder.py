@@ -313,8 +313,8 @@ def build_problem(
     quantities = {name: swept if name == SWEEP else timed for name in runs_of(file)}
     loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
-    acting = loads.of_run(SWEEP)
-    problem = replace(problem, mechanism=acting.on(mechanism), load_laws=acting.laws)
+    mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
+    problem = replace(problem, mechanism=mechanism, load_laws=laws)
     if not (file.responses and responses):
         return problem
     from mechkin_cli.building.responses import build_responses

@@ -359,8 +359,7 @@ class Following:
         """`O1.theta = 90 deg`: a quantity of the expression in one row."""
         quantity = self._quantity(name)
         value = np.broadcast_to(np.asarray(quantity.value, dtype=float), (self.rows,))[row]
-        in_file = self.fields.units.from_si(float(value), quantity.dimension)
-        return f"{name} = {in_file:.12g} {self.fields.units.label(quantity.dimension)}".rstrip()
+        return f"{name} = {self.fields.units.text(float(value), quantity.dimension)}"
 
     def _jet(self, name: str) -> Jet:
         """A name's own value and derivatives over time, in SI."""

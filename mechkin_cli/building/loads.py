@@ -6,7 +6,7 @@ wrong: so bare numbers of gravity are checked against usual units.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Literal
@@ -30,7 +30,6 @@ from mechkin_cli.mechanism import (
     Attached,
     Damper,
     Drives,
-    Effort,
     Joint,
     JointLoad,
     LinkLoad,
@@ -45,11 +44,10 @@ from mechkin_cli.mechanism import (
     add,
     is_angle,
     renumbered,
-    renumbered_amount,
     scale,
     varying,
 )
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyLoad,
     DamperAtJoint,
@@ -136,27 +134,6 @@ def _like_gravity(in_si: float) -> bool:
     return abs(in_si - STANDARD) <= GRAVITY_ON_EARTH * STANDARD
 
 
-class RunLoads(NamedTuple):
-    """The loads of one run: loads, gravity, the laws of the loads that vary, friction; `numbers` of
-    these laws by those that they have among the laws of all runs."""
-
-    loads: tuple[Load, ...]
-    gravity: Vector
-    laws: tuple[LoadLaw, ...]
-    frictions: tuple[Rubbing, ...]
-    numbers: Mapping[int, int]
-
-    def on(self, mechanism: Mechanism) -> Mechanism:
-        """The mechanism with these loads."""
-        return replace(mechanism, loads=self.loads, gravity=self.gravity, frictions=self.frictions)
-
-    def efforts(self, efforts: Iterable[Effort]) -> tuple[Effort, ...]:
-        """Efforts of the run with the laws of their amounts by this run's numbers."""
-        return tuple(
-            each._replace(amount=renumbered_amount(each.amount, self.numbers)) for each in efforts
-        )
-
-
 class LoadBuilder:
     """Turns load sections into loads; errors are noted in `fields`.
 
@@ -201,8 +178,11 @@ class LoadBuilder:
         self._put(JointLoad(joint, coordinate, amount))
         return amount
 
-    def of_run(self, run: str) -> RunLoads:
-        """The loads of a run; its laws are numbered in the order of its loads."""
+    def of_run(
+        self, run: str, mechanism: Mechanism
+    ) -> tuple[Mechanism, tuple[LoadLaw, ...], dict[int, int]]:
+        """The mechanism with the loads of a run; the laws of those that vary, numbered in the order
+        of the loads; and these numbers by those that the laws have among those of all runs."""
         loads: list[Load] = []
         frictions: list[Rubbing] = []
         gravity, numbers = ZERO, dict[int, int]()
@@ -219,10 +199,10 @@ class LoadBuilder:
                 numbers.setdefault(amount.number, len(numbers))
             loads.append(renumbered(item, numbers))
         laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
-        return RunLoads(tuple(loads), gravity, laws, tuple(frictions), numbers)
+        acting = replace(mechanism, loads=tuple(loads), gravity=gravity, frictions=tuple(frictions))
+        return acting, laws, numbers
 
     def _runs_of(self, path: Path, names: Sequence[str] | None) -> Collection[str]:
-        """The runs in which a load acts; unknown ones are noted."""
         for i, name in enumerate(names or ()):
             if name not in self.runs and not self.fields.is_refused(name):
                 unknown_run(self.fields, (*path, "runs", i), name, self.runs)

@@ -308,7 +308,6 @@ def _orders(
 def _constant_rates(
     fields: Fields, path: Path, item: WithRates, coordinate: str, time: Moments | None
 ) -> list[float]:
-    """The rates of all rows of a sweep."""
     rates = []
     for order, key in enumerate(_RATES, start=1):
         dimension = dimension_of(coordinate, order)
@@ -342,7 +341,6 @@ def _values(
     coordinate: str,
     per_row: int,
 ) -> Floats:
-    """Values in the file's units."""
     dimension = dimension_of(coordinate)
     if isinstance(item, HeldInput):
         return of_numbers([fields.written((*path, "at"), item.at, dimension)])
@@ -353,7 +351,6 @@ def _values(
 
 
 def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
-    """Rows that all inputs share."""
     lengths = {name: orders.shape[1] for name, orders in columns.items() if orders.shape[1] > 1}
     if len(set(lengths.values())) > 1:
         text = "inputs that run together need equally many rows"

@@ -24,13 +24,12 @@ from mechkin_cli.building.fields import Fields
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Move, Quantity, numbers_read_by
 from mechkin_cli.mechanism import (
-    ExactMoments,
     ExactMotion,
     LockedFreedom,
     Problem,
     response_problem,
 )
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.session import Precise, ShiftingPrecise
 from mechkin_cli.tape import (
     ExactRecorder,
@@ -45,26 +44,10 @@ from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.show import Floats
+    pass
 
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
-
-
-class Recording(NamedTuple):
-    """A problem whose numbers are `Traced` where they depend on a parameter that is an input."""
-
-    recorder: Recorder
-    problem: Problem
-
-
-class ExactRecording(NamedTuple):
-    """A problem whose every number is `Traced`, down to the decimals of the text, and its motion
-    over the rows."""
-
-    recorder: ExactRecorder
-    problem: Problem
-    motion: ExactMotion
 
 
 def record_exactly(
@@ -72,8 +55,9 @@ def record_exactly(
     given: Mapping[str, Quantity] = _NOTHING,
     recorder: ExactRecorder | None = None,
     moved: Move | None = None,
-) -> ExactRecording:
-    """The problem of a file as it follows from the exact numbers of its text.
+) -> tuple[ExactRecorder, Problem, ExactMotion]:
+    """The problem of a file and its motion over the rows, each number `Traced` down to the decimals
+    of the text.
 
     Args:
         built: the file, which has no errors.
@@ -93,7 +77,7 @@ def record_exactly(
         motion = exact_motion(fields, file.motion, base.motion, recorder)
     _refuse_errors(fields)
     problem = _completed(problem, base, _held(base, problem, recorder))
-    return ExactRecording(recorder, settled(problem), motion)
+    return recorder, settled(problem), motion
 
 
 def _refuse_errors(fields: Fields) -> None:
@@ -131,44 +115,6 @@ def _fields(
     return read_fields(built.read, recorded, moved)
 
 
-def record_response(
-    built: Built, first: Problem, given: Mapping[str, Quantity] = _NOTHING
-) -> tuple[ExactRecording, Floats, Floats]:
-    """The problem at the first moment of a response as it follows from the exact numbers of the
-    text, and the moments of its rows in double-double (2, rows), in s and in the file's unit.
-
-    Args:
-        built: the file, which has no errors.
-        first: `response_problem` of the response.
-        given: as `record_exactly`.
-
-    Raises:
-        TraceLost: a number depends on the text in a way that no tape holds.
-    """
-    response = first.response
-    assert response is not None
-    if response.driven:
-        raise TraceLost("a coordinate that is driven by a law of time")
-    recorder = ExactRecorder()
-    file, name = built.read.file, response.name
-    with _exactly(recorder):
-        fields = _fields(built, given, recorder)
-        base = built.problem
-        problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
-        recorded = replace(problem.responses[name], held=())
-        path = ("responses", name, "time")
-        over = ExactRows(recorder, response.rows)
-        moments = exact_moments(fields, path, file.responses[name].time, over)
-        motion = start_motion(fields, recorded, recorder)
-        both = [fields.units.to_si(moments, TIME), moments]
-    _refuse_errors(fields)
-    problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
-    problem = replace(problem, held=_held(first, problem, recorder))
-    in_si, written = over.double_doubles(both)
-    recording = ExactRecording(recorder, settled(problem), motion)
-    return recording, in_si, written
-
-
 def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[LockedFreedom, ...]:
     """The locks of the idle freedoms, with their pairs on the recording."""
 
@@ -197,21 +143,48 @@ def shifting(
         shift: Any = recorder.number(leaves[name])
         return Quantity(quantity.value + shift, quantity.dimension, quantity.rest)
 
-    recording = record_exactly(built, given, recorder, moved)
-    return ShiftingPrecise(recorder, recording.problem, recording.motion, problem, leaves)
+    _, recorded, motion = record_exactly(built, given, recorder, moved)
+    return ShiftingPrecise(recorder, recorded, motion, problem, leaves)
 
 
 def precise_response(
     built: Built, first: Problem, given: Mapping[str, Quantity] = _NOTHING
 ) -> Precise:
-    """The exact numbers of a response's text, for the sessions of its `first` moment in doubles;
-    arguments and errors as those of `record_response`."""
-    recording, *moments = record_response(built, first, given)
-    return Precise(*recording, first, ExactMoments(*moments))
+    """The exact numbers of a response's text, for the sessions of its first moment in doubles.
+
+    Args:
+        built: the file, which has no errors.
+        first: `response_problem` of the response, in doubles.
+        given: as `record_exactly`.
+
+    Raises:
+        TraceLost: a number depends on the text in a way that no tape holds.
+    """
+    response = first.response
+    assert response is not None
+    if response.driven:
+        raise TraceLost("a coordinate that is driven by a law of time")
+    recorder = ExactRecorder()
+    file, name = built.read.file, response.name
+    with _exactly(recorder):
+        fields = _fields(built, given, recorder)
+        base = built.problem
+        problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
+        recorded = replace(problem.responses[name], held=())
+        path = ("responses", name, "time")
+        over = ExactRows(recorder, response.rows)
+        moments = exact_moments(fields, path, file.responses[name].time, over)
+        motion = start_motion(fields, recorded, recorder)
+        both = [fields.units.to_si(moments, TIME), moments]
+    _refuse_errors(fields)
+    problem = replace(response_problem(problem, recorded, first.motion), hold_idle=first.hold_idle)
+    problem = replace(problem, held=_held(first, problem, recorder))
+    in_si, written = over.double_doubles(both)
+    return Precise(recorder, settled(problem), motion, first, (in_si, written))
 
 
-def record(built: Built, names: Sequence[str]) -> Recording:
-    """The problem of a file as it depends on some of its parameters.
+def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:
+    """The problem of a file, its numbers `Traced` where they depend on some of its parameters.
 
     Raises:
         TraceLost: it depends on one of them in a way that no tape holds.
@@ -229,7 +202,7 @@ def record(built: Built, names: Sequence[str]) -> Recording:
     _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables_of(SWEEP))
     _refuse_errors(fields)
-    return Recording(recorder, settled(problem))
+    return recorder, settled(problem)
 
 
 def _refuse_varied_lines(problem: Problem) -> None:

@@ -30,6 +30,7 @@ from mechkin_cli.mechanism import (
     Stop,
     TurnsEnd,
     is_angle,
+    renumbered_amount,
     response_problem,
 )
 from mechkin_cli.record import replace
@@ -169,8 +170,7 @@ class StopBuilder:
             return None
         law, dimension = watched
         at = self.fields.number((*path, "at"), section.at, dimension)
-        in_file = float(self.fields.units.from_si(at, dimension)) + 0.0  # no -0
-        amount = f"{in_file:.12g} {self.fields.units.label(dimension)}".rstrip()
+        amount = self.fields.units.text(at + 0.0, dimension)  # no -0
         words = f"{section.value.strip()} = {amount}{_DIRECTIONS[section.direction]}"
         return CrossingEnd(words, law.place, law, dimension, at, section.direction)
 
@@ -200,6 +200,11 @@ def build_responses(
     return {name: builder.response(name, section) for name, section in sections.items()}
 
 
+def _numbered(efforts: Iterable[Effort], numbers: Mapping[int, int]) -> tuple[Effort, ...]:
+    """Efforts with the laws of their amounts by the numbers of their own run."""
+    return tuple(e._replace(amount=renumbered_amount(e.amount, numbers)) for e in efforts)
+
+
 class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
@@ -214,7 +219,7 @@ class _ResponseBuilder:
         timed = self._timed(path, section)
         driven = build_inputs(self.fields, timed, self.joints, self.per_row) or MotionInputs((), 1)
         efforts = self._efforts(path, section, name)
-        acting = self.loads.of_run(name)
+        mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         start = build_start(self.fields, path, section, self.joints)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
@@ -224,15 +229,15 @@ class _ResponseBuilder:
             place=self.fields.document.key_place(path),
             start=start,
             assembly=self._assembly(path, section),
-            efforts=acting.efforts(efforts),
+            efforts=_numbered(efforts, numbers),
             driven=driven.inputs,
             course=driven.course,
             moments=timed.time,
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
-            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
-            load_laws=acting.laws,
+            mechanism=replace(mechanism, drives=None),
+            load_laws=laws,
         )
 
     def recorded(
@@ -241,14 +246,14 @@ class _ResponseBuilder:
         """A known response whose start, loads and links are those of the recording."""
         path: Path = ("responses", name)
         efforts = self._efforts(path, section, name)
-        acting = self.loads.of_run(name)
+        mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         return replace(
             known,
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
-            efforts=acting.efforts(efforts),
-            mechanism=replace(acting.on(self.problem.mechanism), drives=None),
-            load_laws=acting.laws,
+            efforts=_numbered(efforts, numbers),
+            mechanism=replace(mechanism, drives=None),
+            load_laws=laws,
         )
 
     def _timed(self, path: Path, section: written.Response) -> Written:

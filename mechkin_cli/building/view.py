@@ -76,8 +76,6 @@ def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> Vi
 
 
 class _View:
-    """Reads the section of one file."""
-
     def __init__(self, fields: Fields, mechanism: Mechanism) -> None:
         self.fields = fields
         self.mechanism = mechanism

@@ -12,6 +12,8 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.expressions.differentiation import (
+        Jet as Jet,
+        constant_jet as constant_jet,
         derivatives as derivatives,
         differentiated as differentiated,
     )
@@ -34,7 +36,6 @@ if TYPE_CHECKING:
         scalar as scalar,
     )
     from mechkin_cli.expressions.grammar import parse_nodes as parse_nodes
-    from mechkin_cli.expressions.jets import Jet as Jet, constant_jet as constant_jet
     from mechkin_cli.expressions.quantity import (
         MAX_QUOTED as MAX_QUOTED,
         ExpressionError as ExpressionError,
@@ -53,12 +54,11 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "differentiation": "derivatives differentiated",
+        "differentiation": "Jet constant_jet derivatives differentiated",
         "expression": "Definitions Differentiate Expression exact_literal parse",
         "fields": "Move constant constant_in_file_units evaluate_parameters in_order literal "
         "lookup number_of scalar",
         "grammar": "parse_nodes",
-        "jets": "Jet constant_jet",
         "quantity": "ExpressionError MAX_QUOTED Name Node NumberNode OperationNode Quantity "
         "Resolve UnknownName Value Vector numbers_read_by",
     },

@@ -1,8 +1,11 @@
 """Derivatives of expressions by the chain rule, operation by operation: as numbers and as nodes.
 
-`derivatives` evaluates an expression whose names move, up to third order, with jets. Where a
-derivative does not exist (abs and sign at zero, min and max of two that cross, a comparison of
-equals, a step of floor, sqrt at zero) it is nan or infinite.
+`derivatives` evaluates an expression whose names move, up to third order, with jets: a jet is an
+array of shape (4, rows), or (4, 1) for a constant, of a value and its first three derivatives over
+a parameter. Sums, products (Leibniz), quotients and functions of jets (Faa di Bruno) are exact:
+nothing is differenced. Source: A. Griewank and A. Walther, Evaluating Derivatives, chapter 13.
+Where a derivative does not exist (abs and sign at zero, min and max of two that cross, a comparison
+of equals, a step of floor, sqrt at zero) it is nan or infinite.
 
 `differentiated` gives the derivative as an expression, which is evaluated as any other one, with
 its dimensions checked and in any arithmetic. Steps (sign, floor, comparisons) are taken for
@@ -19,11 +22,11 @@ from operator import add
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mechkin_cli.expressions import jets, operations
+from mechkin_cli.expressions import operations
 from mechkin_cli.expressions.expression import Expression, refuse_large
 from mechkin_cli.expressions.grammar import parse_nodes
-from mechkin_cli.expressions.jets import Jet
 from mechkin_cli.expressions.quantity import (
     Name,
     Node,
@@ -33,6 +36,108 @@ from mechkin_cli.expressions.quantity import (
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import SLOPES
 from mechkin_cli.units import conversion
+
+Jet = NDArray[np.float64]
+
+JET_ORDERS = 4
+"""The value and three derivatives."""
+
+
+def constant_jet(value: float) -> Jet:
+    """A number that does not move."""
+    jet = np.zeros((JET_ORDERS, 1))
+    jet[0] = value
+    return jet
+
+
+def product(a: Jet, b: Jet) -> Jet:
+    """a b."""
+    return _stacked(
+        [
+            a[0] * b[0],
+            a[1] * b[0] + a[0] * b[1],
+            (a[2] * b[0] + a[0] * b[2]) + 2.0 * (a[1] * b[1]),
+            (a[3] * b[0] + a[0] * b[3]) + 3.0 * (a[2] * b[1] + a[1] * b[2]),
+        ]
+    )
+
+
+def quotient(a: Jet, b: Jet) -> Jet:
+    """a / b, from a = (a/b) b order by order."""
+    q0 = a[0] / b[0]
+    q1 = (a[1] - q0 * b[1]) / b[0]
+    q2 = (a[2] - 2.0 * (q1 * b[1]) - q0 * b[2]) / b[0]
+    q3 = (a[3] - 3.0 * (q2 * b[1] + q1 * b[2]) - q0 * b[3]) / b[0]
+    return _stacked([q0, q1, q2, q3])
+
+
+def composed(outer: Sequence[Floats], inner: Jet) -> Jet:
+    """f(inner) from f, f', f'', f''' at inner[0]; what does not move needs no derivative of f."""
+    f0, *slopes = outer
+    g1, g2, g3 = inner[1], inner[2], inner[3]
+    still = (inner[1:] == 0.0).all(axis=0)
+    f1, f2, f3 = (np.where(still, 0.0, slope) for slope in slopes)
+    return _stacked(
+        [
+            f0,
+            f1 * g1,
+            f2 * (g1 * g1) + f1 * g2,
+            f3 * (g1 * g1 * g1) + 3.0 * f2 * (g1 * g2) + f1 * g3,
+        ]
+    )
+
+
+def _stacked(orders: list[Floats]) -> Jet:
+    return np.stack(np.broadcast_arrays(*orders))
+
+
+# Hyperbolic functions of rows with their first three derivatives, each of shape (rows,). Those of
+# other elementary functions are `tape.SLOPES`.
+
+
+def sinh(x: Floats) -> tuple[Floats, ...]:
+    """Hyperbolic sine."""
+    sine, cosine = operations.sinh(x), operations.cosh(x)
+    return sine, cosine, sine, cosine  # type: ignore[return-value]
+
+
+def cosh(x: Floats) -> tuple[Floats, ...]:
+    """Hyperbolic cosine."""
+    sine, cosine, *_ = sinh(x)
+    return cosine, sine, cosine, sine
+
+
+def tanh(x: Floats) -> tuple[Floats, ...]:
+    """Hyperbolic tangent."""
+    tangent: Any = operations.tanh(x)
+    slope = 1.0 / (cosh(x)[0] * cosh(x)[0])
+    third = slope * (4.0 * tangent * tangent - 2.0 * slope)
+    return tangent, slope, -2.0 * tangent * slope, third
+
+
+def asinh(x: Floats) -> tuple[Floats, ...]:
+    """Inverse of the hyperbolic sine."""
+    slope = 1.0 / np.sqrt(x * x + 1.0)
+    cube = slope * slope * slope
+    third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
+    return operations.asinh(x), slope, -x * cube, third  # type: ignore[return-value]
+
+
+def acosh(x: Floats) -> tuple[Floats, ...]:
+    """Inverse of the hyperbolic cosine."""
+    slope = 1.0 / np.sqrt((x - 1.0) * (x + 1.0))
+    cube = slope * slope * slope
+    third = cube * (3.0 * (x * slope) * (x * slope) - 1.0)
+    return operations.acosh(x), slope, -x * cube, third  # type: ignore[return-value]
+
+
+def atanh(x: Floats) -> tuple[Floats, ...]:
+    """Inverse of the hyperbolic tangent."""
+    slope = 1.0 / ((1.0 - x) * (1.0 + x))
+    square = slope * slope
+    third = (6.0 * x * x + 2.0) * (square * slope)
+    return operations.atanh(x), slope, 2.0 * x * square, third  # type: ignore[return-value]
+
 
 JetVector = tuple[Jet, ...]
 
@@ -54,7 +159,7 @@ def derivatives(expression: Expression, names: Mapping[str, Jet]) -> Jet:
             elif isinstance(node, NumberNode):
                 unit = node.unit
                 value = conversion(unit.factor).apply(node.value) if unit else node.value
-                stack.append(jets.constant_jet(value))
+                stack.append(constant_jet(value))
             else:
                 stack.append(names[node.text])
     jet: Jet = stack[-1]
@@ -79,13 +184,13 @@ def _negative(a: Any) -> Any:
 
 
 def _through(outer: Callable[[Floats], Sequence[Floats]]) -> Callable[[Jet], Jet]:
-    return lambda inner: jets.of(outer(inner[0]), inner)
+    return lambda inner: composed(outer(inner[0]), inner)
 
 
 def _angle_of(y: Jet, x: Jet) -> Jet:
     """atan2(y, x): its rate is (x y' - y x') / (x^2 + y^2), whose jet has one order less."""
-    turning = jets.product(x, _rate(y)) - jets.product(y, _rate(x))
-    rate = jets.quotient(turning, jets.product(x, x) + jets.product(y, y))
+    turning = product(x, _rate(y)) - product(y, _rate(x))
+    rate = quotient(turning, product(x, x) + product(y, y))
     value = operations.angle_of(*np.broadcast_arrays(y[0], x[0]))
     still = (turning == 0.0).all(axis=0)
     return np.stack(np.broadcast_arrays(value, *np.where(still, 0.0, rate[:3])))
@@ -99,15 +204,15 @@ def _rate(jet: Jet) -> Jet:
 def _power(base: Jet, exponent: Jet) -> Jet:
     if exponent[1:].any():
         value = operations.power(*np.broadcast_arrays(base[0], exponent[0]))
-        by_logarithm = jets.product(exponent, jets.of(SLOPES["LOG"](base[0]), base))
-        return jets.of((value,) * jets.ORDERS, by_logarithm)  # type: ignore[arg-type]
+        by_logarithm = product(exponent, composed(SLOPES["LOG"](base[0]), base))
+        return composed((value,) * JET_ORDERS, by_logarithm)  # type: ignore[arg-type]
     x, n = np.broadcast_arrays(base[0], exponent[0])
     orders, factor = [], np.ones_like(x)
-    for order in range(jets.ORDERS):
+    for order in range(JET_ORDERS):
         power = x * x if order == 0 and (n == 2.0).all() else operations.power(x, n - order)
         orders.append(np.where(factor == 0.0, 0.0, factor * power))
         factor = factor * (n - order)
-    return jets.of(orders, base)
+    return composed(orders, base)
 
 
 def _absolute(a: Jet) -> Jet:
@@ -185,12 +290,12 @@ _floor = _staircase(operations.below, lambda x: x - operations.nearest(x))
 
 
 def _mod(a: Jet, period: Jet) -> Jet:
-    return a - jets.product(period, _floor(jets.quotient(a, period)))
+    return a - product(period, _floor(quotient(a, period)))
 
 
 def _hypot(*sides: Jet) -> Jet:
-    square = reduce(lambda a, b: a + b, (jets.product(side, side) for side in sides))
-    return jets.of(SLOPES["SQUARE_ROOT"](square[0]), square)
+    square = reduce(lambda a, b: a + b, (product(side, side) for side in sides))
+    return composed(SLOPES["SQUARE_ROOT"](square[0]), square)
 
 
 def _wrap(a: Jet) -> Jet:
@@ -198,12 +303,12 @@ def _wrap(a: Jet) -> Jet:
 
 
 def _dot(a: JetVector, b: JetVector) -> Jet:
-    return reduce(add, (jets.product(p, q) for p, q in zip(a, b, strict=True)))
+    return reduce(add, (product(p, q) for p, q in zip(a, b, strict=True)))
 
 
 def _cross(a: JetVector, b: JetVector) -> Any:
     def minor(i: int, j: int) -> Jet:
-        return jets.product(a[i], b[j]) - jets.product(a[j], b[i])
+        return product(a[i], b[j]) - product(a[j], b[i])
 
     return minor(0, 1) if len(a) == 2 else (minor(1, 2), minor(2, 0), minor(0, 1))
 
@@ -215,7 +320,7 @@ def _size(normal: Any) -> Jet:
 
 def _zero_of(a: JetVector) -> Jet:
     """Zero, and no number in rows where a vector has no direction."""
-    return jets.quotient(jets.constant_jet(0.0), _dot(a, a))
+    return quotient(constant_jet(0.0), _dot(a, a))
 
 
 _ELEMENTARY = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log")
@@ -223,8 +328,8 @@ _ELEMENTARY = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log")
 RULES: dict[str, Callable[..., Any]] = {
     "+": _on_each(lambda a, b: a + b),
     "-": _on_each(lambda a, b: a - b),
-    "*": _on_each(jets.product),
-    "/": _on_each(jets.quotient),
+    "*": _on_each(product),
+    "/": _on_each(quotient),
     "^": _power,
     "negate": _negative,
     "[]": lambda *components: components,
@@ -244,14 +349,14 @@ RULES: dict[str, Callable[..., Any]] = {
     "cross": _cross,
     "det": lambda a, b, c: _dot(a, _cross(b, c)),
     "norm": lambda a: _hypot(*a),
-    "unit_vector": lambda a: _on_each(jets.quotient)(a, _hypot(*a)),
+    "unit_vector": lambda a: _on_each(quotient)(a, _hypot(*a)),
     "angle_between": lambda a, b: (
         _angle_of(_size(_cross(a, b)), _dot(a, b)) + (_zero_of(a) + _zero_of(b))
     ),
     **{symbol: _compared(symbol) for symbol in operations.COMPARED},
     "and": _joined(operations.both),
     "or": _joined(operations.either),
-    "not": lambda a: jets.constant_jet(1.0) - a,
+    "not": lambda a: constant_jet(1.0) - a,
     "if": _if,
     "clip": lambda a, least, most: _extreme(-1.0)(_extreme(1.0)(a, least), most),
     "hypot": _hypot,
@@ -259,12 +364,12 @@ RULES: dict[str, Callable[..., Any]] = {
     "ceil": _staircase(operations.above, lambda x: x - operations.nearest(x)),
     "round": _staircase(operations.nearest, lambda x: x - operations.below(x) - 0.5),
     "mod": _mod,
-    "sinh": _through(jets.sinh),
-    "cosh": _through(jets.cosh),
-    "tanh": _through(jets.tanh),
-    "asinh": _through(jets.asinh),
-    "acosh": _through(jets.acosh),
-    "atanh": _through(jets.atanh),
+    "sinh": _through(sinh),
+    "cosh": _through(cosh),
+    "tanh": _through(tanh),
+    "asinh": _through(asinh),
+    "acosh": _through(acosh),
+    "atanh": _through(atanh),
 }
 """Every operation's rule for jets; a vector is a tuple of jets."""
 

@@ -47,14 +47,9 @@ JointsAt = Mapping[str, tuple[Joint, ...]]
 """The joints at each link, in order."""
 
 
-class OwnEdge(NamedTuple):
-    """A joint by which a constraint carries a link of its own; `hung`: two points place that link,
-    and the joint has no freedom."""
-
-    joint: Joint
-    parent: str
-    child: str
-    hung: bool
+OwnEdge = tuple[Joint, str, str, bool]
+"""A joint by which a constraint carries a link of its own, its parent and child, and whether two
+points place that link, so that the joint has no freedom."""
 
 
 class HungLinks(NamedTuple):
@@ -293,10 +288,10 @@ class DistanceConstraint(Constraint):
     @property
     def own_edges(self) -> tuple[OwnEdge, ...]:
         """Its body hangs between the spheres, a rod slides on it."""
-        hangs = OwnEdge(self.start, self.first, self.body, True)
+        hangs = (self.start, self.first, self.body, True)
         if self.slide is None or self.rod is None:
             return (hangs,)
-        return hangs, OwnEdge(self.slide, self.body, self.rod, False)
+        return hangs, (self.slide, self.body, self.rod, False)
 
     @property
     def hung(self) -> HungLinks:

@@ -159,13 +159,6 @@ class Course:
 # The motion of the inputs as the text says it: numbers over the rows, on a recording.
 
 
-class ExactMoments(NamedTuple):
-    """The moments of a response's rows in double-double (2, rows): in s, and in the file's unit."""
-
-    in_si: Floats
-    written: Floats
-
-
 class ExactMotion(NamedTuple):
     """Inputs by name, each with value, rate, acceleration and jerk; `time` has its value alone.
 

@@ -1,4 +1,5 @@
-"""Everything that one mechanism file asks for, in SI and checked."""
+"""Everything that one mechanism file asks for, in SI and checked; a response as a problem of its
+own."""
 
 from __future__ import annotations
 
@@ -39,11 +40,12 @@ from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import NDArray
 
     from mechkin_cli.expressions import Differentiate
-    from mechkin_cli.mechanism.curve import Curve
-    from mechkin_cli.mechanism.response import ResponseProblem
+    from mechkin_cli.mechanism.response import AnyBalance, ResponseProblem
     from mechkin_cli.show import Bools, Floats
 
 
@@ -229,19 +231,21 @@ def undefined_laws(problem: Problem, resolve: Resolve, lost: Bools) -> list[Diag
         lost: the rows (rows,) to look at.
     """
     diagnostics = []
+    units = problem.units
     for law in problem.load_laws:
         rows = np.flatnonzero(lost & np.isnan(law_value(law, resolve, lost.size)))
         if not rows.size:
             continue
-        place = _LawPlaces(law, resolve, problem.units, lost.size)
         if law.curve is not None:
-            words, limit = "lies outside its table", place.limit(law.curve)
+            dimension = resolve(law.reads[0]).dimension
+            first, last = (units.text(x, dimension) for x in (law.curve.first, law.curve.last))
+            words, limit = "lies outside its table", f"{first} to {last}"
             hint = "extend the table, or keep the motion within it"
         else:
             words, limit = "has no finite value", None
             hint = "write an expression that holds in all rows, or move the rows"
         text = f"this load {words} in {_count(rows)}; cells that depend on it stay empty"
-        at = place.measured(int(rows[0]))
+        at = _read_by_law(law, resolve, units, int(rows[0]))
         diagnostics.append(Diagnostic("load-undefined", "error", text, law.place, at, limit, hint))
     return diagnostics
 
@@ -251,40 +255,15 @@ def _count(rows: Sequence[int] | NDArray[np.intp]) -> str:
     return first if len(rows) == 1 else f"{len(rows)} rows, first in {first}"
 
 
-class _LawPlaces(NamedTuple):
-    """What a law reads, row by row and in words."""
-
-    law: LoadLaw
-    resolve: Resolve
-    units: UnitSystem
-    size: int
-
-    def rows(self, name: str) -> Floats:
-        """A scalar quantity over the rows, in SI."""
-        value = np.asarray(self.resolve(name).value, dtype=np.float64)
-        return np.broadcast_to(value, (self.size,))
-
-    def measured(self, row: int) -> str:
-        """`O1.theta = 90 deg, time = 1 s`: what the law reads in a row; vectors are left out."""
-        words = []
-        for name in self.law.reads:
-            quantity = self.resolve(name)
-            if isinstance(quantity.value, float | np.ndarray):
-                words.append(f"{name} = {self._text(float(self.rows(name)[row]), name)}")
-        return ", ".join(words) or f"row {row + 1}"
-
-    def limit(self, curve: Curve) -> str:
-        """The range of a table."""
-        name = self.law.reads[0]
-        return f"{self._text(curve.first, name)} to {self._text(curve.last, name)}"
-
-    def _text(self, value: float, name: str) -> str:
-        dimension = self.resolve(name).dimension
-        in_file = float(self.units.from_si(value, dimension))
-        return f"{in_file:.12g} {self.units.label(dimension)}".rstrip()
-
-
-_AXES = ("x", "y", "z")
+def _read_by_law(law: LoadLaw, resolve: Resolve, units: UnitSystem, row: int) -> str:
+    """`O1.theta = 90 deg, time = 1 s`: what a law reads in a row; vectors are left out."""
+    words = []
+    for name in law.reads:
+        value, dimension = resolve(name).value, resolve(name).dimension
+        if isinstance(value, float | np.ndarray):
+            at_row = np.ravel(value)[row if np.size(value) > 1 else 0]
+            words.append(f"{name} = {units.text(float(at_row), dimension)}")
+    return ", ".join(words) or f"row {row + 1}"
 
 
 _POSITIONS = "it is taken of coordinates, positions of points, directions and parameters"
@@ -328,7 +307,7 @@ class _Influence:
         text, axis = name.text, ""
         if text in self.problem.parameters:
             return None
-        if text not in self.known and text.rpartition(".")[2] in _AXES:
+        if text not in self.known and text.rpartition(".")[2] in ("x", "y", "z"):
             text, _, axis = text.rpartition(".")
         wanted = self.known.get(text)
         if wanted is None:
@@ -361,7 +340,6 @@ class _Influence:
         return self._per(f"{text}_ddot", name)
 
     def _per(self, acceleration: str, name: Name) -> tuple[Node, ...]:
-        """The coefficient of an acceleration."""
         leading = self.problem.motion.leading
         found = f"{acceleration}.per.{self.input}_ddot"
         if found not in self.known and leading is not None and leading.name == self.input:
@@ -370,3 +348,41 @@ class _Influence:
             text = f"{name.text} has no derivative by {self.input}"
             raise ExpressionError(text, name.offset, _POSITIONS)
         return (Name(found, name.offset, whole=True),)
+
+
+def response_problem(
+    problem: Problem, response: ResponseProblem, motion: MotionInputs | None = None
+) -> Problem:
+    """The problem at the first moment of a response, with its loads, laws and quantities.
+
+    Its motion, or the `motion` that is given, has one row, in which the start's coordinates are
+    inputs; a solver graph of its `driven` is that of the assembly at the start.
+    """
+    from mechkin_cli.mechanism.response import first_motion  # only for responses
+
+    return replace(
+        problem,
+        mechanism=response.mechanism,
+        motion=first_motion(response, problem.units) if motion is None else motion,
+        assembly=response.assembly,
+        load_laws=response.load_laws,
+        held=response.held,
+        follow=None,
+        response=response,
+    )
+
+
+def read_by(balances: Iterable[AnyBalance], problem: Problem) -> list[str]:
+    """Names of the quantities that balances read at once."""
+    from mechkin_cli.mechanism.response import Harmonics  # only for balances
+
+    found: list[str] = []
+    for balance in balances:
+        if isinstance(balance, Harmonics):
+            known = problem.quantities()
+            for _, expression in balance.of:
+                names = sorted(expression.names)
+                found += [n if n in known else n.rpartition(".")[0] for n in names]
+        else:
+            found += [f"{joint}.{coordinate}.effort" for joint, coordinate in problem.acting]
+    return [name for name in dict.fromkeys(found) if name in problem.quantities()]

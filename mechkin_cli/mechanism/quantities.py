@@ -23,7 +23,6 @@ from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.wanted import Kind, Wanted
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
@@ -266,20 +265,14 @@ def response_quantities() -> dict[str, Wanted]:
 # axis is unique in a plane linkage, though neither reaction nor moment of its pins is.
 
 
-class _Load(NamedTuple):
-    """An expression of a joint's reaction, in which J stands for the joint."""
-
-    text: str
-    dimension: Dimension
-
-
-_LOADS: dict[Kind, _Load] = {
-    "radial_force": _Load("norm(cross(J.axis, J.force))", FORCE),
-    "axial_force": _Load("dot(J.axis, J.force)", FORCE),
-    "tilting_moment": _Load("norm(cross(J.axis, J.moment))", MOMENT),
+_LOADS: dict[Kind, tuple[str, Dimension]] = {
+    "radial_force": ("norm(cross(J.axis, J.force))", FORCE),
+    "axial_force": ("dot(J.axis, J.force)", FORCE),
+    "tilting_moment": ("norm(cross(J.axis, J.moment))", MOMENT),
 }
+"""Expressions of a joint's reaction, in which J stands for the joint, and their dimensions."""
 
-_BEARING_LOADS_IN_PLANE: dict[Kind, _Load] = {"radial_force": _Load("norm(J.force)", FORCE)}
+_LOADS_IN_PLANE: dict[Kind, tuple[str, Dimension]] = {"radial_force": ("norm(J.force)", FORCE)}
 """Pins, slots and guides transmit nothing else: along its axis a guide takes no force."""
 
 _TOLD_IN_PLANE = "xy"
@@ -314,15 +307,14 @@ def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
 
 
 def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
-    loads, told = (_BEARING_LOADS_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
+    loads, told = (_LOADS_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
     for joint in mechanism.joints.values():
         bears = joint.type.has_point and (mechanism.plane or joint.type.axis is not None)
-        for kind, load in loads.items() if bears and is_written(joint.name) else ():
-            name, dimension = f"{joint.name}.{kind}", load.dimension
-            yield Wanted(name, kind, joint.name, dimension, False, told=told)
+        for kind, (_, dimension) in loads.items() if bears and is_written(joint.name) else ():
+            yield Wanted(f"{joint.name}.{kind}", kind, joint.name, dimension, False, told=told)
 
 
 @cache
 def _expression(wanted: Wanted) -> Expression:
-    loads = _BEARING_LOADS_IN_PLANE if wanted.told == _TOLD_IN_PLANE else _LOADS
-    return parse(loads[wanted.kind].text.replace("J.", f"{wanted.owner}."))
+    loads = _LOADS_IN_PLANE if wanted.told == _TOLD_IN_PLANE else _LOADS
+    return parse(loads[wanted.kind][0].replace("J.", f"{wanted.owner}."))

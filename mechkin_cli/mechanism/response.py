@@ -21,8 +21,6 @@ from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.diagnostics import Place
-    from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import Amount, Mechanism
     from mechkin_cli.mechanism.motion import Assembly, Course

@@ -9,13 +9,6 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.plan.codes import (
-        Demand as Demand,
-        FrictionState as FrictionState,
-        PassageEnd as PassageEnd,
-        RowFlag as RowFlag,
-        TrackEnd as TrackEnd,
-    )
     from mechkin_cli.plan.layout import (
         Carrier as Carrier,
         Layout as Layout,
@@ -34,17 +27,24 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.plan.plan import build_plan as build_plan, plan_records as plan_records
     from mechkin_cli.plan.programs import kink_laws as kink_laws
-    from mechkin_cli.plan.records import PLACING as PLACING, flatten as flatten
+    from mechkin_cli.plan.records import (
+        PLACING as PLACING,
+        Demand as Demand,
+        FrictionState as FrictionState,
+        PassageEnd as PassageEnd,
+        RowFlag as RowFlag,
+        TrackEnd as TrackEnd,
+        flatten as flatten,
+    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "codes": "Demand FrictionState PassageEnd RowFlag TrackEnd",
         "layout": "Carrier Layout home_inputs home_state",
         "outputs": "FORCE_KINDS OutputPlan Readout Slot WRENCH_KINDS demand_of forces_demand "
         "needs_all_links",
         "plan": "build_plan plan_records",
         "programs": "kink_laws",
-        "records": "PLACING flatten",
+        "records": "Demand FrictionState PLACING PassageEnd RowFlag TrackEnd flatten",
     },
 )

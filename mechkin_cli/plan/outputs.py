@@ -27,9 +27,8 @@ from mechkin_cli.mechanism import (
     reference_point,
     varying,
 )
-from mechkin_cli.plan.codes import Demand, OutputCode
 from mechkin_cli.plan.layout import Layout
-from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.plan.records import Demand, Output, OutputCode, hand_over_outputs
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import DIMENSIONLESS, FORCE
 

@@ -24,9 +24,8 @@ from mechkin_cli.mechanism import (
     turned_tensor,
     varying,
 )
-from mechkin_cli.plan.codes import ContactCode, FreeCode, LoadCode
 from mechkin_cli.plan.layout import Layout, coordinate_axis
-from mechkin_cli.plan.records import PlanRecord, hand_over, record
+from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord, hand_over, record
 from mechkin_cli.structure import CutJoint
 
 if TYPE_CHECKING:

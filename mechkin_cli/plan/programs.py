@@ -14,11 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism import is_angle, varying
-from mechkin_cli.plan.codes import OutputCode, ReadCode
-from mechkin_cli.plan.loads import kernel_columns
+from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle, varying
 from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.plan.records import Output, Program
+from mechkin_cli.plan.records import Output, OutputCode, Program, ReadCode
 from mechkin_cli.tape import Operation, RowRecorder, register
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 
@@ -157,3 +155,37 @@ def _curve(curve: Curve, over: int) -> tuple[int, float, float, list[tuple[float
     slack = TABLE_END * (curve.last - curve.first)
     knots = zip(curve.x.tolist(), *curve.coefficients.tolist(), strict=True)
     return over, curve.first - slack, curve.last + slack, list(knots)
+
+
+def kernel_columns(layout: Layout, values: Mapping[int, Any]) -> list[Any]:
+    """The columns of the loads that vary, in the order of the loads: one of a load along
+    a coordinate, three of one on a link, components in the axes of the load; in the kernel's units.
+
+    Args:
+        layout: of the mechanism with the loads.
+        values: of the laws in SI by their numbers, rows or recorded numbers.
+    """
+    return [
+        column
+        for load in layout.mechanism.loads
+        if varying(load)
+        for column in _columns(layout, load, values)
+    ]
+
+
+def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]:
+    length = layout.length
+    if isinstance(load, JointLoad):
+        per = length * length if is_angle(load.coordinate) else length
+        return [_amount(load.value, values) / per]
+    assert isinstance(load, LinkLoad)
+    per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
+    components: Any = [_amount(amount, values) for amount in load.value]
+    if load.axes == "link":
+        frame = layout.link_frame[load.link]
+        components = [dot(axis, components) for axis in (frame.x, frame.y, frame.z)]
+    return [per * component for component in components]
+
+
+def _amount(amount: Amount, values: Mapping[int, Any]) -> Any:
+    return values[amount.number] if isinstance(amount, Varying) else amount

@@ -1,4 +1,5 @@
-"""The records of a kernel plan as plain data, and the one place that hands them over.
+"""The records of a kernel plan as plain data, the kernel's enumerations in them, and the one place
+that hands them over.
 
 A record is a call of the kernel's `PlanBuilder` with its arguments in their order (`_kernel.pyi`).
 Its *constants* are the numbers that parameters may vary; the others (codes, indices, signs) are
@@ -16,7 +17,34 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
-    from mechkin_cli.kernel._kernel import Outputs, Plan
+    from mechkin_cli.kernel._kernel import (
+        ContactCode as ContactCode,
+        Demand as Demand,
+        FreeCode as FreeCode,
+        FrictionState as FrictionState,
+        LoadCode as LoadCode,
+        OutputCode as OutputCode,
+        Outputs,
+        PassageEnd as PassageEnd,
+        Plan,
+        ReadCode as ReadCode,
+        RowFlag as RowFlag,
+        TrackEnd as TrackEnd,
+        TreeCode as TreeCode,
+    )
+else:
+    # the kernel's enumerations, defined only in its sources
+    ContactCode = _kernel.ContactCode
+    Demand = _kernel.Demand
+    FreeCode = _kernel.FreeCode
+    FrictionState = _kernel.FrictionState
+    LoadCode = _kernel.LoadCode
+    OutputCode = _kernel.OutputCode
+    PassageEnd = _kernel.PassageEnd
+    ReadCode = _kernel.ReadCode
+    RowFlag = _kernel.RowFlag
+    TrackEnd = _kernel.TrackEnd
+    TreeCode = _kernel.TreeCode
 
 
 Number = Any
@@ -45,17 +73,14 @@ PLACING = ("add_tree_joint", "add_closing_joint", "add_hung_links")
 """The calls whose constants place links."""
 
 
-class PlanRecord(NamedTuple):
-    """A call of the kernel's `PlanBuilder`; `units` is its constructor, with length unit, origin
-    and size of the mechanism in m."""
-
-    call: str
-    arguments: tuple[Any, ...]
+PlanRecord = tuple[str, tuple[Any, ...]]
+"""A call of the kernel's `PlanBuilder` and its arguments; `units` is its constructor, with length
+unit, origin and size of the mechanism in m."""
 
 
 def record(call: str, *arguments: Any) -> PlanRecord:
     """The record of a call."""
-    return PlanRecord(call, arguments)
+    return call, arguments
 
 
 class Program(NamedTuple):
@@ -95,8 +120,9 @@ def flatten(records: Iterable[PlanRecord | Output]) -> list[Number]:
         if isinstance(record, Output):
             constants += [*record.data, record.factor]
             continue
-        for place in _CONSTANTS.get(record.call, ()):
-            value = record.arguments[place]
+        call, arguments = record
+        for place in _CONSTANTS.get(call, ()):
+            value = arguments[place]
             constants += value if isinstance(value, tuple | list) else [value]
     return constants
 
@@ -107,8 +133,8 @@ def hand_over(records: Sequence[PlanRecord]) -> Plan:
     Raises:
         ValueError: records that do not fit together; numbers that are not finite.
     """
-    units, *others = records
-    builder = _kernel.PlanBuilder(*units.arguments)
+    (_, units), *others = records
+    builder = _kernel.PlanBuilder(*units)
     for call, arguments in others:
         getattr(builder, call)(*arguments)
     return builder.finish()

@@ -10,10 +10,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.reading.data import document_from_data as document_from_data
     from mechkin_cli.reading.document import (
         Document as Document,
         KeyPath as KeyPath,
+        document_from_data as document_from_data,
         document_from_text as document_from_text,
         read_document as read_document,
     )
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "data": "document_from_data",
-        "document": "Document KeyPath document_from_text read_document",
+        "document": "Document KeyPath document_from_data document_from_text read_document",
         "messages": "explain is_mechanism is_study",
         "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
         "yaml": "CORRECT_FIRST in_order",

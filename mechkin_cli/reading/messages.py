@@ -21,41 +21,36 @@ from mechkin_cli.diagnostics import Diagnostic, Place, nearest
 from mechkin_cli.reading.document import Document, KeyPath
 from mechkin_cli.reading.text import shortened
 from mechkin_cli.reading.yaml import Mapping, Node, ScalarNode, Sequence, in_order
-from mechkin_cli.record import NamedTuple
 
 _LONGEST_LIST = 16
 """Known words up to this number are listed in a message."""
 
 
-class Wording(NamedTuple):
-    """The code, message and hint of a diagnostic."""
-
-    code: str
-    message: str
-    hint: str | None
+Wording = tuple[str, str, str | None]
+"""The code, message and hint of a diagnostic."""
 
 
 def missing_key(key: str, context: dict[str, Any]) -> Wording:
     """A mapping lacks a key; `context` may say the key's `purpose`."""
     purpose = context.get("purpose")
     hint = f"add {key}: {_lower_first(purpose)}" if purpose else f"add {key}"
-    return Wording("missing-key", f"the key {key} is missing", hint.rstrip("."))
+    return "missing-key", f"the key {key} is missing", hint.rstrip(".")
 
 
 def unknown_key(key: str, context: dict[str, Any]) -> Wording:
     """A key is not known; `context` may hold the `known` keys and `advice`."""
     known = context.get("known") or []
     hint = context.get("advice") or choice_hint(key, known, "keys") or "remove it"
-    return Wording("unknown-key", f"there is no key {shown(key)} here", hint)
+    return "unknown-key", f"there is no key {shown(key)} here", hint
 
 
 def unknown_word(node: Node | None, known: list[str], advice: str | None = None) -> Wording:
     """A value is not a known word of its place; `advice` is what to do instead."""
     if not isinstance(node, ScalarNode):
         text = f"expected one of the words {', '.join(known)}, found {kind(node)}"
-        return Wording("unknown-word", text, None)
+        return "unknown-word", text, None
     hint = advice or choice_hint(node.text, known, "words")
-    return Wording("unknown-word", f"{shown(node.text)} is not one of the words allowed here", hint)
+    return "unknown-word", f"{shown(node.text)} is not one of the words allowed here", hint
 
 
 def wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
@@ -65,16 +60,16 @@ def wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
         return _wrong_length(context, node)
     if name in _KINDS:
         expected, hint = _KINDS[name]
-        return Wording("wrong-kind", f"expected {expected}, found {kind(node)}", hint)
+        return "wrong-kind", f"expected {expected}, found {kind(node)}", hint
     if name == "string_pattern_mismatch":
         expected = context.get("expected") or f"of the form {context.get('pattern')}"
-        return Wording("wrong-form", f"{kind(node)} is not {expected}", context.get("hint"))
+        return "wrong-form", f"{kind(node)} is not {expected}", context.get("hint")
     if name in _BOUNDS:
         key, relation, direction = _BOUNDS[name]
         limit = context.get(key)
         message = f"{kind(node)} is {relation} the limit {limit}"
-        return Wording("out-of-range", message, f"write {limit} or {direction}")
-    return Wording("invalid-value", f"{kind(node)} cannot stand here", None)
+        return "out-of-range", message, f"write {limit} or {direction}"
+    return "invalid-value", f"{kind(node)} cannot stand here", None
 
 
 def choice_hint(word: str, known: list[str], what: str) -> str | None:
@@ -128,7 +123,7 @@ def _wrong_length(context: dict[str, Any], node: Node | None) -> Wording:
     limit = f"at least {least}" if most is None else f"at most {most}"
     is_vector = 3 in (least, most)
     hint = "a vector has three: [x, y, z]; with plane: xy two" if is_vector else None
-    return Wording("wrong-length", f"found {count} {what}, expected {limit}", hint)
+    return "wrong-length", f"found {count} {what}, expected {limit}", hint
 
 
 def _lower_first(text: str) -> str:
@@ -201,10 +196,10 @@ def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
         text = str(context["text"])
         if text.startswith("expected"):
             text += f", found {kind(document.node(path))}"
-        words = Wording(code, text, context.get("hint"))
+        words = code, text, context.get("hint")
     elif at_key:
         text = f"{shown(str(path[-1]))} is not {context.get('expected', 'a key')}"
-        words = Wording("wrong-form", text, context.get("hint"))
+        words = "wrong-form", text, context.get("hint")
     else:
         words = wrong_value(error, document.node(path))
     return _at_path(words, path[:-1] if at_key else path, place)
@@ -231,8 +226,9 @@ def _unknown_word(
 
 def _at_path(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
     where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
-    message = f"{where[1:]}: {words.message}" if where else words.message
-    return Diagnostic(words.code, "error", message, place, hint=words.hint)
+    code, message, hint = words
+    text = f"{where[1:]}: {message}" if where else message
+    return Diagnostic(code, "error", text, place, hint=hint)
 
 
 def is_study(document: Document) -> list[Diagnostic]:

@@ -12,7 +12,12 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import fields_of as fields_of, section_of as section_of
-    from mechkin_cli.schema.file import AnyFile as AnyFile, MechanismFile as MechanismFile
+    from mechkin_cli.schema.file import (
+        AnyFile as AnyFile,
+        MechanismFile as MechanismFile,
+        ShapeOfLink as ShapeOfLink,
+        ViewSection as ViewSection,
+    )
     from mechkin_cli.schema.json_schema import (
         SCHEMAS as SCHEMAS,
         json_schema_text as json_schema_text,
@@ -86,13 +91,12 @@ if TYPE_CHECKING:
         validate as validate,
         validate_study as validate_study,
     )
-    from mechkin_cli.schema.view import ShapeOfLink as ShapeOfLink, ViewSection as ViewSection
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "file": "AnyFile MechanismFile",
+        "file": "AnyFile MechanismFile ShapeOfLink ViewSection",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
         "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
@@ -108,6 +112,5 @@ __getattr__, __dir__ = lazy_names(
         "study": "StudyFile",
         "tables": "Coefficients",
         "validation": "InvalidDataError validate validate_study",
-        "view": "ShapeOfLink ViewSection",
     },
 )

@@ -1,7 +1,7 @@
 """Sections and the rules of their values; how annotations become validators and help texts.
 
-A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. Of them, `reader`
-makes functions when the first value of that section is met, so that a run pays only for the
+A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. `validation`
+makes functions of them when the first value of that section is met, so that a run pays only for the
 sections that its file uses, and `validator` finds the errors of a value. Both obey `Limits`,
 `BeforeRule`, `After` and `FormChoice`; the JSON Schema shows them, and the other rules, too.
 """

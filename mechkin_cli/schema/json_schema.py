@@ -125,7 +125,6 @@ def _kinds(form: Schema, definitions: Schema) -> list[str]:
 
 
 def _resolved(form: Schema, definitions: Schema) -> Schema:
-    """The schema that a reference leads to."""
     while "$ref" in form:
         form = definitions[form["$ref"].rpartition("/")[2]]
     return form
@@ -400,7 +399,6 @@ def _non_empty(key: str, least: str) -> Schema:
 
 
 def _section(section: type[Section], definitions: Schema) -> Schema:
-    """The mapping that a section is."""
     texts = field_descriptions(section)
     properties: Schema = {}
     required = []

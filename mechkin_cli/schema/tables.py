@@ -146,7 +146,6 @@ SummaryWord = Literal["max", "min", "peak", "mean", "rms", "range"]
 
 
 def _refuse_unknown(plot: Plot, labels: list[str]) -> None:
-    """Refuses a picture of columns that the table does not have."""
     named = [(plot.x, ("plot", "x"))] if plot.x is not None else []
     for label, at in (*named, *((y, ("plot", "y", k)) for k, y in enumerate(plot.y))):
         if label not in labels:

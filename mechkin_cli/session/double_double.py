@@ -24,7 +24,7 @@ from mechkin_cli.tape import ExactRows, NotEnclosed, TraceLost, double_doubles, 
 from mechkin_cli.units import ANGLE, TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Assembly, Attached, ExactMoments, Problem, Wanted
+    from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
     from mechkin_cli.session.inputs import KernelInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.structure import SolverGraph
@@ -210,7 +210,8 @@ class Precise:
         problem: the file's problem on that recorder.
         motion: the file's motion over its rows.
         base: the same problem in doubles, of which the sessions are.
-        moments: of the rows of a response, whose first moment `problem` is.
+        moments: of the rows of a response, whose first moment `problem` is, in double-double
+            (2, rows): in s, and in the file's unit.
     """
 
     def __init__(
@@ -219,7 +220,7 @@ class Precise:
         problem: Problem,
         motion: ExactMotion,
         base: Problem,
-        moments: ExactMoments | None = None,
+        moments: tuple[Floats, Floats] | None = None,
     ) -> None:
         self.recorder = recorder
         self.problem = problem

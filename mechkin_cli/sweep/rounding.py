@@ -94,7 +94,7 @@ def _constants(session: Session) -> tuple[Floats, NDArray[np.bool_]]:
     """The plan's constants, and which of them place links: masses, loads and what else no position
     reads must not change a random number."""
     records = plan_records(session.layout)
-    placing = [record.call in PLACING for record in records for _ in flatten([record])]
+    placing = [record[0] in PLACING for record in records for _ in flatten([record])]
     return np.array(flatten(records), dtype=np.float64), np.array(placing, dtype=np.bool_)
 
 

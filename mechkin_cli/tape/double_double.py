@@ -325,7 +325,6 @@ def elementary(operation: str, *numbers: DoubleDoubles) -> DoubleDoubles:
 
 @cache
 def _tape(operation: str) -> _kernel.Tape:
-    """The tape of one operation."""
     code = Operation[operation]
     recorder = Recorder("xyz"[: ARITY[code]], [1.0] * ARITY[code])
     return compiled(recorder.tape([recorder.compute(code, *range(ARITY[code]))]))

@@ -6,7 +6,7 @@ that is itself recorded elsewhere, becomes a new constant of the program at each
 program of varied parameters has the same structure.
 
 `JetNumber` records a number with its first three derivatives over a parameter. Sums, products
-(Leibniz), quotients and functions (Faa di Bruno) are exact, as in `expressions.jets`. An order that
+(Leibniz), quotients and functions (Faa di Bruno) are exact, as in `derivatives`. An order that
 is the float 0.0 is left out of the recording.
 """
 

@@ -453,6 +453,10 @@ class UnitSystem:
         """An SI value in file units; the same object when they are the same unit."""
         return self.conversion(dimension).reverse(value)
 
+    def text(self, value: float, dimension: Dimension) -> str:
+        """An SI value in file units as messages have it: `12.5 mm`."""
+        return f"{float(self.from_si(value, dimension)):.12g} {self.label(dimension)}".rstrip()
+
     def conversion(self, dimension: Dimension) -> Conversion:
         """The conversion from file units to SI.
 

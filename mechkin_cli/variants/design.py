@@ -185,8 +185,7 @@ class Base:
         if self._assembled is None:
             return None
         try:
-            recording = record(self.design.built, names)
-            return SessionVariation(self._assembled[0], recording.recorder, recording.problem)
+            return SessionVariation(self._assembled[0], *record(self.design.built, names))
         except (TraceLost, TypeError, ValueError):
             # numpy refuses recorded numbers in words of its own
             return None

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import home_state
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.search.starts import unknown_states
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 

@@ -18,7 +18,7 @@ from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.derived import COEFFICIENT_KINDS
-from mechkin_cli.mechanism.runs import response_problem
+from mechkin_cli.mechanism.problem import response_problem
 
 SOME = [*(f"loop {seed}" for seed in range(0, 24, 4)), *(f"structure {s}" for s in range(2, 14, 3))]
 

@@ -16,7 +16,7 @@ from benchmark.specimen import Specimen
 from mechkin_cli.bench.measurement import ROUNDS, in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
 from mechkin_cli.kernel.functions import widths
-from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.records import Demand
 
 Step = tuple[str, tuple[str, ...], Demand]
 

@@ -24,8 +24,8 @@ from benchmark.kernel_case import KernelCase, PlannedRun, driven, repeated, swee
 from benchmark.specimens import rcsr_specimen, sevenr_specimen
 
 from mechkin_cli.kernel.functions import widths
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.outputs import Readout
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.session.kernel_run import Ask, PreciseConstants, RowInputs, run
 
 

@@ -36,7 +36,7 @@ from benchmark.specimens import sevenr_specimen
 import mechkin_cli as mk
 from mechkin_cli.bench.measurement import Timing, in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
-from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"

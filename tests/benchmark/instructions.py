@@ -40,7 +40,7 @@ from benchmark.targets import YARDSTICK_NAMES
 from benchmark.yardstick_kernel import LEVELS, Yardstick
 
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, plain_text
-from mechkin_cli.plan.codes import Demand
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.session.following import follow
 from mechkin_cli.tables.json import json_text
 

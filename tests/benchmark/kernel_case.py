@@ -11,10 +11,10 @@ from benchmark.specimen import Specimen, values
 
 from mechkin_cli import tolerances
 from mechkin_cli.model.model import loads
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan, Readout, demand_of
 from mechkin_cli.plan.plan import build_plan
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.session.following import follow
 from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 

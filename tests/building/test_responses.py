@@ -8,6 +8,7 @@ import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.mechanism.model import JointLoad, Varying
+from mechkin_cli.mechanism.problem import response_problem
 from mechkin_cli.mechanism.response import (
     CrossingEnd,
     DeadCentreEnd,
@@ -15,7 +16,6 @@ from mechkin_cli.mechanism.response import (
     StartValue,
     TurnsEnd,
 )
-from mechkin_cli.mechanism.runs import response_problem
 from mechkin_cli.tape.tape import evaluate
 
 LINKS = """\

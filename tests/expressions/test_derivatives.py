@@ -4,10 +4,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions.differentiation import RULES, derivatives
+from mechkin_cli.expressions.differentiation import RULES, Jet, derivatives
 from mechkin_cli.expressions.expression import parse
 from mechkin_cli.expressions.functions import FUNCTIONS
-from mechkin_cli.expressions.jets import Jet
 
 MOMENTS = (0.0, 0.3, 1.1)
 PATHS = {

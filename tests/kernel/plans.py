@@ -14,8 +14,7 @@ from kernel.pairs import ELEMENTARY, PITCH, O, Z, exponential, mp, vector
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
-from mechkin_cli.plan.codes import Demand, OutputCode
-from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.plan.records import Demand, Output, OutputCode, hand_over_outputs
 
 _CLOSING = {entry["letter"]: entry for entry in _kernel.joint_table()}
 TABLE = {letter: _CLOSING[kind.closing] for letter, kind in JOINT_TYPES.items() if kind.closing}

@@ -24,7 +24,7 @@ from kernel.plans import (
 )
 
 from mechkin_cli.mechanism.pairs import JOINT_TYPES
-from mechkin_cli.plan.codes import RowFlag
+from mechkin_cli.plan.records import RowFlag
 
 SEEDS = list(JOINT_TYPES)
 MOVED = 6

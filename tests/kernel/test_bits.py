@@ -22,10 +22,10 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel, functions
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan, Readout
 from mechkin_cli.plan.plan import build_plan
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.search.search import assemblies
 from mechkin_cli.session.assembled_places import solver_graph
 from mechkin_cli.session.following import follow

@@ -79,8 +79,8 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
 
 
 def calls_of(session: Session, size: float) -> Iterator[tuple[str, Any]]:
-    for record in plan_records(session.layout, size):
-        yield "plan" if record.call == "units" else record.call, record.arguments
+    for call, arguments in plan_records(session.layout, size):
+        yield "plan" if call == "units" else call, arguments
 
 
 def outputs_of(session: Session, ask: Ask) -> list[Any]:

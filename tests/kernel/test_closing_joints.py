@@ -15,7 +15,7 @@ from kernel.pairs import PAIRS, O, X, Y, Z, derivative, exponential, mp
 from kernel.plans import LENGTH, TABLE
 from kernel.probe import MOVED, Probe, largest
 
-from mechkin_cli.plan.codes import Demand, LoadCode, OutputCode, RowFlag
+from mechkin_cli.plan.records import Demand, LoadCode, OutputCode, RowFlag
 
 CLOSING = list(TABLE)
 LOAD_POINT = (0.4, 0.3, -0.2)

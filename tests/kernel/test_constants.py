@@ -12,11 +12,10 @@ from references import RCSR, SWEPT
 import mechkin_cli as mk
 from mechkin_cli.assembly.home import Probe
 from mechkin_cli.assembly.start import choose_start
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan, Readout
 from mechkin_cli.plan.plan import build_plan, plan_records
-from mechkin_cli.plan.records import flatten, hand_over
+from mechkin_cli.plan.records import Demand, flatten, hand_over
 from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, assembly_size, run
 
 EVERYTHING = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES | Demand.CONDITION | Demand.POWER

@@ -21,10 +21,9 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.plan.codes import Demand, LoadCode, OutputCode
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.plan import build_plan
-from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.plan.records import Demand, LoadCode, Output, OutputCode, hand_over_outputs
 from mechkin_cli.session.following import step_limits
 
 TRIALS = 2000

@@ -15,8 +15,8 @@ import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import width
 from mechkin_cli.mechanism.problem import law_value
-from mechkin_cli.plan.codes import Demand
-from mechkin_cli.plan.loads import kernel_columns
+from mechkin_cli.plan.programs import kernel_columns
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.session.kernel_run import Ask, Batch, run as run_kernel
 
 CRANK, ROD, OFFSET = 40.0, 130.0, 15.0

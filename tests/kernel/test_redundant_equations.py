@@ -14,7 +14,7 @@ from kernel.pairs import Z, derivative, mp, shifted, turned
 from kernel.plans import EVERYTHING, TABLE, Chain, Run, TreeJoint, doubles, frame, random_pose, run
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.plan.codes import Demand, LoadCode, OutputCode
+from mechkin_cli.plan.records import Demand, LoadCode, OutputCode
 
 CRANK, COUPLER, ROCKER, GROUND = (mp.mpf(x) for x in ("0.375", "0.875", "0.75", "0.8125"))
 ANGLES = [0.9, 1.7, 2.6, -1.1, 0.3]

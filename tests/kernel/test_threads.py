@@ -17,10 +17,10 @@ import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel import _kernel, functions as width
-from mechkin_cli.plan.codes import Demand
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.outputs import OutputPlan, Readout
 from mechkin_cli.plan.plan import build_plan
+from mechkin_cli.plan.records import Demand
 from mechkin_cli.session.kernel_run import Ask, Batch, RowInputs, run
 
 MOTION = Demand.VELOCITY | Demand.ACCELERATION | Demand.JERK

@@ -25,7 +25,7 @@ from kernel.plans import (
     run,
 )
 
-from mechkin_cli.plan.codes import LoadCode, OutputCode
+from mechkin_cli.plan.records import LoadCode, OutputCode
 
 SEEDS = 3
 POINT, DIRECTION = (0.3, -0.7, 0.45), (0.6, 0.0, -0.8)

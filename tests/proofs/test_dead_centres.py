@@ -27,7 +27,7 @@ from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.certificate import SweepDeadCentre
-from mechkin_cli.plan.codes import PassageEnd
+from mechkin_cli.plan.records import PassageEnd
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
 from mechkin_cli.proofs.dead_centre import prove_dead_centre
 from mechkin_cli.proofs.fold import are_one, prove_fold

@@ -11,8 +11,8 @@ import pytest
 from random_families.five_bars import FiveBar
 
 import mechkin_cli as mk
-from mechkin_cli.plan.codes import TrackEnd
 from mechkin_cli.plan.layout import home_state
+from mechkin_cli.plan.records import TrackEnd
 from mechkin_cli.session.session import Session
 
 BAR = FiveBar(2.2, 1.3)

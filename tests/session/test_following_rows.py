@@ -11,11 +11,10 @@ from prepared import Setup, prepared
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.plan.codes import OutputCode, TrackEnd
 from mechkin_cli.plan.layout import Layout, home_state
 from mechkin_cli.plan.outputs import Readout
 from mechkin_cli.plan.plan import build_plan
-from mechkin_cli.plan.records import Output, hand_over_outputs
+from mechkin_cli.plan.records import Output, OutputCode, TrackEnd, hand_over_outputs
 from mechkin_cli.session.following import Followed, follow
 from mechkin_cli.session.inputs import (
     ORIENTATION,

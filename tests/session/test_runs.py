@@ -19,8 +19,8 @@ import mechkin_cli as mk
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.mechanism.derived import DERIVED_KINDS
-from mechkin_cli.plan.codes import Demand, RowFlag
 from mechkin_cli.plan.outputs import demand_of
+from mechkin_cli.plan.records import Demand, RowFlag
 from mechkin_cli.session.kernel_run import (
     Ask,
     Batch,

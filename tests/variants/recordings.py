@@ -77,11 +77,10 @@ def everything(problem: Problem, graph: SolverGraph) -> list[Any]:
 def tape_of(stem: str) -> tuple[Built, Tape, Any]:
     """A file, the tape from all its parameters to `everything`, and the same for the kernel."""
     base = base_of(stem)
-    recording = record(base, list(base.problem.parameters))
-    problem = recording.problem
+    recorder, problem = record(base, list(base.problem.parameters))
     assert isinstance(base.graph, SolverGraph)
     numbers = everything(problem, graph_of(problem.mechanism, base.graph))
-    tape = recording.recorder.tape(register(recording.recorder, number) for number in numbers)
+    tape = recorder.tape(register(recorder, number) for number in numbers)
     return base, tape, compiled(tape)
 
 

@@ -62,7 +62,7 @@ def test_the_structure_of_the_plan_is_the_same() -> None:
     records = [
         plan_records(Layout(built.problem.mechanism, built.graph)) for built in (base, fresh)
     ]
-    assert [one.call for one in records[0]] == [one.call for one in records[1]]
+    assert [call for call, _ in records[0]] == [call for call, _ in records[1]]
     assert flatten(records[0]) != flatten(records[1])
 
 
@@ -83,8 +83,8 @@ def test_the_length_unit_follows_the_size() -> None:
 def replayed(text: str, name: str, value: float) -> tuple[int, Built | None]:
     """The verdict of a replay with another value, and the fresh build (None where it fails)."""
     base = build(open_text(text, "text"))
-    recording = record(base, [name])
-    tape = recording.recorder.tape([0])
+    recorder, _ = record(base, [name])
+    tape = recorder.tape([0])
     _, verdicts = replay(compiled(tape), np.array([[value]]))
     try:
         return int(verdicts[0]), built_anew(base, {name: value})
@@ -131,7 +131,7 @@ def test_what_is_refused_is_no_replay(text: str, value: float) -> None:
 def test_a_dropped_guard_is_noticed() -> None:
     """Without its guards the tape of a negative mass would pass for a replay."""
     base = build(open_text(crank(mass="p * 1 kg"), "text"))
-    recorder = record(base, ["p"]).recorder
+    recorder, _ = record(base, ["p"])
     tape = recorder.tape([0])
     none = replace(tape, guards=tape.guards[:0], expected=tape.expected[:0], advice=tape.advice[:0])
     for each, verdict in ((tape, Verdict.OTHER_WAY), (none, Verdict.SAME)):

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mechkin_cli.reading import read_document
-from mechkin_cli.schema import reader, validator
+from mechkin_cli.schema import validation, validator
 from mechkin_cli.schema.base import Section
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
@@ -48,8 +48,8 @@ def plain(value: Any) -> Any:
 
 def read(form: type[Section], data: Any) -> Any:
     try:
-        return plain(reader._section(form)(data))
-    except (reader.NotSure, ValueError, AssertionError):
+        return plain(validation._section(form)(data))
+    except (validation.NotSure, ValueError, AssertionError):
         return None
 
 
