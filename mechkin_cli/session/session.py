@@ -18,7 +18,7 @@ import numpy as np
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Demand, Layout, Readout
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
-from mechkin_cli.session.assembled_places import solver_graph
+from mechkin_cli.session.assembled_places import Coordinate, Structure, solver_graph
 from mechkin_cli.session.following import (
     Followed,
     follow as follow_path,
@@ -33,7 +33,6 @@ from mechkin_cli.session.kernel_run import (
     RowInputs,
     run as run_kernel,
 )
-from mechkin_cli.session.structure import Coordinate, Structure
 from mechkin_cli.structure import SolverGraph, is_redundant
 
 if TYPE_CHECKING:
