@@ -10,24 +10,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.distances import (
+from mechkin_cli.assembly.fold import judged_off_fold
+from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
+from mechkin_cli.assembly.near import (
     AssemblyStart,
+    NearestAssembly,
+    box_about,
     distances_home,
     distances_near,
     distances_of,
     far_notes,
     in_order,
     is_unclear,
-    unclear,
-)
-from mechkin_cli.assembly.fold import judged_off_fold
-from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
-from mechkin_cli.assembly.near import (
-    NearestAssembly,
-    box_about,
     named_by,
     newton_from,
     nothing_found,
+    unclear,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper

@@ -34,8 +34,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.derived.basis import BasisQuantities, at_unit_rate, basis_of, vector_of
-from mechkin_cli.derived.coefficients import coefficients
-from mechkin_cli.derived.energy import ledger
+from mechkin_cli.derived.coefficients import coefficients, ledger
 from mechkin_cli.derived.rotation import (
     add,
     angle,
