@@ -165,10 +165,6 @@ class NearestAssembly(NamedTuple):
     unique: float
     condition: float
 
-    def is_nearest(self, distance: float) -> bool:
-        """Whether no other assembly is nearer, or about as near, where this is at a distance."""
-        return (1.0 + tolerances.NEAR_RUNNER_UP) * distance < self.unique
-
 
 def named_by(session: Session) -> NamedAssembly:
     """What the problem's `near` names."""
@@ -220,7 +216,7 @@ def box_about(session: Session, named: NamedAssembly, radius: float) -> Within:
             if carrier.state + local in named.unknowns:
                 slide = carrier.part.type.slides[local]
                 radii[carrier.state + local] = radius * size if slide else radius
-    return Within(named.state, radii)
+    return named.state, radii
 
 
 def _unique(session: Session, state: Floats, condition: float) -> float:

@@ -203,7 +203,7 @@ def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
     if newton is None:
         return None
     distance = distances_of(session, inputs, newton.state[:, None])[0][0]
-    if newton.is_nearest(distance):
+    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < newton.unique:
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
             f"within {newton.unique:.2g}"

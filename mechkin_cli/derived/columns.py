@@ -33,11 +33,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.derived.basis import BasisQuantities, at_unit_rate, basis_of, vector_of
-from mechkin_cli.derived.coefficients import coefficients, ledger
-from mechkin_cli.derived.rotation import (
+from mechkin_cli.derived.basis import (
+    BasisQuantities,
     add,
     angle,
+    at_unit_rate,
+    basis_of,
     choose,
     continuous_quaternion,
     cross,
@@ -49,7 +50,9 @@ from mechkin_cli.derived.rotation import (
     square_to,
     subtract,
     turn,
+    vector_of,
 )
+from mechkin_cli.derived.coefficients import coefficients, ledger
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     FINITE_KINDS,

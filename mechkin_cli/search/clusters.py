@@ -19,7 +19,6 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.plan import Carrier, Layout
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.loop_equation import count_assemblies
 
@@ -36,12 +35,8 @@ if TYPE_CHECKING:
     isolated assemblies, their conditions, and how many are assemblies but not isolated."""
 
 
-class Within(NamedTuple):
-    """A box of states: `radius` (states,) about `centre` (states,), infinite where any value will
-    do."""
-
-    centre: Floats
-    radius: Floats
+Within = tuple["Floats", "Floats"]
+"""A box of states: centre (states,) and radius (states,), infinite where any value will do."""
 
 
 def thread_states(layout: Layout, number: int) -> list[int]:
@@ -106,7 +101,7 @@ def randomise(
         if carrier.part.type.is_ball:
             if local == 0:
                 states[state : state + 4] = generator.quaternions(rows)
-        elif within is not None and isfinite(within.radius[state]):
+        elif within is not None and isfinite(within[1][state]):
             generator.skip(rows)
         elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
@@ -118,12 +113,13 @@ def randomise(
                 states[state] += middle[state]
     if within is None:
         return
+    centre, radii = within
     for edge, freedom in layout.graph.blocks[number].unknowns:
         k, local = layout.carrier_of(edge, freedom)
         state = layout.carriers[k].state + local
-        radius = float(within.radius[state])
+        radius = float(radii[state])
         if isfinite(radius):
-            states[state] = within.centre[state] + generator.between(radius, rows)
+            states[state] = centre[state] + generator.between(radius, rows)
 
 
 def is_in_reach(layout: Layout, state: Floats) -> bool:

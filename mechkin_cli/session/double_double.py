@@ -104,55 +104,19 @@ class PreciseInputs(NamedTuple):
     written: Mapping[str, Floats]
 
 
-class _Numbers(NamedTuple):
-    """What `PreciseInputs` are made of, recorded: by order, then by input."""
-
-    rows: ExactRows
-    orders: Sequence[Sequence[Any]]
-    reduced: Sequence[Any]
-    time: Sequence[Any]
-    constraint_rates: Sequence[Any]
-    written: Mapping[str, Any]
-
-    @property
-    def listed(self) -> list[Any]:
-        """All of them."""
-        orders = [number for order in self.orders for number in order]
-        return [*orders, *self.reduced, *self.time, *self.constraint_rates, *self.written.values()]
-
-
 def precise_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The inputs of a session's rows in double-double."""
-    recorded = _recorded(precise, session)
-    return _put_together(session, recorded, recorded.rows.double_doubles(recorded.listed))
+    return _inputs(precise, session, ExactRows.double_doubles)
 
 
 def enclosed_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The same enclosed: a third part is the radius about the two."""
-    recorded = _recorded(precise, session)
-    return _put_together(session, recorded, recorded.rows.enclosures(recorded.listed))
+    return _inputs(precise, session, ExactRows.enclosures)
 
 
-def _put_together(session: InDoubles, recorded: _Numbers, found: Floats) -> PreciseInputs:
-    count = len(session.inputs.values)
-    ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.constraint_rates)])
-    *parts, time, transmitted, written = np.split(found, ends)
-    values, rates, accelerations, jerks, reduced = parts
-    names = dict(zip(recorded.written, written, strict=True))
-    return PreciseInputs(
-        values,
-        rates,
-        accelerations,
-        jerks,
-        reduced,
-        session.inputs.whole,
-        time[0] if len(time) else None,
-        transmitted if len(transmitted) else None,
-        names,
-    )
-
-
-def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
+def _inputs(
+    precise: Precise, session: InDoubles, replayed: Callable[[ExactRows, list[Any]], Floats]
+) -> PreciseInputs:
     problem = precise.problem_of(session)
     layout, inputs = precise.layout(session), problem.motion.inputs
     motion = _motion_of(precise, problem)
@@ -165,6 +129,8 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
         ]
         for k in range(len(ORDERS))
     ]
+    reduced = [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])]
+    time = [motion.in_si["time"]] if "time" in motion.in_si else []
     transmitted = [
         rate * (units[c.leader] / units[c.input])
         for rate, c in zip(motion.constraint_rates, problem.motion.constraints, strict=False)
@@ -173,13 +139,15 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
     for item in inputs:
         names = (item.name + suffix for suffix in ORDERS)
         written |= dict(zip(names, motion.written[item.name], strict=True))
-    return _Numbers(
-        motion.rows,
-        orders,
-        [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])],
-        [motion.in_si["time"]] if "time" in motion.in_si else [],
-        transmitted,
-        written,
+    parts = [*orders, reduced, time, transmitted, list(written.values())]
+    found = replayed(motion.rows, [number for part in parts for number in part])
+    *own, moments, rates, columns = np.split(found, np.cumsum([len(part) for part in parts[:-1]]))
+    return PreciseInputs(
+        *own,
+        session.inputs.whole,
+        moments[0] if len(moments) else None,
+        rates if len(rates) else None,
+        dict(zip(written, columns, strict=True)),
     )
 
 
