@@ -4,12 +4,10 @@ turn, and which outputs are angles.
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import Parameter
 from mechkin_cli.memo import remembered
 from mechkin_cli.session.cells import Formula, cells_of
@@ -83,12 +81,8 @@ class InputPath:
     def _in_si(self, places: Floats) -> Floats:
         given = np.empty((1 + len(self.given), places.size))
         given[0], given[1:] = places, np.array(self.given)[:, None]
-        inputs: Floats = replay(self._native, given)[0].T
+        inputs: Floats = replay(self.formula.native, given)[0].T
         return inputs
-
-    @cached_property
-    def _native(self) -> _kernel.Tape:
-        return self.formula.native
 
 
 def followers_of(session: Session) -> dict[str, str]:
