@@ -141,12 +141,18 @@ def _inputs(
         written |= dict(zip(names, motion.written[item.name], strict=True))
     parts = [*orders, reduced, time, transmitted, list(written.values())]
     found = replayed(motion.rows, [number for part in parts for number in part])
-    *own, moments, rates, columns = np.split(found, np.cumsum([len(part) for part in parts[:-1]]))
+    ends = np.cumsum([len(part) for part in parts[:-1]])
+    *own, moments, leading, columns = np.split(found, ends)
+    values, rates, accelerations, jerks, rest = own
     return PreciseInputs(
-        *own,
+        values,
+        rates,
+        accelerations,
+        jerks,
+        rest,
         session.inputs.whole,
         moments[0] if len(moments) else None,
-        rates if len(rates) else None,
+        leading if len(leading) else None,
         dict(zip(written, columns, strict=True)),
     )
 
