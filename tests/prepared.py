@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from mechkin_cli.assembly.distances import AssemblyStart
+from mechkin_cli.assembly.near import AssemblyStart
 from mechkin_cli.assembly.start import choose_start
 from mechkin_cli.mechanism.problem import Problem
 from mechkin_cli.plan.layout import Layout

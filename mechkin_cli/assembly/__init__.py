@@ -6,11 +6,6 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.assembly.distances import (
-        AssemblyStart as AssemblyStart,
-        distances_of as distances_of,
-        is_unclear as is_unclear,
-    )
     from mechkin_cli.assembly.fold import (
         PlacesBefore as PlacesBefore,
         at_unit_rate as at_unit_rate,
@@ -26,7 +21,12 @@ if TYPE_CHECKING:
         probe_of as probe_of,
         wrapped as wrapped,
     )
-    from mechkin_cli.assembly.near import nothing_found as nothing_found
+    from mechkin_cli.assembly.near import (
+        AssemblyStart as AssemblyStart,
+        distances_of as distances_of,
+        is_unclear as is_unclear,
+        nothing_found as nothing_found,
+    )
     from mechkin_cli.assembly.start import (
         HOME as HOME,
         MAY_BE_RIGID as MAY_BE_RIGID,
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "distances": ["AssemblyStart", "distances_of", "is_unclear"],
         "fold": ["PlacesBefore", "at_unit_rate", "left_for", "unit_rates"],
         "home": [
             "NamedModes",
@@ -51,7 +50,7 @@ __getattr__, __dir__ = lazy_names(
             "probe_of",
             "wrapped",
         ],
-        "near": ["nothing_found"],
+        "near": ["AssemblyStart", "distances_of", "is_unclear", "nothing_found"],
         "start": [
             "HOME",
             "MAY_BE_RIGID",

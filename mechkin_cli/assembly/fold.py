@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.distances import (
+from mechkin_cli.assembly.home import name_modes
+from mechkin_cli.assembly.near import (
     AssemblyStart,
     distances_home,
     distances_near,
@@ -24,7 +25,6 @@ from mechkin_cli.assembly.distances import (
     is_unclear,
     unclear,
 )
-from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.search import pose_number

@@ -10,24 +10,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.distances import (
+from mechkin_cli.assembly.fold import judged_off_fold
+from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
+from mechkin_cli.assembly.near import (
     AssemblyStart,
+    NearestAssembly,
+    box_about,
     distances_home,
     distances_near,
     distances_of,
     far_notes,
     in_order,
     is_unclear,
-    unclear,
-)
-from mechkin_cli.assembly.fold import judged_off_fold
-from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
-from mechkin_cli.assembly.near import (
-    NearestAssembly,
-    box_about,
     named_by,
     newton_from,
     nothing_found,
+    unclear,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
@@ -205,7 +203,7 @@ def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
     if newton is None:
         return None
     distance = distances_of(session, inputs, newton.state[:, None])[0][0]
-    if newton.is_nearest(distance):
+    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < newton.unique:
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
             f"within {newton.unique:.2g}"

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
         basis_of as basis_of,
         directions as directions,
         displacement as displacement,
+        quaternion as quaternion,
         rotation_of as rotation_of,
         vector_of as vector_of,
     )
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
         running_integral_of_cycle as running_integral_of_cycle,
         total as total,
     )
-    from mechkin_cli.derived.rotation import quaternion as quaternion
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -44,6 +44,7 @@ __getattr__, __dir__ = lazy_names(
             "basis_of",
             "directions",
             "displacement",
+            "quaternion",
             "rotation_of",
             "vector_of",
         ],
@@ -63,6 +64,5 @@ __getattr__, __dir__ = lazy_names(
             "running_integral_of_cycle",
             "total",
         ],
-        "rotation": ["quaternion"],
     },
 )

@@ -6,8 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.errors.cells import true_values as true_values
-    from mechkin_cli.errors.errors import Errors as Errors
+    from mechkin_cli.errors.errors import Errors as Errors, true_values as true_values
     from mechkin_cli.errors.response import repetition as repetition
     from mechkin_cli.errors.rows import (
         WORDS as WORDS,
@@ -21,8 +20,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "cells": ["true_values"],
-        "errors": ["Errors"],
+        "errors": ["Errors", "true_values"],
         "response": ["repetition"],
         "rows": ["KernelRows", "NotRepeated", "Repeated", "WORDS", "reason_of", "wide_run"],
     },

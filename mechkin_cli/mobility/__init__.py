@@ -9,7 +9,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.mobility.first_row import lost_holds as lost_holds
+    from mechkin_cli.mobility.configurations import lost_holds as lost_holds
     from mechkin_cli.mobility.idle import held_along as held_along
     from mechkin_cli.mobility.mobility import (
         Mobility as Mobility,
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "first_row": ["lost_holds"],
+        "configurations": ["lost_holds"],
         "idle": ["held_along"],
         "mobility": ["Mobility", "drawn_faults", "find_mobility", "meeting", "undriven_notes"],
     },

@@ -35,12 +35,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-class Pose(NamedTuple):
-    """Where a body stands: its drawing's point p is at turn p + place (lengths in sizes, about the
-    centre)."""
-
-    turn: Floats
-    place: Floats
+Pose = tuple["Floats", "Floats"]
+"""Where a body stands: turn and place; its drawing's point p is at turn p + place (lengths in
+sizes, about the centre)."""
 
 
 class Opened(NamedTuple):
@@ -134,7 +131,7 @@ class Poses:
     def named(self, turns: Floats, places: Floats) -> dict[str, Pose]:
         """The poses of one row by the names of the bodies."""
         names = (GROUND_NAME, *self.bodies)
-        return {name: Pose(turns[k], places[k]) for k, name in enumerate(names)}
+        return {name: (turns[k], places[k]) for k, name in enumerate(names)}
 
 
 def displacement(turn: Floats, place: Floats, to_turn: Floats, to_place: Floats) -> Floats:

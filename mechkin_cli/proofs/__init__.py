@@ -6,10 +6,17 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.proofs.dead_centre import DeadCentreProof as DeadCentreProof
+    from mechkin_cli.proofs.boxes import ModeProofs as ModeProofs, prove_modes as prove_modes
+    from mechkin_cli.proofs.dead_centre import (
+        DeadCentreProof as DeadCentreProof,
+        are_one as are_one,
+    )
     from mechkin_cli.proofs.enclose import Enclosure as Enclosure
-    from mechkin_cli.proofs.enclosed_rows import (
+    from mechkin_cli.proofs.rows import (
+        Gap as Gap,
+        SweepProofs as SweepProofs,
         bounds as bounds,
+        certify as certify,
         dead_centre_enclosure as dead_centre_enclosure,
         enclosures as enclosures,
         input_bounds as input_bounds,
@@ -18,17 +25,18 @@ if TYPE_CHECKING:
         reason_against as reason_against,
         reason_unknown as reason_unknown,
     )
-    from mechkin_cli.proofs.fold import are_one as are_one
-    from mechkin_cli.proofs.modes import ModeProofs as ModeProofs, prove_modes as prove_modes
-    from mechkin_cli.proofs.rows import Gap as Gap, SweepProofs as SweepProofs, certify as certify
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "dead_centre": ["DeadCentreProof"],
+        "boxes": ["ModeProofs", "prove_modes"],
+        "dead_centre": ["DeadCentreProof", "are_one"],
         "enclose": ["Enclosure"],
-        "enclosed_rows": [
+        "rows": [
+            "Gap",
+            "SweepProofs",
             "bounds",
+            "certify",
             "dead_centre_enclosure",
             "enclosures",
             "input_bounds",
@@ -37,8 +45,5 @@ __getattr__, __dir__ = lazy_names(
             "reason_against",
             "reason_unknown",
         ],
-        "fold": ["are_one"],
-        "modes": ["ModeProofs", "prove_modes"],
-        "rows": ["Gap", "SweepProofs", "certify"],
     },
 )

@@ -6,7 +6,11 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.response.integration import integrate as integrate, with_loads as with_loads
+    from mechkin_cli.response.integration import (
+        Beginning as Beginning,
+        integrate as integrate,
+        with_loads as with_loads,
+    )
     from mechkin_cli.response.result import ResponseResult as ResponseResult
     from mechkin_cli.response.runs import (
         Prepared as Prepared,
@@ -16,14 +20,19 @@ if TYPE_CHECKING:
         respond as respond,
         watched_stop as watched_stop,
     )
-    from mechkin_cli.response.start import Beginning as Beginning
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": ["integrate", "with_loads"],
+        "integration": ["Beginning", "integrate", "with_loads"],
         "result": ["ResponseResult"],
-        "runs": ["Prepared", "integrated", "prepare", "read", "respond", "watched_stop"],
-        "start": ["Beginning"],
+        "runs": [
+            "Prepared",
+            "integrated",
+            "prepare",
+            "read",
+            "respond",
+            "watched_stop",
+        ],
     },
 )

@@ -36,8 +36,16 @@ if TYPE_CHECKING:
 
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
     from mechkin_cli.mechanism import Problem, ResponseProblem
-    from mechkin_cli.response.start import Beginning
     from mechkin_cli.show import Floats
+
+
+class Beginning(NamedTuple):
+    """States (states,), rates of the columns (columns,) and a basis of the free rates (freedoms,
+    columns) at the first moment, in kernel units."""
+
+    state: Floats
+    first: Floats
+    tangents: Floats
 
 
 class MotionEnd(IntEnum):

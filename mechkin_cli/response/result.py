@@ -34,22 +34,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Bools, Floats
 
 
-def driven_rows(response: ResponseResult) -> Result:
-    """The rows of a response as if the start's coordinates were driven through them: a sweep with
-    its states, rates and accelerations, on the same tree."""
-    own, moving = response.row_states, response.problem.motion
-    free = [_as_input(response, *at) for at in response.response.independent]
-    motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
-    session = response.chosen.moved(replace(response.chosen.problem, motion=motion))
-    rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
-    rows.states, rows.reached, rows.status = own.states, own.reached, own.status
-    # cut joints have the same turns; the tree's angles have theirs in the states
-    closing = own.turns[: own.turns.shape[0] - len(response.session.turn_slots.tree)]
-    still = np.zeros((len(session.turn_slots.tree), moving.rows))
-    rows.turns = np.concatenate([closing, still])
-    return Result(session, response.start, rows)
-
-
 def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
     """A coordinate with its rates and accelerations, zero in rows without a solution."""
     rows, dimension, orders = response.rows, dimension_of(coordinate), []
@@ -147,8 +131,19 @@ class ResponseResult(Result):
     @cached_property
     def as_driven(self) -> Result:
         """The same rows as a sweep of the start's coordinates, by whose accelerations the
-        coefficients of the equations of motion are; near a dead centre of them there are none."""
-        return driven_rows(self)
+        coefficients of the equations of motion are; near a dead centre of them there are none: a
+        sweep with these states, rates and accelerations, on the same tree."""
+        own, moving = self.row_states, self.problem.motion
+        free = [_as_input(self, *at) for at in self.response.independent]
+        motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
+        session = self.chosen.moved(replace(self.chosen.problem, motion=motion))
+        rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
+        rows.states, rows.reached, rows.status = own.states, own.reached, own.status
+        # cut joints have the same turns; the tree's angles have theirs in the states
+        closing = own.turns[: own.turns.shape[0] - len(self.session.turn_slots.tree)]
+        still = np.zeros((len(session.turn_slots.tree), moving.rows))
+        rows.turns = np.concatenate([closing, still])
+        return Result(session, self.start, rows)
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.

@@ -10,6 +10,8 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.search.clusters import (
+        Within as Within,
+        is_in_reach as is_in_reach,
         pose_keys as pose_keys,
         pose_number as pose_number,
         same_poses as same_poses,
@@ -20,13 +22,11 @@ if TYPE_CHECKING:
         single_assembly as single_assembly,
         with_assemblies as with_assemblies,
     )
-    from mechkin_cli.search.starts import Within as Within, is_in_reach as is_in_reach
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "clusters": ["pose_keys", "pose_number", "same_poses"],
+        "clusters": ["Within", "is_in_reach", "pose_keys", "pose_number", "same_poses"],
         "search": ["Assemblies", "all_assemblies", "single_assembly", "with_assemblies"],
-        "starts": ["Within", "is_in_reach"],
     },
 )

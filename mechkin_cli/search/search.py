@@ -19,11 +19,19 @@ from mechkin_cli.kernel.functions import threads_for, width
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.search import starts
 from mechkin_cli.search.chain import most_of_block
-from mechkin_cli.search.clusters import Clusters, first_of_each, pose_keys
+from mechkin_cli.search.clusters import (
+    Clusters,
+    Within,
+    first_of_each,
+    most_turn,
+    pose_keys,
+    randomise,
+    thread_states,
+    unknown_states,
+    upstream_states,
+)
 from mechkin_cli.search.loop_equation import count_assemblies
-from mechkin_cli.search.starts import Within
 from mechkin_cli.session import Ask, RowInputs, Session, Structure, run
 from mechkin_cli.structure import RandomStarts
 
@@ -171,11 +179,11 @@ def search_round(
 ) -> None:
     """The same number of starts from each place, columns of `states`, place by place."""
     layout, middle = request.layout, request.middle
-    starts.randomise(layout, number, states, generator, request.turns, middle, request.within)
+    randomise(layout, number, states, generator, request.turns, middle, request.within)
     values = np.repeat(request.inputs[:, None], states.shape[1], axis=1)
     residual, closed = ends(request.plan, number, values, states)
-    threads = starts.thread_states(layout, number)
-    turned = np.abs(states[threads] - middle[threads, None]) <= starts.most_turn(request.turns)
+    threads = thread_states(layout, number)
+    turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
     good = closed & turned.all(axis=0)
     share = states.shape[1] // len(searches)
     for i, search in enumerate(searches):
@@ -336,7 +344,7 @@ def assemblies(
     request = BlockSearch(layout, plan, inputs, turns, middle, within, thorough)
     partial = _first_place(layout, inputs)
     for number in range(len(layout.graph.blocks)):
-        upstream = starts.upstream_states(layout, number)
+        upstream = upstream_states(layout, number)
         firsts, place = _different(partial[upstream])
         if len(firsts) > tally.most_places:
             partial = partial[:, _nearest_home(layout, partial, tally.cut())]
@@ -417,7 +425,7 @@ def _continued(
     layout: Layout, number: int, partial: Floats, place: list[int], searches: list[PlaceSearch]
 ) -> Floats:
     """Every assembly so far with each of the block's own there."""
-    own = starts.unknown_states(layout, number)
+    own = unknown_states(layout, number)
     of_places = [searches[k].clusters for k in place]
     states = np.repeat(partial, [clusters.number for clusters in of_places], axis=1)
     states[own] = np.concatenate([clusters.states[own] for clusters in of_places], axis=1)

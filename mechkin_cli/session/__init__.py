@@ -10,8 +10,9 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.session.angles import angle_slots as angle_slots, input_rest as input_rest
     from mechkin_cli.session.assembled_places import (
+        Coordinate as Coordinate,
+        Structure as Structure,
         left_free as left_free,
         solver_graph as solver_graph,
     )
@@ -19,13 +20,21 @@ if TYPE_CHECKING:
     from mechkin_cli.session.double_double import (
         Precise as Precise,
         PreciseInputs as PreciseInputs,
+        ShiftingPrecise as ShiftingPrecise,
         precise_inputs as precise_inputs,
     )
-    from mechkin_cli.session.exchanged import Exchanged as Exchanged, exchange as exchange
+    from mechkin_cli.session.exchanged import (
+        Exchanged as Exchanged,
+        exchange as exchange,
+        find_limit as find_limit,
+        moves_freely as moves_freely,
+    )
     from mechkin_cli.session.followers import (
         InputPath as InputPath,
+        angle_slots as angle_slots,
         followers_of as followers_of,
         input_path as input_path,
+        input_rest as input_rest,
     )
     from mechkin_cli.session.following import (
         BranchFold as BranchFold,
@@ -64,7 +73,6 @@ if TYPE_CHECKING:
         assembly_size as assembly_size,
         run as run,
     )
-    from mechkin_cli.session.limits import find_limit as find_limit, moves_freely as moves_freely
     from mechkin_cli.session.path import places_at as places_at, places_of as places_of
     from mechkin_cli.session.redundancy import equations_that_follow as equations_that_follow
     from mechkin_cli.session.session import (
@@ -73,18 +81,15 @@ if TYPE_CHECKING:
         Packing as Packing,
         Session as Session,
     )
-    from mechkin_cli.session.shifted import ShiftingPrecise as ShiftingPrecise
-    from mechkin_cli.session.structure import Coordinate as Coordinate, Structure as Structure
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "angles": ["angle_slots", "input_rest"],
-        "assembled_places": ["left_free", "solver_graph"],
+        "assembled_places": ["Coordinate", "Structure", "left_free", "solver_graph"],
         "cells": ["Formula", "cells_of"],
-        "double_double": ["Precise", "PreciseInputs", "precise_inputs"],
-        "exchanged": ["Exchanged", "exchange"],
-        "followers": ["InputPath", "followers_of", "input_path"],
+        "double_double": ["Precise", "PreciseInputs", "ShiftingPrecise", "precise_inputs"],
+        "exchanged": ["Exchanged", "exchange", "find_limit", "moves_freely"],
+        "followers": ["InputPath", "angle_slots", "followers_of", "input_path", "input_rest"],
         "following": [
             "BranchFold",
             "BranchPoint",
@@ -122,11 +127,8 @@ __getattr__, __dir__ = lazy_names(
             "assembly_size",
             "run",
         ],
-        "limits": ["find_limit", "moves_freely"],
         "path": ["places_at", "places_of"],
         "redundancy": ["equations_that_follow"],
         "session": ["Continued", "ContinuedFrom", "Packing", "Session"],
-        "shifted": ["ShiftingPrecise"],
-        "structure": ["Coordinate", "Structure"],
     },
 )

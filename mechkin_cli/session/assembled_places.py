@@ -1,8 +1,14 @@
-"""Places where a mechanism is assembled, next to its drawing, to take ranks at."""
+"""A mechanism's structure in the kernel, and places where it is assembled to take ranks at.
+
+The first place is the drawing itself if it is assembled; else what Newton's method makes of it, all
+loops of a component in one block. A drawing may be a special position, so places with the inputs
+moved a little follow. If nothing closes, the drawing has to do as it is.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,10 +27,11 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
-from mechkin_cli.plan import Layout, home_inputs, home_state
-from mechkin_cli.record import replace
+from mechkin_cli.memo import Memo, remembered
+from mechkin_cli.plan import Layout, OutputPlan, Readout, build_plan, home_inputs, home_state
+from mechkin_cli.record import dataclass, field, replace
+from mechkin_cli.session.inputs import TurnSlots
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
-from mechkin_cli.session.structure import Coordinate, Structure
 from mechkin_cli.structure import (
     RandomStarts,
     Rates,
@@ -38,7 +45,56 @@ from mechkin_cli.structure import (
 )
 
 if TYPE_CHECKING:
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism import Wanted
     from mechkin_cli.show import Floats
+
+
+Coordinate = tuple[str, str]
+"""(joint, coordinate)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """A mechanism and its graph in the kernel: what depends neither on rows nor on the choice of
+    the first assembly.
+
+    Attributes:
+        layout: how the mechanism lies in the kernel.
+        driven: its inputs (joint, coordinate).
+        closed_at: cut joints that were asked for instead of the best ones.
+        built: the plan, where it is not that of the layout alone.
+        varied: the readout of some quantities, where their constants follow from those of another
+            structure.
+    """
+
+    layout: Layout
+    driven: tuple[Coordinate, ...]
+    closed_at: tuple[str, ...] | None = None
+    built: Plan | None = None
+    varied: Callable[[tuple[Wanted, ...]], Readout] | None = None
+    memo: Memo = field(default_factory=dict, init=False, repr=False)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The frozen plan; residual and condition in parts of the drawing's size."""
+        return build_plan(self.layout) if self.built is None else self.built
+
+    @cached_property
+    def turn_slots(self) -> TurnSlots:
+        """Where the turns of angles stand among `Followed.turns`."""
+        return TurnSlots.of(self.plan)
+
+    @remembered
+    def readout(self, wanted: tuple[Wanted, ...], points: tuple[Attached, ...]) -> Readout:
+        """The outputs that give some quantities, and the places of some points."""
+        if self.varied is not None and not points:
+            return self.varied(wanted)
+        outputs = OutputPlan(self.layout, self.plan, self.driven)
+        for quantity in wanted:
+            outputs.add(quantity)
+        slots = [outputs.add_point(at, 0) for at in points]
+        return Readout(outputs.outputs, outputs.slots, slots, wanted)
 
 
 Poses = Callable[[str], Frame]

@@ -4,31 +4,46 @@ The file is recorded once with all its numbers exact (`building.recording.record
 layout of the session is laid over that recording, and what reaches the kernel is replayed. Tree,
 blocks, the choice of frames, length unit and origin are the session's own, in doubles; so is the
 size in whose parts residuals are told. They are conventions, not measures.
+
+Where a parameter is shifted by a little (`ShiftingPrecise`), what the constants are computed by is
+recorded once; each shift is a replay of that tape in double-double, whose rounding, 1e-32, is far
+below what a shift changes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from mechkin_cli.exact import nearest
+from mechkin_cli.exact import double_double, nearest
 from mechkin_cli.mechanism import ORDERS, ExactMotion, dimension_of
 from mechkin_cli.plan import Layout, OutputPlan, flatten, plan_records
 from mechkin_cli.record import NamedTuple, fields, is_dataclass, replace
 from mechkin_cli.session.inputs import held_values, turn_of
 from mechkin_cli.structure import graph_of
-from mechkin_cli.tape import ExactRows, NotEnclosed, TraceLost, double_doubles, enclosures, register
+from mechkin_cli.tape import (
+    ExactRows,
+    NotEnclosed,
+    TraceLost,
+    compiled,
+    double_doubles,
+    enclosures,
+    register,
+    replay_precise,
+)
 from mechkin_cli.units import ANGLE, TIME
 
 if TYPE_CHECKING:
+    from mechkin_cli.kernel import _kernel
     from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
     from mechkin_cli.session.inputs import KernelInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.structure import SolverGraph
-    from mechkin_cli.tape import ExactRecorder, ExactTape
+    from mechkin_cli.tape import ExactRecorder, ExactTape, ShiftingRecorder
 
 
 # The inputs of a session over its rows as the text says them, in double-double and enclosed.
@@ -89,55 +104,19 @@ class PreciseInputs(NamedTuple):
     written: Mapping[str, Floats]
 
 
-class _Numbers(NamedTuple):
-    """What `PreciseInputs` are made of, recorded: by order, then by input."""
-
-    rows: ExactRows
-    orders: Sequence[Sequence[Any]]
-    reduced: Sequence[Any]
-    time: Sequence[Any]
-    constraint_rates: Sequence[Any]
-    written: Mapping[str, Any]
-
-    @property
-    def listed(self) -> list[Any]:
-        """All of them."""
-        orders = [number for order in self.orders for number in order]
-        return [*orders, *self.reduced, *self.time, *self.constraint_rates, *self.written.values()]
-
-
 def precise_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The inputs of a session's rows in double-double."""
-    recorded = _recorded(precise, session)
-    return _put_together(session, recorded, recorded.rows.double_doubles(recorded.listed))
+    return _inputs(precise, session, ExactRows.double_doubles)
 
 
 def enclosed_inputs(precise: Precise, session: InDoubles) -> PreciseInputs:
     """The same enclosed: a third part is the radius about the two."""
-    recorded = _recorded(precise, session)
-    return _put_together(session, recorded, recorded.rows.enclosures(recorded.listed))
+    return _inputs(precise, session, ExactRows.enclosures)
 
 
-def _put_together(session: InDoubles, recorded: _Numbers, found: Floats) -> PreciseInputs:
-    count = len(session.inputs.values)
-    ends = np.cumsum([count] * 5 + [len(recorded.time), len(recorded.constraint_rates)])
-    *parts, time, transmitted, written = np.split(found, ends)
-    values, rates, accelerations, jerks, reduced = parts
-    names = dict(zip(recorded.written, written, strict=True))
-    return PreciseInputs(
-        values,
-        rates,
-        accelerations,
-        jerks,
-        reduced,
-        session.inputs.whole,
-        time[0] if len(time) else None,
-        transmitted if len(transmitted) else None,
-        names,
-    )
-
-
-def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
+def _inputs(
+    precise: Precise, session: InDoubles, replayed: Callable[[ExactRows, list[Any]], Floats]
+) -> PreciseInputs:
     problem = precise.problem_of(session)
     layout, inputs = precise.layout(session), problem.motion.inputs
     motion = _motion_of(precise, problem)
@@ -150,6 +129,8 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
         ]
         for k in range(len(ORDERS))
     ]
+    reduced = [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])]
+    time = [motion.in_si["time"]] if "time" in motion.in_si else []
     transmitted = [
         rate * (units[c.leader] / units[c.input])
         for rate, c in zip(motion.constraint_rates, problem.motion.constraints, strict=False)
@@ -158,13 +139,21 @@ def _recorded(precise: Precise, session: InDoubles) -> _Numbers:
     for item in inputs:
         names = (item.name + suffix for suffix in ORDERS)
         written |= dict(zip(names, motion.written[item.name], strict=True))
-    return _Numbers(
-        motion.rows,
-        orders,
-        [_reduced(session, motion, k, values) for k, values in enumerate(orders[0])],
-        [motion.in_si["time"]] if "time" in motion.in_si else [],
-        transmitted,
-        written,
+    parts = [*orders, reduced, time, transmitted, list(written.values())]
+    found = replayed(motion.rows, [number for part in parts for number in part])
+    ends = np.cumsum([len(part) for part in parts[:-1]])
+    *own, moments, leading, columns = np.split(found, ends)
+    values, rates, accelerations, jerks, rest = own
+    return PreciseInputs(
+        values,
+        rates,
+        accelerations,
+        jerks,
+        rest,
+        session.inputs.whole,
+        moments[0] if len(moments) else None,
+        leading if len(leading) else None,
+        dict(zip(written, columns, strict=True)),
     )
 
 
@@ -399,3 +388,104 @@ def _numbers(part: Any) -> Iterator[float]:
     elif isinstance(part, Mapping):
         for item in part.values():
             yield from _numbers(item)
+
+
+Shifts = Mapping[int, Fraction]
+
+
+class ShiftingPrecise(Precise):
+    """As `Precise`; each parameter is its text's value and a shift, zero unless it is `shifted`.
+
+    Args:
+        leaves: of the recorder, by the names of the parameters that they shift.
+        others: as those of `Precise`.
+    """
+
+    recorder: ShiftingRecorder
+
+    def __init__(
+        self,
+        recorder: ShiftingRecorder,
+        problem: Problem,
+        motion: ExactMotion,
+        base: Problem,
+        leaves: Mapping[str, int],
+    ) -> None:
+        super().__init__(recorder, problem, motion, base)
+        self.leaves = leaves
+        self._turned: dict[tuple[str, Fraction], bool] = {}
+        self._tapes: dict[Hashable, tuple[InDoubles, ExactTape, _kernel.Tape | None]] = {}
+
+    def is_turned(self, name: str, amount: Fraction) -> bool:
+        """Whether anything that the building decides is decided otherwise for this shift of a
+        parameter in SI, or its negative; then no shift tells what the file says there.
+
+        Raises:
+            NotEnclosed: something is not defined there.
+        """
+        if (name, amount) not in self._turned:
+            self._turned[name, amount] = self.recorder.turns(self.leaves[name], amount)
+        return self._turned[name, amount]
+
+    def shifted(self, name: str | None, amount: Fraction) -> Shifted:
+        """The same numbers with a parameter larger by an amount in SI; None: with none."""
+        return Shifted(self, {} if name is None else {self.leaves[name]: amount})
+
+    def replayed(
+        self,
+        key: Hashable,
+        session: InDoubles,
+        numbers: Callable[[], Iterable[Any]],
+        shifts: Shifts,
+    ) -> Floats:
+        """Some numbers of a session, told apart by a key, with shifts: (numbers, 2)."""
+        if (key, id(session)) not in self._tapes:
+            registers = [register(self.recorder, number) for number in numbers()]
+            tape = self.recorder.exact_tape(registers)
+            native = compiled(tape.tape) if tape.given else None
+            self._tapes[key, id(session)] = (session, tape, native)
+        _, tape, native = self._tapes[key, id(session)]
+        if native is None:
+            return double_doubles(tape)  # no number that is rounded, so none that is shifted
+        values = tape.values.copy()
+        for leaf, amount in shifts.items():
+            if leaf in tape.given:
+                values[tape.given.index(leaf)] = double_double(amount)
+        return np.ascontiguousarray(replay_precise(native, values[:, :, None])[0][0])
+
+
+class Shifted(Precise):
+    """The numbers of a `ShiftingPrecise` with some leaves shifted; layouts and tapes are its own
+    no more than once."""
+
+    recorder: ShiftingRecorder
+
+    def __init__(self, own: ShiftingPrecise, shifts: Shifts) -> None:
+        super().__init__(own.recorder, own.problem, own.motion, own.base)
+        self._layouts = own._layouts
+        self.own, self.shifts = own, shifts
+
+    def constants(self, session: InDoubles) -> Floats:
+        """As `Precise.constants`."""
+        return self.own.replayed("plan", session, lambda: self._constants(session), self.shifts)
+
+    def outputs(
+        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
+    ) -> Floats:
+        """As `Precise.outputs`."""
+        wanted, points = tuple(wanted), tuple(points)
+        key = (tuple(quantity.name for quantity in wanted), points)
+        return self.own.replayed(
+            key, session, lambda: self._outputs(session, wanted, points), self.shifts
+        )
+
+    def inputs(self, session: InDoubles) -> PreciseInputs:
+        """As `Precise.inputs`."""
+        with self.recorder.shifted(self.shifts):
+            return super().inputs(session)
+
+    @cached_property
+    def parameters(self) -> Mapping[str, Floats]:
+        """As `Precise.parameters`."""
+        with self.recorder.shifted(self.shifts):
+            return self._parameters()

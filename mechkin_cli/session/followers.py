@@ -1,13 +1,13 @@
-"""Inputs that follow others: what moves with one input where all others stand."""
+"""Inputs that follow others: what moves with one input where all others stand; inputs within a
+turn, and which outputs are angles.
+"""
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import Parameter
 from mechkin_cli.memo import remembered
 from mechkin_cli.session.cells import Formula, cells_of
@@ -17,6 +17,9 @@ from mechkin_cli.show import Floats
 from mechkin_cli.tape import replay
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from mechkin_cli.plan import Slot
     from mechkin_cli.session.session import Session
     from mechkin_cli.tape import Tape
 
@@ -78,12 +81,8 @@ class InputPath:
     def _in_si(self, places: Floats) -> Floats:
         given = np.empty((1 + len(self.given), places.size))
         given[0], given[1:] = places, np.array(self.given)[:, None]
-        inputs: Floats = replay(self._native, given)[0].T
+        inputs: Floats = replay(self.formula.native, given)[0].T
         return inputs
-
-    @cached_property
-    def _native(self) -> _kernel.Tape:
-        return self.formula.native
 
 
 def followers_of(session: Session) -> dict[str, str]:
@@ -104,3 +103,32 @@ def input_path(session: Session, number: int, row: int = 0) -> InputPath | None:
     name = session.problem.motion.inputs[number].name
     tapes = dict(session.problem.motion.paths)
     return InputPath(session, tapes[name], number, row) if name in tapes else None
+
+
+def input_rest(session: Session, name: str) -> Floats | None:
+    """An input (rows,) without its whole turns in rad, None if it has none."""
+    for number, item in enumerate(session.problem.motion.inputs):
+        if name == item.name and session.inputs.whole[number].any():
+            rest: Floats = session.inputs.reduced[number]
+            return rest
+    return None
+
+
+def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
+    """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
+    whether of a closing joint); of an input -2 - its number."""
+    known, layout = session.problem.quantities(), session.layout
+    inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
+    found = []
+    for name, slot in names.items():
+        quantity = known.get(name)
+        if quantity is None or quantity.kind != "coordinate" or quantity.order:
+            continue
+        of_closing = layout.joint_reference[quantity.owner] < 0
+        if name in inputs and not of_closing:
+            turn: int | None = -2 - inputs[name]
+        else:
+            turn = session.turn_slots.of_angle(layout, quantity)
+        if turn is not None:
+            found.append((slot.first, turn, of_closing))
+    return found

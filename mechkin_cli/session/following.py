@@ -96,7 +96,7 @@ class Followed(NamedTuple):
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
     hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
-    for (`kernel.closing_turns`): the angles and quaternions of closing joints, continuous from the
+    for (`follow`): the angles and quaternions of closing joints, continuous from the
     first row, and the whole turns of the tree's angles, whose states are then within half a turn.
     If the branch could not be followed further, `inputs` and `state` are the last place on it,
     `turn` the turns there, and `direction` the way the inputs were going; where that lies on a
@@ -116,11 +116,6 @@ class Followed(NamedTuple):
     ending: Ending | None = None
     crossings: tuple[BranchCrossing, ...] = ()
     parameter: float | None = None
-
-    @property
-    def turn_is_known(self) -> bool:
-        """Whether turns were asked for, and the first row closed."""
-        return self.turn is not None and self.turn.size > 0
 
 
 def follow(

@@ -78,8 +78,8 @@ class RowInputs(NamedTuple):
         jerks: (inputs, rows), needed for third derivatives.
         constraint_rates: rates of inputs by those that lead them (constraints, rows), needed for
             forces where there are any.
-        turned: (turn slots, rows) as `kernel.closing_turns` has them; springs on angles and laws of
-            loads go by them.
+        turned: (turn slots, rows) as the kernel's `closing_turns` has them; springs on angles and
+            laws of loads go by them.
         whole: (inputs, rows) whole turns that the inputs are without, likewise.
         full: (inputs, rows) the inputs with their whole turns, which laws of loads read.
         time: (rows,) s, likewise.

@@ -18,7 +18,7 @@ import numpy as np
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Demand, Layout, Readout
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
-from mechkin_cli.session.assembled_places import solver_graph
+from mechkin_cli.session.assembled_places import Coordinate, Structure, solver_graph
 from mechkin_cli.session.following import (
     Followed,
     follow as follow_path,
@@ -33,7 +33,6 @@ from mechkin_cli.session.kernel_run import (
     RowInputs,
     run as run_kernel,
 )
-from mechkin_cli.session.structure import Coordinate, Structure
 from mechkin_cli.structure import SolverGraph, is_redundant
 
 if TYPE_CHECKING:
@@ -224,11 +223,6 @@ class Session:
             raise LookupError("this session is of no file")
         return self.text()
 
-    def of_problem(self, problem: Problem, graph: SolverGraph | None = None) -> Session:
-        """The session of another problem with the same choices."""
-        other = Session.of(problem, graph, closed_at=self.closed_at, packing=self.packing)
-        return replace(other, text=self.text)
-
     def loaded(self, problem: Problem) -> Session:
         """The session of a problem that differs only in masses and loads; the same states serve."""
         own = self.layout
@@ -247,7 +241,8 @@ class Session:
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """The session of a problem that follows from this session's; a first assembly that is
         continued comes from the session that follows in the same way from its base."""
-        other = self.of_problem(make(self))
+        other = Session.of(make(self), closed_at=self.closed_at, packing=self.packing)
+        other = replace(other, text=self.text)
         if not isinstance(self.first, ContinuedFrom):
             return other
         base, between = self.first.base.derived(make), self.first.between
@@ -312,7 +307,7 @@ class Session:
         whole: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) along a path (inputs, rows); arguments as
-        those of `session.following.follow`."""
+        those of `following.follow`."""
         return follow_path(
             self.plan,
             path,
@@ -351,8 +346,9 @@ class Session:
     def run(
         self, rows: RowInputs, ask: Ask = POSITIONS, constants: PreciseConstants | None = None
     ) -> Batch:
-        """Closes all rows and computes what is asked for; the constants are
-        `session.precise.constants(session)` and `session.precise.outputs(session, wanted)`."""
+        """Closes all rows and computes what is asked for; arguments as those of `kernel_run.run`,
+        the constants `session.precise.constants(session)` and
+        `session.precise.outputs(session, wanted)`."""
         packing = self.packing
         return run_kernel(
             self.plan, rows, ask, constants, lanes=packing.lanes, threads=packing.threads

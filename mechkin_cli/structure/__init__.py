@@ -12,17 +12,15 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.structure.build import build_graph as build_graph
-    from mechkin_cli.structure.changed import (
-        charted as charted,
-        exchanged as exchanged,
-        graph_of as graph_of,
-    )
     from mechkin_cli.structure.graph import (
         Block as Block,
         CutJoint as CutJoint,
         SolverGraph as SolverGraph,
         TreeEdge as TreeEdge,
         UnsolvableGraph as UnsolvableGraph,
+        charted as charted,
+        exchanged as exchanged,
+        graph_of as graph_of,
         is_redundant as is_redundant,
         listed as listed,
         structure_of as structure_of,
@@ -39,13 +37,15 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "build": ["build_graph"],
-        "changed": ["charted", "exchanged", "graph_of"],
         "graph": [
             "Block",
             "CutJoint",
             "SolverGraph",
             "TreeEdge",
             "UnsolvableGraph",
+            "charted",
+            "exchanged",
+            "graph_of",
             "is_redundant",
             "listed",
             "structure_of",

@@ -20,7 +20,7 @@ import pytest
 import mechkin_cli as mk
 from mechkin_cli.plan.layout import home_state
 from mechkin_cli.plan.records import Demand
-from mechkin_cli.search.starts import unknown_states
+from mechkin_cli.search.clusters import unknown_states
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 
 HEAD = "format: 1\nunits: {length: m, angle: deg, force: N}\n"

@@ -10,7 +10,7 @@ from mechanisms.runs import closings, edited, model, run
 from oracle import mp
 from oracle.vectors import product, transpose, turn
 
-from mechkin_cli.derived.rotation import angle, quaternion, rotation_vector
+from mechkin_cli.derived.basis import angle, quaternion, rotation_vector
 
 LIMIT = 4e-16
 QUATERNION = ("q0", "q1", "q2", "q3")

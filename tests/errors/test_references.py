@@ -16,7 +16,7 @@ from properties.cases import case
 from properties.expected import expected
 
 import mechkin_cli as mk
-from mechkin_cli.errors.cells import true_values
+from mechkin_cli.errors.errors import true_values
 from mechkin_cli.errors.rows import KernelRows, Repeated, wide_run
 from mechkin_cli.expressions.expression import parse
 from mechkin_cli.sweep.result import Result

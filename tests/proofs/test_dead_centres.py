@@ -29,8 +29,7 @@ import mechkin_cli as mk
 from mechkin_cli.analysis.certificate import SweepDeadCentre
 from mechkin_cli.plan.records import PassageEnd
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
-from mechkin_cli.proofs.dead_centre import prove_dead_centre
-from mechkin_cli.proofs.fold import are_one, prove_fold
+from mechkin_cli.proofs.dead_centre import are_one, prove_dead_centre, prove_fold
 from mechkin_cli.session.following import Ending, EndOfRows
 
 SWEEP = "from: 150, to: 202, step: 2"

@@ -13,7 +13,7 @@ from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.analysis.certificate import not_enclosed
-from mechkin_cli.proofs import enclosed_rows
+from mechkin_cli.proofs import rows as proven_rows
 
 DOUBLES = 1e-13
 """Of the largest of a quantity: what doubles leave, and what bounds in doubles are apart."""
@@ -73,14 +73,14 @@ def test_nothing_is_told_where_all_rows_have_bounds() -> None:
 
 def test_a_row_outside_its_box_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: the text's input of one row lies elsewhere."""
-    inside = enclosed_rows._are_inside
+    inside = proven_rows._are_inside
 
     def but_one(session: Any, given: Any) -> Any:
         found = inside(session, given)
         assert found.all()
         return found & (np.arange(found.size) != 4)
 
-    monkeypatch.setattr(enclosed_rows, "_are_inside", but_one)
+    monkeypatch.setattr(proven_rows, "_are_inside", but_one)
     proofs = mk.load(RCSR).certify()
     low, high = proofs.enclosure("O4.theta_dot")
     assert np.flatnonzero(np.isnan(low) | np.isnan(high)).tolist() == [4]

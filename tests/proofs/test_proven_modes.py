@@ -10,7 +10,7 @@ import numpy as np
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.proofs.modes import prove_modes
+from mechkin_cli.proofs.boxes import prove_modes
 from mechkin_cli.verdict import Proof
 
 

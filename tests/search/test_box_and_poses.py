@@ -9,8 +9,7 @@ import pytest
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.search.clusters import pose_keys, same_poses
-from mechkin_cli.search.starts import Within, randomise, unknown_states
+from mechkin_cli.search.clusters import pose_keys, randomise, same_poses, unknown_states
 from mechkin_cli.structure.random_starts import RandomStarts
 
 FILES = ("rcsr", "rchch", "stewart", "rprhrrr", "five_link_suspension")
@@ -35,7 +34,7 @@ def test_a_box_bounds_its_states_and_leaves_all_others_as_without_one(name: str)
         centre = rng.uniform(-pi, pi, layout.states)
         free, boxed = (np.zeros((layout.states, 64)) for _ in range(2))
         randomise(layout, number, free, RandomStarts(), 1, middle)
-        randomise(layout, number, boxed, RandomStarts(), 1, middle, Within(centre, radius))
+        randomise(layout, number, boxed, RandomStarts(), 1, middle, (centre, radius))
         for state in range(layout.states):
             if isfinite(radius[state]):
                 off = np.abs(boxed[state] - centre[state])

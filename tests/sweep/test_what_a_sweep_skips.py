@@ -9,10 +9,10 @@ from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.distances import far_notes
+from mechkin_cli.assembly.near import far_notes
 from mechkin_cli.assembly.start import HOME, NEAR, choose_start
+from mechkin_cli.search.clusters import is_in_reach
 from mechkin_cli.search.search import all_assemblies
-from mechkin_cli.search.starts import is_in_reach
 
 PROVEN = ("rcsr", "rcsr_csr", "rssr", "slider_crank", "swash_plate", "rspr")
 OPEN = ("rchch", "sevenr", "stewart", "five_link_suspension", "rprhrrr")

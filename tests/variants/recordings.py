@@ -19,8 +19,7 @@ from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.plan import plan_records
 from mechkin_cli.plan.records import flatten
 from mechkin_cli.show import Floats
-from mechkin_cli.structure.changed import graph_of
-from mechkin_cli.structure.graph import SolverGraph
+from mechkin_cli.structure.graph import SolverGraph, graph_of
 from mechkin_cli.tape.recorder import Traced, register
 from mechkin_cli.tape.tape import Tape, compiled
 
