@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.mechanism import Problem, is_angle
+from mechkin_cli.mechanism import REACTION_LEVEL, Problem, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
 from mechkin_cli.structure import SolverGraph
+from mechkin_cli.units import FORCE
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
     from mechkin_cli.assembly import PlacesBefore
@@ -246,3 +246,42 @@ def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angle
 def has_turns(quantity: Wanted) -> bool:
     """Whether a quantity is an angle, which may have whole turns."""
     return quantity.kind == "coordinate" and is_angle(quantity.coordinate) and quantity.order == 0
+
+
+# What reactions may be besides those of least norm: others in equilibrium, and those that are off
+# by rounding. Where constraints are redundant, a cell is unique if it changes no more with the
+# former than with the latter (`tables.unique_cells`).
+
+SHIFTS = (1, 2)
+"""Parts of the null space by which other reactions in equilibrium differ, where constraints are
+redundant. Two: one alone may leave a cell unchanged by chance."""
+
+DISTURBANCES = ((1.0, 0.829, -0.617), (-0.731, 1.0, 0.517))
+"""Parts of a rounding by which components of reactions are off at once: two, of which one alone may
+leave an expression unchanged by chance."""
+
+
+def reaction_rounding(result: RunRows) -> Floats:
+    """Rounding of reactions in each row (rows,): of forces in N, of moments in N by the length
+    unit.
+
+    It goes with the largest reaction of the run. A row without any load has none but those of the
+    null space, whose rounding decides what is zero.
+    """
+    level = _level(result, 0)
+    largest = float(np.max(level[np.isfinite(level)], initial=0.0))
+    rounding = np.full(level.shape, largest)
+    for shift in result.shifts if (level == 0.0).any() else ():
+        rounding[level == 0.0] = np.fmax(rounding, _level(result, shift))[level == 0.0]
+    return np.asarray(tolerances.REACTION_ROUNDING * rounding, dtype=np.float64)
+
+
+def _level(result: RunRows, shift: int) -> Floats:
+    """The largest reaction of each row (rows,), of those of a `shift`."""
+    return np.asarray(result.evaluated([REACTION_LEVEL], shift=shift)[REACTION_LEVEL.name][0])
+
+
+def disturbed(columns: Floats, wanted: Wanted, off: Floats, length: float, number: int) -> Floats:
+    """A reaction (3, rows) whose components are `off` by rounding (rows,); `length` unit in m."""
+    off = off if wanted.dimension == FORCE else off * length
+    return np.asarray(columns + off * np.array(DISTURBANCES[number])[:, None])

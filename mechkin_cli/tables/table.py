@@ -13,9 +13,9 @@ from mechkin_cli.tables.columns import (
     Words,
     column_of,
     column_of_numbers,
+    column_texts,
     words_of,
 )
-from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import TableLayout
 from mechkin_cli.tables.summary import Summary
 
