@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from mechkin_cli import tables
 from mechkin_cli.cli.messages import (
@@ -22,7 +22,6 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.record import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,37 +40,38 @@ class _Answer(Protocol):
 Found = TypeVar("Found", bound=_Answer)
 
 
-@dataclass(frozen=True)
-class Question(Generic[Found]):
-    """What is asked of a model (`words` for a person who waits), whether the answer holds anything,
-    and both ways to tell it."""
-
-    ask: Callable[[Model], Found]
-    is_answered: Callable[[Found], bool]
-    record: Callable[[Model, Found], Record]
-    show: Callable[[Model, Found], None]
-    words: str
-
-
 def answer(
-    file: Path, settings: list[str] | None, json: bool, question: Question[Found]
+    file: Path,
+    settings: list[str] | None,
+    json: bool,
+    words: str,
+    *,
+    ask: Callable[[Model], Found],
+    is_answered: Callable[[Found], bool],
+    record_of: Callable[[Model, Found], Record],
+    show: Callable[[Model, Found], None],
 ) -> ExitCode:
     """Asks the file's model, and shows the answer or writes one JSON object to stdout; the exit
-    code."""
+    code.
+
+    Args:
+        words: for a person who waits.
+        is_answered: whether the answer holds anything.
+    """
     record: Record = {}
     try:
         model = model_of(file, parameters(settings))
-        with working(f"{shown(file)}: {question.words}"):
-            found = question.ask(model)
+        with working(f"{shown(file)}: {words}"):
+            found = ask(model)
     except (InvalidFile, UsageError) as error:
         code, record = refusal(file, error)
     else:
         say_diagnostics(found.diagnostics, shown(file))
-        code = ExitCode.OK if question.is_answered(found) else ExitCode.ROWS_MISSING
+        code = ExitCode.OK if is_answered(found) else ExitCode.ROWS_MISSING
         if json:
-            record = {"file": shown(file), **question.record(model, found)}
+            record = {"file": shown(file), **record_of(model, found)}
         else:
-            question.show(model, found)
+            show(model, found)
     if json:
         put_json(record)
     return code
@@ -84,14 +84,16 @@ def mobility(
     file: Path, set_: list[str] | None = None, json: bool = False, quiet: bool = False
 ) -> ExitCode:
     """The mobility, idle freedoms and redundant constraints."""
-    question = Question(
+    return answer(
+        file,
+        set_,
+        json,
+        "looking for what can move",
         ask=lambda model: model.mobility(),
         is_answered=lambda found: found.mobility is not None,
-        record=lambda _, found: _record(found),
+        record_of=lambda _, found: _record(found),
         show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
-        words="looking for what can move",
     )
-    return answer(file, set_, json, question)
 
 
 def _record(found: Mobility) -> Record:
@@ -169,14 +171,16 @@ def modes(
     quiet: bool = False,
 ) -> ExitCode:
     """The assembly modes: the ways to put a mechanism together."""
-    question = Question(
+    return answer(
+        file,
+        set_,
+        json,
+        "searching for assembly modes",
         ask=lambda model: model.modes(_place(at), run=run, certify=certify),
         is_answered=lambda found: bool(found.modes),
-        record=_modes_record,
+        record_of=_modes_record,
         show=lambda model, found: _print(model, found, quiet),
-        words="searching for assembly modes",
     )
-    return answer(file, set_, json, question)
 
 
 def _place(texts: list[str] | None) -> str | dict[str, str] | None:
@@ -283,14 +287,16 @@ def ranges(
     quiet: bool = False,
 ) -> ExitCode:
     """The range of an input in each assembly mode, and the circuits that the modes form."""
-    question = Question(
+    return answer(
+        file,
+        set_,
+        json,
+        "following each mode to its ends",
         ask=lambda model: model.ranges(input, output or ()),
         is_answered=lambda found: bool(found.ranges),
-        record=_ranges_record,
+        record_of=_ranges_record,
         show=lambda model, found: _print_ranges(model, found, quiet),
-        words="following each mode to its ends",
     )
-    return answer(file, set_, json, question)
 
 
 def _ranges_record(model: Model, found: Ranges) -> Record:

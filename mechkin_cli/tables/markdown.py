@@ -28,7 +28,6 @@ from mechkin_cli.tables.columns import (
 )
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_PROOF, markdown_text
-from mechkin_cli.tables.summary import written_notes
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP, Status, has_rates
 
@@ -114,6 +113,8 @@ def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> b
 
 
 def _below(summary: Summary) -> str:
+    from mechkin_cli.tables.summary import written_notes
+
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
         header = _header(TableColumn(each.label, each.unit, np.empty(0)))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from mechkin_cli.record import dataclass
@@ -17,7 +19,9 @@ from mechkin_cli.tables.columns import (
     words_of,
 )
 from mechkin_cli.tables.layout import TableLayout
-from mechkin_cli.tables.summary import Summary
+
+if TYPE_CHECKING:
+    from mechkin_cli.tables.summary import Summary
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
