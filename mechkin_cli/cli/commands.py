@@ -207,7 +207,7 @@ ANALYZE = Command(
 )
 VIEW = Command(
     "view",
-    "view:view",
+    "plot:view",
     """Write a page that shows a mechanism in motion.
 
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its

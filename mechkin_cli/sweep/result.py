@@ -27,6 +27,7 @@ from mechkin_cli.sweep.rows import (
     Columns,
     SweepRows,
     disturbed,
+    error_bound,
     make_continuous,
     reaction_rounding,
 )
@@ -222,8 +223,6 @@ class Result:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
             self._store_verdicts(self.run(Ask(demand, iterations=0)))
         if name == "error_bound":
-            from mechkin_cli.sweep.rounding import error_bound
-
             return error_bound(self)
         found: Floats = getattr(self, name)
         return found

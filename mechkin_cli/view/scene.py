@@ -36,12 +36,14 @@ from mechkin_cli.view.page import (
     MOST_MODE_ROWS,
     MOST_MODES,
     Lengths,
+    ShownAnalysis,
+    ShownBranch,
+    ShownRun,
     assumed,
     filled,
     shares,
     template,
 )
-from mechkin_cli.view.shown import ShownAnalysis, ShownBranch, ShownRun
 
 if TYPE_CHECKING:
     from os import PathLike
