@@ -28,9 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from mechkin_cli.analysis import Analysis, Solvable
-    from mechkin_cli.fit.search import SearchResult
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.show import Bools, Floats
 
 
 END_BEFORE = "end the sweep before it, or vary a dimension that moves the dead centre"
