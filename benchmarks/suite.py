@@ -10,9 +10,8 @@ from benchmarks.responses.table import response_table
 from benchmarks.scenes import known_scenes, texts
 from benchmarks.variant_table import variant_table
 from mechkin_cli.bench.report import ReportTable
-from mechkin_cli.bench.runs import Rounds, Suite, setting_tables
+from mechkin_cli.bench.runs import Rounds, Suite, demand_table, setting_tables, thread_table
 from mechkin_cli.bench.scene import BenchScene
-from mechkin_cli.bench.settings import demand_table, thread_table
 
 COMMAND = "python -m benchmarks"
 

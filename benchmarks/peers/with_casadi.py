@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchmarks.closure import named_motion
-from mechkin_cli.bench.closure import Entries, Placing
+from mechkin_cli.bench.chain import Entries, Placing
 from mechkin_cli.bench.measurement import Method, Unable
 from mechkin_cli.bench.row_by_row import RowByRow
 

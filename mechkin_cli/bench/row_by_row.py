@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.bench.closure import Entries, Placing, Turned
+from mechkin_cli.bench.chain import Entries, Placing, Turned
 from mechkin_cli.bench.measurement import Method, Unable
 
 if TYPE_CHECKING:

@@ -195,7 +195,7 @@ def _one(
         results = [_results(analysis, command) for analysis in analyses]
         record = {"file": shown(path)} | table_room.runs_record(results)
         if command.explain:
-            from mechkin_cli.cli.explanation import explanation
+            from mechkin_cli.cli.show import explanation
 
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
@@ -280,7 +280,7 @@ def _report(
     file: str, analyses: list[Analysis], folder: Path, written: list[Path], command: AnalyzeCommand
 ) -> None:
     if command.explain:
-        from mechkin_cli.cli.explanation import explanation
+        from mechkin_cli.cli.show import explanation
     if not command.quiet:
         from mechkin_cli.cli.show import files_line, shown_tables, summary
     for analysis in analyses:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
+from mechkin_cli import tables
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
@@ -21,12 +22,13 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
-from mechkin_cli.record import dataclass
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from mechkin_cli.mobility import Mobility
     from mechkin_cli.model import Model
-    from mechkin_cli.modes import Modes
+    from mechkin_cli.modes import Modes, Ranges
     from mechkin_cli.tables import Columns
 
 
@@ -38,37 +40,38 @@ class _Answer(Protocol):
 Found = TypeVar("Found", bound=_Answer)
 
 
-@dataclass(frozen=True)
-class Question(Generic[Found]):
-    """What is asked of a model (`words` for a person who waits), whether the answer holds anything,
-    and both ways to tell it."""
-
-    ask: Callable[[Model], Found]
-    is_answered: Callable[[Found], bool]
-    record: Callable[[Model, Found], Record]
-    show: Callable[[Model, Found], None]
-    words: str
-
-
 def answer(
-    file: Path, settings: list[str] | None, json: bool, question: Question[Found]
+    file: Path,
+    settings: list[str] | None,
+    json: bool,
+    words: str,
+    *,
+    ask: Callable[[Model], Found],
+    is_answered: Callable[[Found], bool],
+    record_of: Callable[[Model, Found], Record],
+    show: Callable[[Model, Found], None],
 ) -> ExitCode:
     """Asks the file's model, and shows the answer or writes one JSON object to stdout; the exit
-    code."""
+    code.
+
+    Args:
+        words: for a person who waits.
+        is_answered: whether the answer holds anything.
+    """
     record: Record = {}
     try:
         model = model_of(file, parameters(settings))
-        with working(f"{shown(file)}: {question.words}"):
-            found = question.ask(model)
+        with working(f"{shown(file)}: {words}"):
+            found = ask(model)
     except (InvalidFile, UsageError) as error:
         code, record = refusal(file, error)
     else:
         say_diagnostics(found.diagnostics, shown(file))
-        code = ExitCode.OK if question.is_answered(found) else ExitCode.ROWS_MISSING
+        code = ExitCode.OK if is_answered(found) else ExitCode.ROWS_MISSING
         if json:
-            record = {"file": shown(file), **question.record(model, found)}
+            record = {"file": shown(file), **record_of(model, found)}
         else:
-            question.show(model, found)
+            show(model, found)
     if json:
         put_json(record)
     return code
@@ -81,14 +84,16 @@ def mobility(
     file: Path, set_: list[str] | None = None, json: bool = False, quiet: bool = False
 ) -> ExitCode:
     """The mobility, idle freedoms and redundant constraints."""
-    question = Question(
+    return answer(
+        file,
+        set_,
+        json,
+        "looking for what can move",
         ask=lambda model: model.mobility(),
         is_answered=lambda found: found.mobility is not None,
-        record=lambda _, found: _record(found),
+        record_of=lambda _, found: _record(found),
         show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
-        words="looking for what can move",
     )
-    return answer(file, set_, json, question)
 
 
 def _record(found: Mobility) -> Record:
@@ -166,14 +171,16 @@ def modes(
     quiet: bool = False,
 ) -> ExitCode:
     """The assembly modes: the ways to put a mechanism together."""
-    question = Question(
+    return answer(
+        file,
+        set_,
+        json,
+        "searching for assembly modes",
         ask=lambda model: model.modes(_place(at), run=run, certify=certify),
         is_answered=lambda found: bool(found.modes),
-        record=_modes_record,
+        record_of=_modes_record,
         show=lambda model, found: _print(model, found, quiet),
-        words="searching for assembly modes",
     )
-    return answer(file, set_, json, question)
 
 
 def _place(texts: list[str] | None) -> str | dict[str, str] | None:
@@ -257,3 +264,114 @@ def _table(model: Model, found: Modes) -> Columns:
     columns.append(TableColumn("residual", "", np.array([mode.residual for mode in modes])))
     columns.append(TableColumn("condition", "", np.array([mode.condition for mode in modes])))
     return Columns("modes", "assembly modes", tuple(columns))
+
+
+RANGE_DECIMALS = 6
+"""Decimals shown; JSON has all digits."""
+
+END_WORDS = {
+    "dead-centre": "dead centre",
+    "branch-point": "branch point",
+    "unbounded": "a slide grows out of bounds",
+    "branch-lost": "could not be followed further",
+    "far": "no end found so far",
+}
+
+
+def ranges(
+    file: Path,
+    input: str | None = None,
+    output: list[str] | None = None,
+    set_: list[str] | None = None,
+    json: bool = False,
+    quiet: bool = False,
+) -> ExitCode:
+    """The range of an input in each assembly mode, and the circuits that the modes form."""
+    return answer(
+        file,
+        set_,
+        json,
+        "following each mode to its ends",
+        ask=lambda model: model.ranges(input, output or ()),
+        is_answered=lambda found: bool(found.ranges),
+        record_of=_ranges_record,
+        show=lambda model, found: _print_ranges(model, found, quiet),
+    )
+
+
+def _ranges_record(model: Model, found: Ranges) -> Record:
+    return {
+        "name": model.name,
+        "input": found.input,
+        "unit": found.unit,
+        "held": found.at,
+        "ranges": [
+            {
+                "mode": item.mode,
+                "from": item.lower._asdict(),
+                "to": item.upper._asdict(),
+                "full_turn": item.turns > 0,
+                "turns": item.turns,
+                "circuit": item.circuit,
+                "extremes": [extreme._asdict() for extreme in item.extremes],
+            }
+            for item in found.ranges
+        ],
+        "circuits": [list(circuit) for circuit in found.circuits],
+        "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
+    }
+
+
+def _print_ranges(model: Model, found: Ranges, quiet: bool) -> None:
+    from mechkin_cli.cli.show import shown_table
+
+    if found.ranges:
+        put(shown_table(_ranges_table(found), len(found.ranges)))
+        if any(item.extremes for item in found.ranges):
+            count = sum(len(item.extremes) for item in found.ranges)
+            put(shown_table(_extremes(found), count))
+    if quiet:
+        return
+    held = "".join(f", {name} held at {value:.12g}" for name, value in found.at.items())
+    say(f"{model.name}: ranges of {found.input}{held}")
+    for number, circuit in enumerate(found.circuits, 1):
+        modes = "mode" if len(circuit) == 1 else "modes"
+        say(f"  circuit {number}: {modes} {', '.join(circuit)}{_closing(found, circuit)}")
+
+
+def _closing(found: Ranges, circuit: tuple[str, ...]) -> str:
+    turns = next(item.turns for item in found.ranges if item.mode == circuit[0])
+    if turns == 1:
+        return "; turns fully, back at its start after one turn"
+    return f"; turns fully, back at its start after {turns} turns" if turns else ""
+
+
+def _ranges_table(found: Ranges) -> Columns:
+    """Mode, both ends with what is there, circuit."""
+    items = found.ranges
+    columns = [tables.TableColumn("mode", "", tables.words_of([item.mode for item in items]))]
+    for label, end, limits in (
+        ("from", "lower end", [item.lower for item in items]),
+        ("to", "upper end", [item.upper for item in items]),
+    ):
+        pairs = list(zip(items, limits, strict=True))
+        values = [float("nan") if item.turns else limit.value for item, limit in pairs]
+        kinds = ["turns fully" if item.turns else END_WORDS[limit.kind] for item, limit in pairs]
+        columns.append(tables.column_of_numbers(label, found.unit, values, RANGE_DECIMALS))
+        columns.append(tables.TableColumn(end, "", tables.words_of(kinds)))
+    columns.append(tables.column_of_numbers("circuit", "", [item.circuit for item in items], 0))
+    return tables.Columns("ranges", f"ranges of {found.input}", tuple(columns))
+
+
+def _extremes(found: Ranges) -> Columns:
+    """Mode, output, its extreme value and the input there."""
+    rows = [(item.mode, extreme) for item in found.ranges for extreme in item.extremes]
+    columns = (
+        tables.TableColumn("mode", "", tables.words_of([mode for mode, _ in rows])),
+        tables.TableColumn("output", "", tables.words_of([e.output for _, e in rows])),
+        tables.column_of_numbers("value", "", [e.value for _, e in rows], RANGE_DECIMALS),
+        tables.column_of_numbers(
+            found.input, found.unit, [e.input for _, e in rows], RANGE_DECIMALS
+        ),
+    )
+    return tables.Columns("extremes", "dead centres of the outputs", columns)

@@ -207,7 +207,7 @@ ANALYZE = Command(
 )
 VIEW = Command(
     "view",
-    "view:view",
+    "plot:view",
     """Write a page that shows a mechanism in motion.
 
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
@@ -271,7 +271,7 @@ MODES = Command(
 )
 RANGES = Command(
     "ranges",
-    "ranges:ranges",
+    "answer:ranges",
     """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.

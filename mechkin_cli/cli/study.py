@@ -131,12 +131,12 @@ def _values_table(planned: Study, shown: dict[int, dict[str, float]]) -> str:
 def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Record:
     """Time and size, from a trial."""
     with working(f"{planned.source.name}: a trial of some variants", json):
-        trial = planned.trial(workers, format_)
+        tried, seconds, whole_seconds, whole_bytes = planned.trial(workers, format_)
     if not json:
         say(_counts(planned))
         say(
-            f"  a trial of {trial.variants} took {_time(trial.seconds)}; all of them take about "
-            f"{_time(trial.whole_seconds)} and {_size(trial.whole_bytes)}, in pieces of "
+            f"  a trial of {tried} took {_time(seconds)}; all of them take about "
+            f"{_time(whole_seconds)} and {_size(whole_bytes)}, in pieces of "
             f"{planned.piece}"
         )
         run = planned.question.run
@@ -145,8 +145,8 @@ def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Rec
     return {
         "variants": planned.variants,
         "piece": planned.piece,
-        "trial": {"variants": trial.variants, "seconds": trial.seconds},
-        "estimate": {"seconds": trial.whole_seconds, "bytes": trial.whole_bytes},
+        "trial": {"variants": tried, "seconds": seconds},
+        "estimate": {"seconds": whole_seconds, "bytes": whole_bytes},
     }
 
 

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.arguments import a_whole_number
-from mechkin_cli.fit.measure import TIME, FitModels, FitValues, deviations, margins_of
+from mechkin_cli.fit.measure import TIME, FitModels, FitSlopes, FitValues, deviations, margins_of
 from mechkin_cli.fit.nearest import nearest_places
 from mechkin_cli.fit.request import Constraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, SearchResult, best_of
-from mechkin_cli.fit.slopes import FitSlopes
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Bools, Floats, Listed, Listing
@@ -29,9 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from mechkin_cli.analysis import Analysis, Solvable
-    from mechkin_cli.fit.search import SearchResult
     from mechkin_cli.mechanism import Problem
-    from mechkin_cli.show import Bools, Floats
 
 
 END_BEFORE = "end the sweep before it, or vary a dimension that moves the dead centre"

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from typing import TYPE_CHECKING
 
 from mechkin_cli.expressions import (
     Expression,
@@ -40,10 +39,6 @@ from mechkin_cli.units import (
     VELOCITY,
     Dimension,
 )
-
-if TYPE_CHECKING:
-    pass
-
 
 TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
 """The moment of a row."""

@@ -17,7 +17,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.session import (
     angle_slots,
     held_values,
@@ -28,7 +28,7 @@ from mechkin_cli.session import (
 )
 from mechkin_cli.show import Listing
 from mechkin_cli.sweep import analyze, closed_rows
-from mechkin_cli.units import ANGLE, Conversion
+from mechkin_cli.units import ANGLE
 from mechkin_cli.verdict import Status, rates_are_clear
 
 if TYPE_CHECKING:
@@ -74,14 +74,6 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
         return self.listing.html()
 
 
-class _PositionColumn(NamedTuple):
-    """Where the kernel's position tells what users see of a quantity."""
-
-    name: str
-    slots: tuple[int, ...]
-    conversion: Conversion
-
-
 class Solver:
     """Positions of a design, each continued from the nearest row of its sweep."""
 
@@ -93,8 +85,9 @@ class Solver:
         session = result.session
         units = problem.units
         readout = session.readout(wanted)
+        # where the kernel tells what users see of a quantity: name, slots, conversion
         self.columns = [
-            _PositionColumn(
+            (
                 q.name,
                 tuple(readout.slots[q.name].first + place for place in q.places),
                 units.conversion(q.dimension),

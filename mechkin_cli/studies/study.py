@@ -122,15 +122,6 @@ class Workers(NamedTuple):
         return not self.processes and self.executor is None and self.scheduler is None
 
 
-class Trial(NamedTuple):
-    """Some variants, and what all would take, in seconds and bytes."""
-
-    variants: int
-    seconds: float
-    whole_seconds: float
-    whole_bytes: float
-
-
 class Study:
     """A study of a model, planned and not yet carried out."""
 
@@ -174,8 +165,9 @@ class Study:
         sources |= {name: _digest(content) for name, content in tables.items()}
         return Contents(sources, self.variants, file_format, self.question.tables)
 
-    def trial(self, workers: Workers, file_format: str) -> Trial:
-        """Computes some variants, spread over all, as an estimate of the time and the size of all.
+    def trial(self, workers: Workers, file_format: str) -> tuple[int, float, float, float]:
+        """Computes some variants, spread over all, as an estimate of the time and the size of all:
+        how many, their seconds, and the seconds and bytes of all.
 
         Raises:
             UsageError: there is no such format.
@@ -196,7 +188,7 @@ class Study:
         size = sum(len(kind.piece(headings, computed[name])) for name, headings in tables.items())
         share = self.variants / count
         at_once = max(workers.processes, 1)
-        return Trial(count, seconds, seconds * share / at_once, size * share)
+        return count, seconds, seconds * share / at_once, size * share
 
     def computed(
         self, tasks: list[Task], workers: Workers

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
         refuse_loaded_spin as refuse_loaded_spin,
         stands_elsewhere as stands_elsewhere,
     )
-    from mechkin_cli.sweep.readable import Readable as Readable
-    from mechkin_cli.sweep.result import Result as Result
+    from mechkin_cli.sweep.result import Readable as Readable, Result as Result
     from mechkin_cli.sweep.rows import SweepRows as SweepRows, has_turns as has_turns
     from mechkin_cli.sweep.sweep import (
         analyze as analyze,
@@ -39,8 +38,7 @@ __getattr__, __dir__ = lazy_names(
         "following": ["follow_rows"],
         "friction": ["unfounded_in_motion"],
         "messages": ["refuse_loaded_spin", "stands_elsewhere"],
-        "readable": ["Readable"],
-        "result": ["Result"],
+        "result": ["Readable", "Result"],
         "rows": ["SweepRows", "has_turns"],
         "sweep": [
             "analyze",

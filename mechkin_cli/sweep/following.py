@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.plan import TrackEnd
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
+from mechkin_cli.memo import remembered
+from mechkin_cli.plan import TrackEnd, needs_all_links
+from mechkin_cli.record import replace
 from mechkin_cli.session import ORIENTATION, turn_count
+from mechkin_cli.structure import SolverGraph
 from mechkin_cli.sweep.rows import SweepRows
 
 if TYPE_CHECKING:
@@ -88,3 +94,134 @@ def _count_from_first(session: Session, rows: SweepRows) -> None:
             turns = float(np.ceil(beyond / (2.0 * pi)))
             if turns:
                 rows.turns[slot] -= turns * (2.0 * pi)
+
+
+# `follow:` - the loops that a run follows, where the file does not want all of them.
+#
+# Without it every loop is followed and the verdict covers the whole mechanism. With it the loops
+# that no quantity asked for depends on, and that no joint listed lies in, are left out with their
+# links (format 1, `follow`). Forces depend on every loop.
+
+
+def followed_session(session: Session, wanted: Iterable[Wanted]) -> Session:
+    """The session of the loops that are followed; the same one if that is all of them."""
+    problem, wanted = session.problem, list(wanted)
+    if problem.follow is None or needs_all_links(problem.mechanism, wanted):
+        return session
+    needed = _needed_blocks(problem, session.graph, wanted)
+    left_out = tuple(b for b in range(len(session.graph.blocks)) if b not in needed)
+    return _without_blocks(session, left_out) if left_out else session
+
+
+@remembered
+def _without_blocks(session: Session, left_out: tuple[int, ...]) -> Session:
+    return session.derived(lambda whole: _part(whole.problem, whole.graph, left_out))
+
+
+def _part(problem: Problem, graph: SolverGraph, left_out: Sequence[int]) -> Problem:
+    mechanism = _without(problem.mechanism, graph, left_out)
+    note = _note(graph, left_out)
+    near = {k: v for k, v in problem.assembly.near.items() if k in mechanism.coordinates}
+    return replace(
+        problem,
+        mechanism=mechanism,
+        held=tuple(one for one in problem.held if one.is_in(mechanism)),
+        assembly=replace(problem.assembly, near=near),
+        diagnostics=(*problem.diagnostics, note),
+    )
+
+
+def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -> set[int]:
+    """Blocks that place something asked for, and those that they depend on."""
+    owner = {f: b for b, block in enumerate(graph.blocks) for f in block.unknowns}
+    carrier = {edge.child: k for k, edge in enumerate(graph.edges)}
+    hangs = _hanging_blocks(graph)
+
+    def blocks_of(link: str) -> set[int]:
+        found = set()
+        while link != GROUND_NAME:
+            k = carrier[link]
+            edge = graph.edges[k]
+            found |= {owner[k, f] for f in range(edge.freedoms) if (k, f) in owner}
+            if edge.hung:
+                found.add(hangs[link])
+            link = edge.parent
+        return found
+
+    links = {link for quantity in wanted for link in _links_of(problem.mechanism, quantity)}
+    needed = {b for link in links for b in blocks_of(link)}
+    for b, block in enumerate(graph.blocks):
+        joints = {
+            graph.edges[k].joint.name for c in block.closings for k, _ in graph.closings[c].loop
+        }
+        joints |= {graph.closings[c].name for c in block.closings}
+        if joints & set(problem.follow or ()):
+            needed.add(b)
+    front = list(needed)
+    for b in front:
+        for c in graph.blocks[b].closings:
+            placed = graph.closings[c].constraint.placed
+            more = {b for link in placed for b in blocks_of(link)} - needed
+            needed |= more
+            front += more
+    return needed
+
+
+def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
+    """The block whose closings place each link that hangs between two points."""
+    return {
+        link: b
+        for b, block in enumerate(graph.blocks)
+        for c in block.closings
+        for link in graph.closings[c].constraint.links
+    }
+
+
+def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
+    if quantity.owner in mechanism.joints:
+        joint = mechanism.joints[quantity.owner]
+        return (joint.first, joint.second)
+    for named in (mechanism.points, mechanism.directions):
+        if quantity.owner in named:
+            return (named[quantity.owner].link,)
+    return (quantity.owner,) if quantity.owner in mechanism.links else ()
+
+
+def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) -> Mechanism:
+    """The mechanism without some blocks' closing joints and what their unknowns carry."""
+    unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
+    gone_joints = {graph.closings[c].name for b in left_out for c in graph.blocks[b].closings}
+    gone_links: set[str] = set()
+    hangs, gone_blocks = _hanging_blocks(graph), set(left_out)
+    for k, edge in enumerate(graph.edges):
+        unhung = edge.hung and hangs[edge.child] in gone_blocks
+        if k in unknown or unhung or edge.parent in gone_links:
+            gone_links.add(edge.child)
+            gone_joints.add(edge.joint.name)
+    return Mechanism(
+        mechanism.name,
+        {name: link for name, link in mechanism.links.items() if name not in gone_links},
+        {name: joint for name, joint in mechanism.joints.items() if name not in gone_joints},
+        {name: at for name, at in mechanism.points.items() if at.link not in gone_links},
+        {name: at for name, at in mechanism.directions.items() if at.link not in gone_links},
+        (),
+        mechanism.gravity,
+    )
+
+
+def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
+    names = []
+    for b in left_out:
+        for c in graph.blocks[b].closings:
+            closing = graph.closings[c]
+            loop = [graph.edges[k].joint.name for k, _ in closing.loop]
+            names.append(", ".join(sorted({*loop, closing.name})))
+    loops = "the loop" if len(names) == 1 else "the loops"
+    left = "is left out" if len(names) == 1 else "are left out"
+    return Diagnostic(
+        "not-followed",
+        "note",
+        f"{loops} through {' and '.join(names)} {left}: follow: lists none of its joints and no "
+        "column reads them",
+        hint="remove follow: for a verdict on the whole mechanism",
+    )

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -21,11 +21,14 @@ from mechkin_cli.plan import WRENCH_KINDS, Demand, Readout, demand_of, forces_de
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held, undefined_loads
-from mechkin_cli.sweep.rows import Columns, SweepRows, make_continuous
-from mechkin_cli.sweep.uniqueness import (
+from mechkin_cli.sweep.rows import (
     DISTURBANCES,
     SHIFTS,
+    Columns,
+    SweepRows,
     disturbed,
+    error_bound,
+    make_continuous,
     reaction_rounding,
 )
 from mechkin_cli.units import DIMENSIONLESS, UnitSystem
@@ -42,6 +45,7 @@ if TYPE_CHECKING:
     from mechkin_cli.session import Batch, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.structure import SolverGraph
+    from mechkin_cli.tables import Columns as TableColumns, TableLayout
 
 
 def columns_of(rows: SweepRows, mechanism: Mechanism, readout: Readout, batch: Batch) -> Columns:
@@ -219,8 +223,6 @@ class Result:
             demand = forces_demand(self.problem.mechanism) | Demand.VELOCITY | Demand.POWER
             self._store_verdicts(self.run(Ask(demand, iterations=0)))
         if name == "error_bound":
-            from mechkin_cli.sweep.rounding import error_bound
-
             return error_bound(self)
         found: Floats = getattr(self, name)
         return found
@@ -431,3 +433,68 @@ class Result:
             self._unloaded = bool(lost.any())
             if self._unloaded:
                 self.row_states.diagnostics += undefined_loads(self, lost)
+
+
+# An analysis is put together above: other rooms know it as follows.
+
+
+class HasName(Protocol):
+    """A model, by its name."""
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        ...
+
+
+class Readable(Protocol):
+    """An analysis, as the rooms that read one know it."""
+
+    @property
+    def model(self) -> HasName:
+        """Of the file."""
+        ...
+
+    @property
+    def run(self) -> str:
+        """`sweep`, or the name of a response."""
+        ...
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        ...
+
+    @property
+    def result(self) -> Result:
+        """States and verdicts of all rows."""
+        ...
+
+    @property
+    def layouts(self) -> tuple[TableLayout, ...]:
+        """Layouts of the tables."""
+        ...
+
+    @property
+    def tables(self) -> tuple[TableColumns, ...]:
+        """The tables of the run, evaluated in the file's units."""
+        ...
+
+    @property
+    def coefficients(self) -> tuple[TableColumns, ...]:
+        """The tables of dense systems of reactions."""
+        ...
+
+    @property
+    def balance_tables(self) -> tuple[TableColumns, ...]:
+        """The balances of the run."""
+        ...
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that the run has to say."""
+        ...
+
+    def __getitem__(self, text: str) -> NDArray[Any]:
+        """A quantity in the file's units, (rows,), or (rows, 3) of a vector."""
+        ...

@@ -24,7 +24,7 @@ from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, assembly_size
-from mechkin_cli.sweep.following import follow_rows
+from mechkin_cli.sweep.following import follow_rows, followed_session
 from mechkin_cli.sweep.friction import judged_by, uncounted_notes
 from mechkin_cli.sweep.messages import (
     actuation_notes,
@@ -120,8 +120,6 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     known = session.problem.quantities() if names else {}
     asked = [known[name] for name in read_for(names, known)]
     if session.problem.follow is not None:
-        from mechkin_cli.sweep.follow_part import followed_session
-
         session = followed_session(session, asked)
     session, start = first_assembly(session)
     if start.stuck:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         Words as Words,
         column_of as column_of,
         column_of_numbers as column_of_numbers,
+        column_texts as column_texts,
         component_text as component_text,
         row_words as row_words,
         run_parameter as run_parameter,
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
         stale_in as stale_in,
     )
     from mechkin_cli.tables.csv import COMMITTED_DIGITS as COMMITTED_DIGITS, csv_bytes as csv_bytes
-    from mechkin_cli.tables.decimals import column_texts as column_texts
     from mechkin_cli.tables.errata import (
         MARK as MARK,
         NAME as NAME,
@@ -119,6 +119,7 @@ __getattr__, __dir__ = lazy_names(
             "Words",
             "column_of",
             "column_of_numbers",
+            "column_texts",
             "component_text",
             "row_words",
             "run_parameter",
@@ -128,7 +129,6 @@ __getattr__, __dir__ = lazy_names(
         ],
         "compare": ["compare_files", "read_committed", "report", "stale_in"],
         "csv": ["COMMITTED_DIGITS", "csv_bytes"],
-        "decimals": ["column_texts"],
         "errata": [
             "MARK",
             "NAME",

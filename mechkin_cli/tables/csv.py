@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.tables.columns import FloatArray, TableColumn, Words, words_of
-from mechkin_cli.tables.decimals import number_column
+from mechkin_cli.tables.columns import FloatArray, TableColumn, Words, number_column, words_of
 from mechkin_cli.tables.layout import csv_text
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS

@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING
 from mechkin_cli.diagnostics import SURROGATES, Diagnostic, escape
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.record import dataclass
-from mechkin_cli.tables.columns import FloatArray, TableSource, Words
+from mechkin_cli.tables.columns import FloatArray, TableSource, Words, number_column
 from mechkin_cli.tables.csv import threads_for, word_column
-from mechkin_cli.tables.decimals import number_column
 from mechkin_cli.tables.errors import ColumnErrors, least_digits
 from mechkin_cli.tables.markdown import rows_table
 from mechkin_cli.tables.table import Columns

@@ -2,7 +2,7 @@
 
 It needs `\\usepackage{booktabs}`, and where a table is longer than a page `longtable`. Every number
 of a column has as many decimals, so that columns aligned at the right have their points in line;
-undeclared decimals are chosen as in `tables/decimals.py`. A cell that is empty is a
+undeclared decimals are chosen as in `tables/columns.py`. A cell that is empty is a
 dash.
 """
 
@@ -13,8 +13,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.diagnostics import legible
-from mechkin_cli.tables.columns import INFINITE, TableColumn, TableSource, Words
-from mechkin_cli.tables.decimals import column_texts
+from mechkin_cli.tables.columns import INFINITE, TableColumn, TableSource, Words, column_texts
 from mechkin_cli.tables.markdown import footnotes
 from mechkin_cli.tables.table import Columns
 

@@ -15,16 +15,18 @@ from numpy.typing import NDArray
 
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.tables.columns import (
+    DecimalColumn,
     RunParameter,
     TableColumn,
     TableSource,
     Words,
+    column_texts,
+    decimal_column,
     row_words,
     run_parameter,
     words_of,
 )
 from mechkin_cli.tables.csv import threads_for, word_column
-from mechkin_cli.tables.decimals import DecimalColumn, column_texts, decimal_column
 from mechkin_cli.tables.layout import ROW_EVENT, ROW_PROOF, markdown_text
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP, Status, has_rates
@@ -111,6 +113,7 @@ def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> b
 
 
 def _below(summary: Summary) -> str:
+
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
         header = _header(TableColumn(each.label, each.unit, np.empty(0)))

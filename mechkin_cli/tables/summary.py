@@ -28,9 +28,9 @@ from mechkin_cli.tables.columns import (
     TableColumn,
     TableSource,
     column_of_numbers,
+    column_texts,
     run_parameter,
 )
-from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import ROW_NUMBER, ColumnLayout
 from mechkin_cli.verdict import Status
 

@@ -15,9 +15,9 @@ from mechkin_cli.tables.columns import (
     Words,
     column_of,
     column_of_numbers,
+    column_texts,
     words_of,
 )
-from mechkin_cli.tables.decimals import column_texts
 from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost, Verdict
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import LENGTH
-from mechkin_cli.variants.variation import FirstAssembly, SessionVariation, varied_session
+from mechkin_cli.variants.variation import SessionVariation, varied_session
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ class Base:
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
 
     @cached_property
-    def _assembled(self) -> tuple[Session, FirstAssembly] | None:
+    def _assembled(self) -> tuple[Session, tuple[Floats, int, float]] | None:
         if self.design.problem.follow is not None:
             return None  # which loops are followed depends on what is asked
         if SWEEP not in self.design.built.runs:
@@ -166,13 +166,7 @@ class Base:
         session, start = first_assembly(self.design.session)
         if start.state is None or session.size is None:
             return None
-        return session, FirstAssembly(start.state, start.row, session.size)
-
-    @property
-    def start(self) -> FirstAssembly:
-        """The first assembly of a design that has a variation."""
-        assert self._assembled is not None
-        return self._assembled[1]
+        return session, (start.state, start.row, session.size)
 
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
         """How the design depends on some parameters; None where each variant is built by itself."""
@@ -185,7 +179,7 @@ class Base:
         if self._assembled is None:
             return None
         try:
-            return SessionVariation(self._assembled[0], *record(self.design.built, names))
+            return SessionVariation(*self._assembled, *record(self.design.built, names))
         except (TraceLost, TypeError, ValueError):
             # numpy refuses recorded numbers in words of its own
             return None
@@ -266,7 +260,7 @@ class VariedDesign(Design):
                 self.problem, self.graph, closed_at=base.closed_at, packing=base.packing
             )
             return own.continuing(base, self._between).reading(lambda: self.precise)
-        varied = varied_session(self._variation, self._row, self.problem, self.base.start)
+        varied = varied_session(self._variation, self._row, self.problem)
         if isinstance(varied.first, Continued) and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
             fresh = self.base.built(self._values)

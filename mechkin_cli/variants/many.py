@@ -142,7 +142,7 @@ class VariantRun:
         demand = demand_of(problem.mechanism, self._computed())
         if session.graph.blocks:
             demand |= Demand.CONDITION
-        return reading, reading.runs(demand, self.base.start)
+        return reading, reading.runs(demand)
 
     def _friction_takes_more(self, session: Session) -> bool:
         """Whether friction may go by reactions that are arbitrary, or drive an idle freedom."""

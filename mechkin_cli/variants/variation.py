@@ -49,14 +49,6 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-class FirstAssembly(NamedTuple):
-    """The base's first assembly: states at a row, and the mechanism's size there in m."""
-
-    state: Floats
-    row: int
-    size: float
-
-
 class Runs(NamedTuple):
     """Variants by the kernel: outputs (variants, slots, rows) in SI, residual and condition
     (variants, rows), and how each ended, codes of the kernel's `VariantEnd`; nan where not
@@ -93,7 +85,7 @@ class VariantReadout:
         constants = replay(self.tape, values[:, None])[0][0]
         return self.readout.outputs.with_constants(constants[self.first : self.last])
 
-    def runs(self, demand: Demand, start: FirstAssembly) -> _kernel.Variants:
+    def runs(self, demand: Demand) -> _kernel.Variants:
         """The kernel's variants of this reading."""
         variation = self.variation
         base = variation.base
@@ -110,16 +102,16 @@ class VariantReadout:
             rates=base.inputs.rates,
             accelerations=base.inputs.accelerations,
             jerks=base.inputs.jerks,
-            state=np.ascontiguousarray(start.state),
-            size=start.size,
-            start_row=start.row,
+            state=np.ascontiguousarray(variation.state),
+            size=variation.size,
+            start_row=variation.row,
             demand=int(demand),
             iterations=tolerances.NEWTON_ITERATIONS,
             continuation=step_limits(tolerances.LONGEST_DIMENSION_STEP),
             following=step_limits(straight=base.problem.assembly.straight),
             angles=angle_slots(base, self.slots),
             half_turn_side=tolerances.HALF_TURN_SIDE,
-            ways=_ways(base, start.row),
+            ways=_ways(base, variation.row),
         )
 
 
@@ -136,6 +128,7 @@ class SessionVariation:
 
     Args:
         base: the session with the file's own parameters.
+        first: its first assembly: states at a row, the row, and the mechanism's size there in m.
         recorder: that holds the parameters as inputs.
         problem: the session's problem with recorded numbers.
 
@@ -143,8 +136,15 @@ class SessionVariation:
         TraceLost: the plan depends on a parameter in a way that no tape holds.
     """
 
-    def __init__(self, base: Session, recorder: Recorder, problem: Problem) -> None:
+    def __init__(
+        self,
+        base: Session,
+        first: tuple[Floats, int, float],
+        recorder: Recorder,
+        problem: Problem,
+    ) -> None:
         self.base = base
+        self.state, self.row, self.size = first
         self.recorder = recorder
         self.recorded = problem
         self.values = np.array(recorder.values[: len(recorder.inputs)])
@@ -244,33 +244,30 @@ def run_variants(
     return Runs(*variants.run(values, width(lanes), threads))
 
 
-def varied_session(
-    variation: SessionVariation, values: Floats, problem: Problem, start: FirstAssembly
-) -> Session:
+def varied_session(variation: SessionVariation, values: Floats, problem: Problem) -> Session:
     """The session of a variant whose first assembly is continued from the base's.
 
     Args:
         variation: how the base depends on the parameters.
         values: (parameters,) of the variant, in SI.
         problem: its problem.
-        start: the base's first assembly.
     """
     base = variation.base
     graph = graph_of(problem.solved_mechanism, base.graph)
-    end, size, state = variation.reading(()).runs(Demand.POSITION, start).start(values)
+    end, size, state = variation.reading(()).runs(Demand.POSITION).start(values)
     lost = end != VariantEnd.COMPLETE
     structure = Structure(
         Layout(problem.laid_mechanism, graph, base.layout.length, problem.laws),
         base.driven,
         base.closed_at,
-        built=variation.plan(values, start.size if lost else size),
+        built=variation.plan(values, variation.size if lost else size),
         varied=partial(_varied_readout, variation, values),
     )
     return Session(
         problem,
         structure,
-        first=Continued(None if lost else np.asarray(state), start.row),
-        size=start.size if lost else size,
+        first=Continued(None if lost else np.asarray(state), variation.row),
+        size=variation.size if lost else size,
         packing=base.packing,
         own_inputs=variation.inputs(values),
     )

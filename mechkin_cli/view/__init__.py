@@ -15,7 +15,7 @@ if TYPE_CHECKING:
         mechanism_picture as mechanism_picture,
     )
     from mechkin_cli.view.page import PAGE_NAME as PAGE_NAME
-    from mechkin_cli.view.write import view_page as view_page, write_view as write_view
+    from mechkin_cli.view.scene import view_page as view_page, write_view as write_view
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -23,6 +23,6 @@ __getattr__, __dir__ = lazy_names(
         "branch": ["run_marks"],
         "drawing": ["PICTURE_NAME", "mechanism_picture"],
         "page": ["PAGE_NAME"],
-        "write": ["view_page", "write_view"],
+        "scene": ["view_page", "write_view"],
     },
 )

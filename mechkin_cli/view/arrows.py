@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from mechkin_cli.mechanism import is_angle
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
 from mechkin_cli.view.joints import drawn_joints
@@ -37,13 +36,8 @@ NORMAL = (0.0, 0.0, 1.0)
 KINDS: tuple[Kind, Kind] = ("force", "moment")
 
 
-class Arrow(NamedTuple):
-    """Vectors over the rows (rows, 3) in the file's units, at a point of a link."""
-
-    name: str
-    kind: Kind
-    place: Attached
-    values: Floats
+Arrow = tuple[str, Kind, "Attached", "Floats"]
+"""Name, kind, place on a link, and vectors over the rows (rows, 3) in the file's units."""
 
 
 def has_forces(mechanism: Mechanism) -> bool:
@@ -67,14 +61,14 @@ def arrow_records(
     labels = {"force": units.label(FORCE), "moment": units.label(MOMENT)}
     return [
         {
-            "name": arrow.name,
-            "kind": arrow.kind,
-            "unit": labels[arrow.kind],
-            "link": links.index(arrow.place.link),
-            "place": lengths.vector(arrow.place.vector),
-            "values": packed("f32", arrow.values[rows]),
+            "name": name,
+            "kind": kind,
+            "unit": labels[kind],
+            "link": links.index(place.link),
+            "place": lengths.vector(place.vector),
+            "values": packed("f32", values[rows]),
         }
-        for arrow in _arrows(analysis)
+        for name, kind, place, values in _arrows(analysis)
     ]
 
 
@@ -84,7 +78,7 @@ def _arrows(analysis: Readable) -> Iterator[Arrow]:
     for name in reactions(problem):
         joint, _, word = name.rpartition(".")
         kind = KINDS[0] if word == KINDS[0] else KINDS[1]
-        yield from _known(Arrow(name, kind, joints[joint].point, _in_space(analysis, name)))
+        yield from _known(name, kind, joints[joint].point, _in_space(analysis, name))
     yield from _efforts(analysis, problem)
 
 
@@ -99,7 +93,7 @@ def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
         direction = np.array([NORMAL]) if hinged else _in_space(analysis, axis)
         along = direction * _drawable(analysis[effort])[:, None]
         kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
-        yield from _known(Arrow(effort, kind, joint.point, along))
+        yield from _known(effort, kind, joint.point, along)
 
 
 def _drawable(values: Floats) -> Floats:
@@ -116,15 +110,14 @@ def _in_space(analysis: Readable, name: str) -> Floats:
     return vector
 
 
-def _known(arrow: Arrow) -> Iterator[Arrow]:
+def _known(name: str, kind: Kind, place: Attached, values: Floats) -> Iterator[Arrow]:
     """The arrow without components that are not unique in any row; nothing if none is left, or if
     all are zero."""
-    known = np.array([np.isfinite(component).any() for component in arrow.values.T])
-    values = np.where(known, arrow.values, 0.0)
+    known = np.array([np.isfinite(component).any() for component in values.T])
+    values = np.where(known, values, 0.0)
     if not known.any() or not np.nan_to_num(values).any():
         return
-    name = arrow.name
     if not known.all():
         axes = ", ".join(axis for axis, is_known in zip(AXES, known, strict=True) if is_known)
         name = f"{name} ({axes})"
-    yield arrow._replace(name=name, values=values)
+    yield name, kind, place, values

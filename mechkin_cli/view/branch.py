@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, Number
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Readable
-    from mechkin_cli.view.page import Lengths, Plain, Share
-    from mechkin_cli.view.shown import ShownBranch
+    from mechkin_cli.view.page import Lengths, Plain, Share, ShownBranch
 
 
 KINDS = {

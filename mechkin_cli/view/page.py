@@ -13,25 +13,32 @@ from base64 import b64encode
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
 from mechkin_cli.diagnostics import legible
 from mechkin_cli.mechanism import GROUND_NAME, is_written
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.sweep import Readable
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
+    from mechkin_cli.building import Built, ViewSettings
     from mechkin_cli.mechanism import Problem
+    from mechkin_cli.modes import Modes
     from mechkin_cli.show import Floats
+    from mechkin_cli.tables import Columns
     from mechkin_cli.units import UnitSystem
-    from mechkin_cli.view.shown import ShownRun
 
     Plain = dict[str, object]
     Numbers = NDArray[np.intp]
+
 
 _TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
 _MARKUP = {ord("<"): "\\u003c", ord(">"): "\\u003e", ord("&"): "\\u0026"}
@@ -255,3 +262,68 @@ def _idle(problem: Problem) -> Iterator[str]:
         yield f"{spin.words}: where it stands about that line is set by convention."
     for held in problem.held:
         yield f"{held.words}: {held.convention}."
+
+
+# What a page shows: runs, their branches, and what it reads of `model.Analysis`.
+
+
+class ShownAnalysis(Readable, Protocol):
+    """An analysis whose model can be asked for the other assembly modes of its run."""
+
+    @property
+    def model(self) -> ShownModel:
+        """Of the file."""
+        ...
+
+
+class ShownModel(Protocol):
+    """What a page reads of a model."""
+
+    @property
+    def name(self) -> str:
+        """The mechanism's name."""
+        ...
+
+    @property
+    def built(self) -> Built:
+        """The file, checked."""
+        ...
+
+    @property
+    def problem(self) -> Problem:
+        """The mechanism, its motion and assembly in SI."""
+        ...
+
+    @property
+    def view_settings(self) -> ViewSettings:
+        """How the file wants to be shown."""
+        ...
+
+    def modes(self, *, run: str | None = None) -> Modes:
+        """All assembly modes at the first row of a run."""
+        ...
+
+    def analyze(self, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
+        """Runs the sweep in a mode."""
+        ...
+
+    def respond(self, name: str, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
+        """Runs a response in a mode."""
+        ...
+
+
+class ShownBranch(NamedTuple):
+    """A run in one assembly mode; `forces`: whether arrows of forces may be read."""
+
+    name: str
+    analysis: Readable
+    forces: bool = True
+
+
+class ShownRun(NamedTuple):
+    """A run of the file with its branches, the file's own one first, and its other tables."""
+
+    name: str
+    title: str
+    branches: tuple[ShownBranch, ...]
+    tables: tuple[Columns, ...] = ()

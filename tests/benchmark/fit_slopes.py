@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 
 import mechkin_cli as mk
-from mechkin_cli.fit.measure import FitModels, FitValues
+from mechkin_cli.fit.measure import FitModels, FitSlopes, FitValues
 from mechkin_cli.fit.request import request
 from mechkin_cli.fit.search import Measured, refined
-from mechkin_cli.fit.slopes import FitSlopes
 
 MECHANISMS = Path(__file__).parents[2] / "mechanisms"
 LINE = [[x, 0] for x in range(-80, 81, 20)]

@@ -8,10 +8,9 @@ import pytest
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.fit.measure import FitModels, FitValues
+from mechkin_cli.fit.measure import FitModels, FitSlopes, FitValues
 from mechkin_cli.fit.request import request
 from mechkin_cli.fit.search import Measured
-from mechkin_cli.fit.slopes import FitSlopes
 
 FOUR_BAR = mk.load(FILE_OF["planar_four_bar"])
 BOUNDS = {"a": (30, 50), "b": (100, 140), "c": (80, 110), "d": (110, 150)}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mechkin_cli.tables.decimals import column_texts
+from mechkin_cli.tables.columns import column_texts
 
 NAN, INFINITY = float("nan"), float("inf")
 

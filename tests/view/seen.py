@@ -10,7 +10,7 @@ import numpy as np
 
 import mechkin_cli as mk
 from mechkin_cli.view.page import script_json
-from mechkin_cli.view.write import view_scene
+from mechkin_cli.view.scene import view_scene
 
 TYPES = {"f32": "<f4", "f64": "<f8", "i32": "<i4", "u8": "|u1"}
 

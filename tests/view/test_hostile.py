@@ -11,7 +11,7 @@ from view.seen import data
 
 import mechkin_cli as mk
 from mechkin_cli.view.page import PLACE, filled, script_json
-from mechkin_cli.view.write import view_scene
+from mechkin_cli.view.scene import view_scene
 
 PAGE = f'<script type="application/json" id="mechkin-data">{PLACE}</script><p>end</p>'
 TEXTS = [

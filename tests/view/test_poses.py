@@ -12,7 +12,7 @@ from view.seen import data, moved, number_of, posed_rows, poses
 import mechkin_cli as mk
 from mechkin_cli.view.branch import BranchScene
 from mechkin_cli.view.joints import carried
-from mechkin_cli.view.write import view_scene
+from mechkin_cli.view.scene import view_scene
 
 F32 = 1e-6
 """Of the size: a float's 24 bits, and the few roundings of what the page computes of them."""

@@ -21,7 +21,7 @@ from mechkin_cli.view.page import (
     thinned,
     turning_points,
 )
-from mechkin_cli.view.write import view_scene
+from mechkin_cli.view.scene import view_scene
 
 ROCKING = (
     FOUR_BAR.replace("[20, 0, 0]", "[60, 0, 0]")
@@ -163,7 +163,7 @@ def test_a_pose_is_kept_on_both_sides_of_what_happens() -> None:
 
 
 def test_more_modes_than_a_page_holds_are_named_in_a_note(monkeypatch) -> None:
-    monkeypatch.setattr("mechkin_cli.view.write.MOST_MODES", 2)
+    monkeypatch.setattr("mechkin_cli.view.scene.MOST_MODES", 2)
     model = mk.load(FILE_OF["phchc"])
     scene, notes = view_scene(model.analyses())
     assert len(scene.runs[0].branches) == 3
