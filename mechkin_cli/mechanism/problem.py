@@ -307,7 +307,7 @@ class _Influence:
         text, axis = name.text, ""
         if text in self.problem.parameters:
             return None
-        if text not in self.known and text.rpartition(".")[2] in ("x", "y", "z"):
+        if text not in self.known and text.endswith((".x", ".y", ".z")):
             text, _, axis = text.rpartition(".")
         wanted = self.known.get(text)
         if wanted is None:

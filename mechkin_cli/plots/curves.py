@@ -83,31 +83,45 @@ def _not_numbers(name: str) -> UsageError:
 COMPONENTS = "xyz"
 
 
+class Panel(NamedTuple):
+    """Curves of one unit."""
+
+    unit: str
+    curves: tuple[PlotCurve, ...]
+
+
+class PlotMark(NamedTuple):
+    """A place of the run's parameter, and what happens there."""
+
+    place: float
+    words: str
+
+
 class Picture(NamedTuple):
     """What is drawn.
 
     Attributes:
         title: above it.
         x: against which the curves of all panels stand; in a plane one for each curve.
-        panels: from top to bottom, each curves of one unit; in a plane one.
+        panels: from top to bottom; in a plane one.
         is_plane: both axes are of one unit and drawn to one scale.
         parameter: what the run goes along.
-        marks: dead centres, branch points and events: value of that parameter, and words.
+        marks: dead centres, branch points and events, by that parameter.
         solved: rows with a position (rows,).
         doubtful: verdicts other than ok of rows that have one: words and rows (rows,).
     """
 
     title: str
     x: tuple[PlotCurve, ...]
-    panels: tuple[tuple[PlotCurve, ...], ...]
+    panels: tuple[Panel, ...]
     is_plane: bool
     parameter: PlotCurve
-    marks: tuple[tuple[float, str], ...]
+    marks: tuple[PlotMark, ...]
     solved: Bools
     doubtful: tuple[tuple[str, Bools], ...]
 
     def __repr__(self) -> str:
-        curves = ", ".join(curve.words for panel in self.panels for curve in panel)
+        curves = ", ".join(curve.words for panel in self.panels for curve in panel.curves)
         return f"Picture of {curves} over {', '.join(dict.fromkeys(c.words for c in self.x))}"
 
 
@@ -133,12 +147,12 @@ def picture(
     against = curve_of(analysis, x) if isinstance(x, str) else x
     if any(curve.is_vector for curve in drawn):
         xs, ys = _in_plane(drawn, against)
-        return _picture(analysis, title, xs, (ys,), along, is_plane=True)
+        return _picture(analysis, title, xs, (Panel(ys[0].unit, ys),), along, is_plane=True)
     against = against or along
     if against.is_vector:
         raise UsageError(f"{against.label} is a vector; draw over a number, such as its .x")
     units = dict.fromkeys(curve.unit for curve in drawn)
-    panels = tuple(tuple(c for c in drawn if c.unit == u) for u in units)
+    panels = tuple(Panel(u, tuple(c for c in drawn if c.unit == u)) for u in units)
     label = analysis.result.units.label
     is_plane = against.label != along.label and set(units) == {against.unit}
     is_plane &= against.unit in {label(LENGTH), label(FORCE), label(MOMENT)}
@@ -150,14 +164,14 @@ def _picture(
     analysis: Readable,
     title: str,
     x: tuple[PlotCurve, ...],
-    panels: tuple[tuple[PlotCurve, ...], ...],
+    panels: tuple[Panel, ...],
     along: PlotCurve,
     *,
     is_plane: bool,
 ) -> Picture:
     result = analysis.result
     marks = tuple(
-        (float(str(mark["x"])), str(mark["text"]))
+        PlotMark(float(str(mark["x"])), str(mark["text"]))
         for mark in run_marks(analysis, along.label, along.values)
     )
     doubtful = tuple(

@@ -106,7 +106,7 @@ def _over_a_column(picture: Picture) -> Figure:
     (x,) = picture.x
     over_parameter = x.label == picture.parameter.label
     for axes, panel in zip(panels, picture.panels, strict=True):
-        for curve in panel:
+        for curve in panel.curves:
             (line,) = axes.plot(x.values, curve.values, label=curve.label)
             _single_rows(axes, picture, x.values, curve.values, line.get_color())
             if not over_parameter:
@@ -115,9 +115,9 @@ def _over_a_column(picture: Picture) -> Figure:
             _gaps(axes, picture)
             for place, _ in picture.marks:
                 axes.axvline(place, color=_MARKS[0], linestyle="--", linewidth=1.0)
-        names = ", ".join(dict.fromkeys(curve.label for curve in panel))
-        alone = len(panel) == 1
-        unit = f"[{panel[0].unit}]" if panel[0].unit else ""
+        names = ", ".join(dict.fromkeys(curve.label for curve in panel.curves))
+        alone = len(panel.curves) == 1
+        unit = f"[{panel.unit}]" if panel.unit else ""
         axes.set_ylabel(f"{names} {unit}".strip() if alone else unit)
         if not alone or axes is panels[0]:
             _legend(axes, picture, over_parameter, with_marks=axes is panels[0])
@@ -131,7 +131,7 @@ def _in_plane(picture: Picture) -> Figure:
     figure = _figure(_PLANE)
     axes = figure.subplots()
     (panel,) = picture.panels
-    for x, y in zip(picture.x, panel, strict=True):
+    for x, y in zip(picture.x, panel.curves, strict=True):
         label = _vector_name(x, y)
         (line,) = axes.plot(x.values, y.values, label=label)
         colour = line.get_color()
@@ -142,7 +142,7 @@ def _in_plane(picture: Picture) -> Figure:
     axes.axhline(0.0, color=_MARKS[1], linewidth=0.6)
     axes.axvline(0.0, color=_MARKS[1], linewidth=0.6)
     axes.set_xlabel(_axis(picture.x))
-    axes.set_ylabel(_axis(panel))
+    axes.set_ylabel(_axis(panel.curves))
     axes.set_title(f"{picture.title}\nnumbers: {picture.parameter.words}")
     _legend(axes, picture, over_parameter=False, with_marks=True)
     return figure
