@@ -38,6 +38,7 @@ ENDING = "svg"
 
 def plot(
     file: Path,
+    *,
     x: str | None = None,
     y: list[str] | None = None,
     table: list[str] | None = None,
@@ -135,6 +136,7 @@ def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -
 
 def view(
     file: Path,
+    *,
     out: Path | None = None,
     set_: list[str] | None = None,
     mode: str | None = None,

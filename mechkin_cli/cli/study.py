@@ -35,6 +35,7 @@ SHOWN_VARIANTS = 6
 
 def study(
     file: Path,
+    *,
     out: Path | None = None,
     set_: list[str] | None = None,
     format_: str = "csv",
