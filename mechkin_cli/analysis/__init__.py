@@ -27,17 +27,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "analysis": ["Analysis", "Solvable"],
-        "certificate": ["Certificate"],
-        "design": ["Design"],
-        "runs": [
-            "RunOptions",
-            "a_packing",
-            "input_values",
-            "respond",
-            "response_name",
-            "run_name",
-            "run_sweep",
-        ],
+        "analysis": "Analysis Solvable",
+        "certificate": "Certificate",
+        "design": "Design",
+        "runs": "RunOptions a_packing input_values respond response_name run_name run_sweep",
     },
 )

@@ -40,25 +40,11 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "fold": ["PlacesBefore", "at_unit_rate", "left_for", "unit_rates"],
-        "home": [
-            "NamedModes",
-            "is_cyclic",
-            "is_home_assembled",
-            "name_modes",
-            "nearest_to_home",
-            "probe_of",
-            "wrapped",
-        ],
-        "near": ["AssemblyStart", "distances_of", "is_unclear", "nothing_found"],
-        "start": [
-            "HOME",
-            "MAY_BE_RIGID",
-            "NEAR",
-            "choose_start",
-            "continued_start",
-            "mode_letter",
-            "state_at_first_row",
-        ],
+        "fold": "PlacesBefore at_unit_rate left_for unit_rates",
+        "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
+        "wrapped",
+        "near": "AssemblyStart distances_of is_unclear nothing_found",
+        "start": "HOME MAY_BE_RIGID NEAR choose_start continued_start mode_letter "
+        "state_at_first_row",
     },
 )

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "dense": ["row_motion"],
-        "newton_euler": ["DenseSystem", "coefficient_tables", "dense_system"],
-        "runs": ["balance_table"],
+        "dense": "row_motion",
+        "newton_euler": "DenseSystem coefficient_tables dense_system",
+        "runs": "balance_table",
     },
 )

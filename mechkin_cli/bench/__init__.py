@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "measurement": ["Bench"],
-        "outputs": ["NAMES", "record", "write"],
-        "report": ["ReportTable", "bench_table", "key_of", "machine", "plain_text"],
-        "runs": ["FULL", "QUICK", "SUITE", "Rounds", "Suite", "bench"],
-        "scene": ["BenchScene"],
-        "stress": ["judge_hard_mechanisms", "stress_table"],
+        "measurement": "Bench",
+        "outputs": "NAMES record write",
+        "report": "ReportTable bench_table key_of machine plain_text",
+        "runs": "FULL QUICK SUITE Rounds Suite bench",
+        "scene": "BenchScene",
+        "stress": "judge_hard_mechanisms stress_table",
     },
 )

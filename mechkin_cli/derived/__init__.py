@@ -37,32 +37,11 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "basis": [
-            "AXES",
-            "BasisQuantities",
-            "OtherMoments",
-            "basis_of",
-            "directions",
-            "displacement",
-            "quaternion",
-            "rotation_of",
-            "vector_of",
-        ],
-        "coefficients": [
-            "GRAVITY",
-            "effort_powers",
-            "friction_power",
-            "load_powers_along",
-            "power_against",
-            "unloaded",
-        ],
-        "columns": ["derived_columns"],
-        "quadrature": [
-            "largest_between",
-            "mean",
-            "over_cycle",
-            "running_integral_of_cycle",
-            "total",
-        ],
+        "basis": "AXES BasisQuantities OtherMoments basis_of directions displacement quaternion "
+        "rotation_of vector_of",
+        "coefficients": "GRAVITY effort_powers friction_power load_powers_along power_against "
+        "unloaded",
+        "columns": "derived_columns",
+        "quadrature": "largest_between mean over_cycle running_integral_of_cycle total",
     },
 )

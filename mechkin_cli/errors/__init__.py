@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "errors": ["Errors", "true_values"],
-        "response": ["repetition"],
-        "rows": ["KernelRows", "NotRepeated", "Repeated", "WORDS", "reason_of", "wide_run"],
+        "errors": "Errors true_values",
+        "response": "repetition",
+        "rows": "KernelRows NotRepeated Repeated WORDS reason_of wide_run",
     },
 )

@@ -23,7 +23,7 @@ from mechkin_cli.analysis import Design
 from mechkin_cli.building import build, open_data
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.fit.nearest import nearest_places, nearest_slopes
-from mechkin_cli.fit.request import Constraint, FitRequest, Target
+from mechkin_cli.fit.request import FitConstraint, FitRequest, Target
 from mechkin_cli.fit.search import Measures
 from mechkin_cli.sensitivities import sensitivities
 from mechkin_cli.tables import row_weights
@@ -260,7 +260,7 @@ def deviations(target: Target, values: Floats) -> Floats:
     return np.asarray(((values - target.wanted) / target.within).reshape(len(values), -1))
 
 
-def margins_of(constraint: Constraint, values: Floats) -> list[Floats]:
+def margins_of(constraint: FitConstraint, values: Floats) -> list[Floats]:
     """Margins (S, rows) of each of its bounds, in parts of the bound."""
     return [sign * (values - bound) / (abs(bound) or 1.0) for bound, sign in constraint.bounds]
 

@@ -173,7 +173,7 @@ class Target(NamedTuple):
     run: str
 
 
-class Constraint(NamedTuple):
+class FitConstraint(NamedTuple):
     """Bounds of an expression in every row of a run, in the file's units."""
 
     of: str
@@ -195,7 +195,7 @@ class FitRequest(NamedTuple):
 
     parameters: tuple[Bounds, ...]
     targets: tuple[Target, ...]
-    constraints: tuple[Constraint, ...]
+    constraints: tuple[FitConstraint, ...]
 
 
 def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -> FitRequest:
@@ -298,7 +298,7 @@ def _target(problem: Problem, place: str, given: Any) -> tuple[Target, bool]:
     return Target(of, wanted, at, least, within, label, unit, width, run), "within" in given
 
 
-def _constraint(problem: Problem, place: str, given: Any) -> Constraint:
+def _constraint(problem: Problem, place: str, given: Any) -> FitConstraint:
     example = '{"of": "norm(A.force)", "max": "50 N"}'
     run, problem = run_of(problem, place, given)
     of, unit, width = quantity_of(problem, place, given, CONSTRAINT_KEYS, example)
@@ -311,4 +311,4 @@ def _constraint(problem: Problem, place: str, given: Any) -> Constraint:
         ends[key] = value_of(problem, f"{place}: {key}", of, given[key])
     if ends["min"] > ends["max"]:
         raise UsageError(f"{place}: min is above max; exchange them")
-    return Constraint(of, ends["min"], ends["max"], str(given.get("label", of)), unit, run)
+    return FitConstraint(of, ends["min"], ends["max"], str(given.get("label", of)), unit, run)

@@ -14,7 +14,7 @@ import numpy as np
 from mechkin_cli.arguments import a_whole_number
 from mechkin_cli.fit.measure import TIME, FitModels, FitSlopes, FitValues, deviations, margins_of
 from mechkin_cli.fit.nearest import nearest_places
-from mechkin_cli.fit.request import Constraint, Target, request
+from mechkin_cli.fit.request import FitConstraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, SearchResult, best_of
 from mechkin_cli.mechanism import response_problem
 from mechkin_cli.record import NamedTuple
@@ -335,7 +335,7 @@ class Fit(Listed):
         found: Floats = np.interp(rows[0], np.arange(len(models.curve_inputs)), models.curve_inputs)
         return found
 
-    def _checks(self, constraint: Constraint) -> list[ConstraintCheck]:
+    def _checks(self, constraint: FitConstraint) -> list[ConstraintCheck]:
         values = self._rows(constraint.run)[constraint.of]
         checks = []
         all_margins = margins_of(constraint, values)

@@ -32,15 +32,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "find": ["LinkMotion", "PLACES", "RigidGroup"],
-        "hold": ["exact_holds", "held_freedoms", "held_groups"],
-        "idle": [
-            "conventional_notes",
-            "holding_notes",
-            "idle_freedoms",
-            "nearly_common_notes",
-            "spin_errors",
-            "without_spin",
-        ],
+        "find": "LinkMotion PLACES RigidGroup",
+        "hold": "exact_holds held_freedoms held_groups",
+        "idle": "conventional_notes holding_notes idle_freedoms nearly_common_notes spin_errors "
+        "without_spin",
     },
 )

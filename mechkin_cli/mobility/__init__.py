@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "configurations": ["lost_holds"],
-        "idle": ["held_along"],
-        "mobility": ["Mobility", "drawn_faults", "find_mobility", "meeting", "undriven_notes"],
+        "configurations": "lost_holds",
+        "idle": "held_along",
+        "mobility": "Mobility drawn_faults find_mobility meeting undriven_notes",
     },
 )

@@ -11,6 +11,6 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "model": ["Model", "load", "loads"],
+        "model": "Model load loads",
     },
 )

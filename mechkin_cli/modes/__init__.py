@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "circuits": ["Passage", "Walker"],
-        "modes": ["Modes", "UNNAMED", "find_modes"],
-        "ranges": ["Ranges", "find_ranges"],
+        "circuits": "Passage Walker",
+        "modes": "Modes UNNAMED find_modes",
+        "ranges": "Ranges find_ranges",
     },
 )

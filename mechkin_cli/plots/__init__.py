@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "curves": ["Picture", "picture", "table_picture"],
-        "figure": ["drawn", "format_of", "image"],
+        "curves": "Picture picture table_picture",
+        "figure": "drawn format_of image",
     },
 )

@@ -29,21 +29,10 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "boxes": ["ModeProofs", "prove_modes"],
-        "dead_centre": ["DeadCentreProof", "are_one"],
-        "enclose": ["Enclosure"],
-        "rows": [
-            "Gap",
-            "SweepProofs",
-            "bounds",
-            "certify",
-            "dead_centre_enclosure",
-            "enclosures",
-            "input_bounds",
-            "inside_boxes",
-            "is_angle_of_place",
-            "reason_against",
-            "reason_unknown",
-        ],
+        "boxes": "ModeProofs prove_modes",
+        "dead_centre": "DeadCentreProof are_one",
+        "enclose": "Enclosure",
+        "rows": "Gap SweepProofs bounds certify dead_centre_enclosure enclosures input_bounds "
+        "inside_boxes is_angle_of_place reason_against reason_unknown",
     },
 )

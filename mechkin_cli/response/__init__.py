@@ -24,15 +24,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": ["Beginning", "integrate", "with_loads"],
-        "result": ["ResponseResult"],
-        "runs": [
-            "Prepared",
-            "integrated",
-            "prepare",
-            "read",
-            "respond",
-            "watched_stop",
-        ],
+        "integration": "Beginning integrate with_loads",
+        "result": "ResponseResult",
+        "runs": "Prepared integrated prepare read respond watched_stop",
     },
 )

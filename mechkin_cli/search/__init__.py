@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "clusters": ["Within", "is_in_reach", "pose_keys", "pose_number", "same_poses"],
-        "search": ["Assemblies", "all_assemblies", "single_assembly", "with_assemblies"],
+        "clusters": "Within is_in_reach pose_keys pose_number same_poses",
+        "search": "Assemblies all_assemblies single_assembly with_assemblies",
     },
 )

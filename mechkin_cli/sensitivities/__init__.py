@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "first_order": ["Sensitivities", "sensitivities"],
-        "tolerance_stack": ["Tolerances", "stack"],
+        "first_order": "Sensitivities sensitivities",
+        "tolerance_stack": "Tolerances stack",
     },
 )

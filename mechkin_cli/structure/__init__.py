@@ -36,22 +36,11 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "build": ["build_graph"],
-        "graph": [
-            "Block",
-            "CutJoint",
-            "SolverGraph",
-            "TreeEdge",
-            "UnsolvableGraph",
-            "charted",
-            "exchanged",
-            "graph_of",
-            "is_redundant",
-            "listed",
-            "structure_of",
-        ],
-        "network": ["connections_of", "reduce", "whole_link"],
-        "random_starts": ["RandomStarts"],
-        "rank": ["Rates", "unit_of"],
+        "build": "build_graph",
+        "graph": "Block CutJoint SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
+        "is_redundant listed structure_of",
+        "network": "connections_of reduce whole_link",
+        "random_starts": "RandomStarts",
+        "rank": "Rates unit_of",
     },
 )

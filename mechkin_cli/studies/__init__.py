@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "results": ["Spread", "StudyFiles", "StudyResults"],
-        "source": ["open_study"],
-        "study": ["Study", "Workers", "study_of"],
-        "workers": ["end_without_warnings"],
+        "results": "Spread StudyFiles StudyResults",
+        "source": "open_study",
+        "study": "Study Workers study_of",
+        "workers": "end_without_warnings",
     },
 )

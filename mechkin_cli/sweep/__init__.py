@@ -33,21 +33,14 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "branch_end": ["passed_straight_on"],
-        "dead_centre": ["lost_rates"],
-        "following": ["follow_rows"],
-        "friction": ["unfounded_in_motion"],
-        "messages": ["refuse_loaded_spin", "stands_elsewhere"],
-        "result": ["Readable", "Result"],
-        "rows": ["SweepRows", "has_turns"],
-        "sweep": [
-            "analyze",
-            "at_once",
-            "closed_rows",
-            "first_assembly",
-            "judge_condition",
-            "rest_on_reactions",
-            "row_notes",
-        ],
+        "branch_end": "passed_straight_on",
+        "dead_centre": "lost_rates",
+        "following": "follow_rows",
+        "friction": "unfounded_in_motion",
+        "messages": "refuse_loaded_spin stands_elsewhere",
+        "result": "Readable Result",
+        "rows": "SweepRows has_turns",
+        "sweep": "analyze at_once closed_rows first_assembly judge_condition rest_on_reactions "
+        "row_notes",
     },
 )

@@ -33,15 +33,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "design": [
-            "file_values",
-            "one_value",
-            "parameter_values",
-            "varied_design",
-            "with_parameters",
-        ],
-        "many": ["vary"],
-        "result": ["Reduce", "Variants", "expressions_of", "sample_of", "swept_parameter"],
-        "samples": ["Draws", "draws", "has_scipy", "needs_scipy", "normal", "uniform"],
+        "design": "file_values one_value parameter_values varied_design with_parameters",
+        "many": "vary",
+        "result": "Reduce Variants expressions_of sample_of swept_parameter",
+        "samples": "Draws draws has_scipy needs_scipy normal uniform",
     },
 )

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "branch": ["run_marks"],
-        "drawing": ["PICTURE_NAME", "mechanism_picture"],
-        "page": ["PAGE_NAME"],
-        "scene": ["view_page", "write_view"],
+        "branch": "run_marks",
+        "drawing": "PICTURE_NAME mechanism_picture",
+        "page": "PAGE_NAME",
+        "scene": "view_page write_view",
     },
 )
