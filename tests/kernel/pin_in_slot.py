@@ -63,7 +63,7 @@ ADDITIONS = {
     "mechkin_cli/schema/links_joints.py": (
         ("class WeldJoint(JointBase):\n", SCHEMA),
         ('"W")\n_PER_LINK', '"Rg", '),
-        ('    | Annotated[WeldJoint, Tag("(W)")]', '    | Annotated[PinTrackJoint, Tag("(Rg)")]\n'),
+        ("    | WeldJoint\n)", "    | PinTrackJoint\n"),
     ),
     "tests/kernel/pairs.py": (('    "W": Pair(', TEXTBOOK),),
     "docs/modelling.md": (("| `W` | none | weld |\n", PAGE),),
