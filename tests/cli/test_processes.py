@@ -154,6 +154,8 @@ def test_an_interrupt_leaves_nothing_half_written(
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # what runs the tests may ignore the signal, and a command goes on ignoring it
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
     )
     assert process.stderr is not None
     assert process.stderr.readline().startswith("invalid.yaml:")
