@@ -317,7 +317,7 @@ def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:
     values = source.inputs.get(name, source.input_rates.get(name))
     if values is not None:
         unit = source.units.label(source.quantity(name).dimension)
-        return TableColumn(layout.label, unit, values, layout.decimals)
+        return TableColumn(layout.label, unit, values.copy(), layout.decimals)
     column = _evaluated(layout, source)
     others = [_evaluated(layout, other).values for other in source.alternatives]
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]

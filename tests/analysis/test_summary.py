@@ -10,6 +10,7 @@ import random
 import numpy as np
 import pytest
 from means import mean_over_the_way, rms_over_the_way
+from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli.tables.results import Results
@@ -184,3 +185,16 @@ tables: [{name: t, run: turn, summary: [mean, max], columns: [time, A.theta, A.t
     assert below["A.theta_dot"].mean == pytest.approx(2.0, rel=1e-9)
     assert below["A.theta"].max.place == 2.0
     assert below["A.theta"].mean == pytest.approx(np.degrees(2.0), rel=1e-9)
+
+
+def test_writing_into_a_table_changes_no_later_answer() -> None:
+    model = mk.load(FILE_OF["slider_crank"])
+    first = model.analyze()
+    expected = first["A.theta"].copy()
+    for table in first.tables:
+        for column in table.columns:
+            if isinstance(column.values, np.ndarray):
+                column.values[...] = 77.0
+    again = model.analyze()
+    np.testing.assert_array_equal(again["A.theta"], expected)
+    np.testing.assert_array_equal(again.tables[0].columns[0].values, expected)
