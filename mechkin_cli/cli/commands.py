@@ -207,7 +207,7 @@ ANALYZE = Command(
 )
 VIEW = Command(
     "view",
-    "plot:view",
+    "view:view",
     """Write a page that shows a mechanism in motion.
 
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
@@ -271,7 +271,7 @@ MODES = Command(
 )
 RANGES = Command(
     "ranges",
-    "answer:ranges",
+    "ranges:ranges",
     """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.

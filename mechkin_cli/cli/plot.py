@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mechkin_cli import expressions, plots, tables, view as pages
+from mechkin_cli import expressions, plots, tables
 from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -13,11 +13,9 @@ from mechkin_cli.cli.messages import (
     parameters,
     put,
     refusal,
-    say,
     say_diagnostics,
     shown,
     stem_of,
-    tell_as,
 )
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import InvalidFile, UsageError
@@ -129,56 +127,3 @@ def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -
     written = tables.write_files(folder, files)
     for path in () if quiet else written:
         put(f"{path}\n")
-
-
-# `mechkin view`: a page that shows a mechanism in motion.
-
-
-def view(
-    file: Path,
-    *,
-    out: Path | None = None,
-    set_: list[str] | None = None,
-    mode: str | None = None,
-    run: str | None = None,
-    no_modes: bool = False,
-    open_: bool = False,
-    messages: str | None = None,
-    quiet: bool = False,
-) -> ExitCode:
-    """Writes a page that shows a mechanism in motion."""
-
-    tell_as(messages)
-    try:
-        with working(f"{shown(file)}: reading", quiet) as tell:
-            model = model_of(file, parameters(set_))
-            tell(f"{shown(file)}: rows")
-            analyses = model.analyses(run, mode)
-            tell(f"{shown(file)}: the page")
-            page, notes = pages.view_page(analyses, not no_modes)
-        target = pages.write_view(out or Path("out", stem_of(file), pages.PAGE_NAME), page)
-    except (InvalidFile, UsageError) as error:
-        return refusal(file, error)[0]
-    diagnostics = [one for analysis in analyses for one in analysis.diagnostics]
-    say_diagnostics(dict.fromkeys([*diagnostics, *notes]), shown(file))
-    put(f"{target}\n")
-    if not quiet:
-        say(_summary(analyses, len(page)))
-    if open_:
-        _show(target)
-    complete = all(analysis.complete for analysis in analyses)
-    return ExitCode.OK if complete else ExitCode.ROWS_MISSING
-
-
-def _summary(analyses: list[Analysis], size: int) -> str:
-    model = analyses[0].model
-    runs = ", ".join(f"{one.run} ({one.rows} rows)" for one in analyses)
-    return f"{model.name}: {runs}; {size / 1000:.0f} kB, to be opened in a browser"
-
-
-def _show(page: Path) -> None:
-    """Opens a page in the user's browser, and says where there is none."""
-    import webbrowser
-
-    if not webbrowser.open(page.resolve().as_uri()):
-        say(f"no browser was found; open {page} by hand")

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema.file import (
         AnyFile as AnyFile,
         MechanismFile as MechanismFile,
-        ShapeOfLink as ShapeOfLink,
-        ViewSection as ViewSection,
     )
     from mechkin_cli.schema.json_schema import (
         SCHEMAS as SCHEMAS,
@@ -91,12 +89,13 @@ if TYPE_CHECKING:
         validate as validate,
         validate_study as validate_study,
     )
+    from mechkin_cli.schema.view import ShapeOfLink as ShapeOfLink, ViewSection as ViewSection
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "file": "AnyFile MechanismFile ShapeOfLink ViewSection",
+        "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
         "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
@@ -112,5 +111,6 @@ __getattr__, __dir__ = lazy_names(
         "study": "StudyFile",
         "tables": "Coefficients",
         "validation": "InvalidDataError validate validate_study",
+        "view": "ShapeOfLink ViewSection",
     },
 )

@@ -1,20 +1,12 @@
-"""The whole file of a mechanism in space: format 1; the sections common to space and plane.
+"""The whole file of a mechanism in space: format 1; and the sections common to space and plane."""
 
-Of these `view:` tells how `mechkin view` draws the mechanism; it changes no number of a table.
-"""
-
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
     After,
     BeforeRule,
-    Limits,
-    SchemaName,
     Section,
-    ShortForm,
-    Shown,
-    each_once,
     refuse,
 )
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
@@ -22,80 +14,18 @@ from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
 from mechkin_cli.schema.responses import Response
 from mechkin_cli.schema.scalars import (
-    COLOUR_PATTERN,
     METRIC,
     AnyDimension,
     Coordinate,
     DirectionOfLink,
-    DirectionVector,
-    Duration,
-    Length,
     Name,
-    NamedOrGiven,
     PointOfLink,
     Text,
     UnitsSection,
     free_run_names,
 )
 from mechkin_cli.schema.tables import Balance, Coefficients, Table, differing_names, refuse_clashes
-
-Kind = Literal["rod", "plate", "star", "none"]
-KINDS: Final = "rod|plate|star|none"
-
-Colour = Annotated[
-    str,
-    Limits(pattern=COLOUR_PATTERN),
-    Shown(("string",), "a colour as #rrggbb, in quotes", ("#c0392b",)),
-    SchemaName("Colour"),
-]
-
-
-class ShapeOfLink(Section):
-    """How a link is drawn. A plain word stands for its kind."""
-
-    kind: Kind | None = None
-    """`rod` from end to end, `plate` over points of a plane, `star` of rods to the middle, or
-    `none`; left out, as its points lie."""
-    points: Annotated[tuple[NamedOrGiven, ...], Limits(min_length=2, max_length=100)] | None = None
-    """The points it goes through: joints and named points of the link by name, or [x, y, z] in the
-    home drawing; left out, all joints and named points of the link."""
-
-
-def _with_kind(value: Any) -> Any:
-    return {"kind": value} if isinstance(value, str) else value
-
-
-KindOrShape = Annotated[
-    ShapeOfLink, BeforeRule(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
-]
-
-
-Names = Annotated[tuple[Name, ...], After(each_once)]
-
-
-class ViewSection(Section):
-    """How `mechkin view` shows the mechanism."""
-
-    colours: dict[Name, Colour] = NOTHING
-    """Colours of links by name; left out, the page chooses."""
-    hidden: Names = ()
-    """Links that are not drawn, nor their halves of joints; left out, none."""
-    shapes: dict[Name, KindOrShape] = NOTHING
-    """Shapes of links by name; left out, as their joints lie."""
-    joint_radius: Length | None = None
-    """Radius of the pins and balls of joints; left out, the radius at which a joint rubs, else by
-    the size of the mechanism."""
-    paths: Names | None = None
-    """Named points whose paths are drawn; left out, all, and [] none."""
-    forces: Literal["shown", "hidden"] = "shown"
-    """Whether arrows of forces and moments are seen at first."""
-    arrow_length: Length | None = None
-    """Length of the longest arrow of a force, and of a moment; left out, by the size of the
-    mechanism."""
-    camera: DirectionVector | None = None
-    """Direction from the mechanism to the eye, in ground axes; left out, the page chooses."""
-    speed: Duration | None = None
-    """How long once through a run takes; left out, the page chooses."""
+from mechkin_cli.schema.view import ViewSection
 
 
 def _format_number(value: Any) -> int:

@@ -8,7 +8,7 @@ from references import RCSR
 
 import mechkin_cli as mk
 from mechkin_cli.schema.base import fields_of
-from mechkin_cli.schema.file import ViewSection
+from mechkin_cli.schema.view import ViewSection
 from mechkin_cli.view import page as limits
 from mechkin_cli.view.page import PAGE_NAME
 
