@@ -174,11 +174,13 @@ class Sensitivities(Listed):
         }
         known = problem.quantities()
         asked = [n for e in self._expressions.values() for n in used_names(e, known)]
-        self._shifting = Shifting(analysis, chosen, asked)
+        # the shifted runs are not kept: they hold what no process can hand to another
+        shifting = Shifting(analysis, chosen, asked)
+        self._scales = {name: shifting.scale_of(name) for name in self.parameters}
         self._values: dict[str, Floats] = {}
         self._slopes: dict[tuple[str, str], Slope | str] = {}
         for name in self.parameters:
-            self._measure(name)
+            self._measure(name, shifting)
 
     def __getitem__(self, pair: tuple[str, str]) -> Floats:
         """Sensitivity of a quantity to a parameter, as the class says.
@@ -311,7 +313,7 @@ class Sensitivities(Listed):
     def scale_of(self, parameter: str) -> float:
         """What is large for a parameter, in the file's units: the size of the mechanism for a
         length, a radian, else its own value."""
-        return self._shifting.scale_of(parameter)
+        return self._scales[parameter]
 
     def _sizes(self, text: str) -> tuple[float, float]:
         """The largest cell of a quantity, and what is large for a position in this mechanism, in
@@ -353,15 +355,15 @@ class Sensitivities(Listed):
                     f"{name[:LONGEST_NAME]} was not asked for; there are {', '.join(known)}"
                 )
 
-    def _measure(self, name: str) -> None:
+    def _measure(self, name: str, shifting: Shifting) -> None:
         try:
-            sides = self._shifting.sides(name)
+            sides = shifting.sides(name)
         except NotRepeated as reason:
             for text in self.quantities:
                 self._slopes[text, name] = str(reason)
             return
         known = self._analysis.result.problem.quantities()
-        wanted = [known[n] for n in read_for(self._shifting.asked, known)]
+        wanted = [known[n] for n in read_for(shifting.asked, known)]
         problem = self._analysis.result.problem
         for rows in sides.rows:
             with suppress(NotRepeated):  # what cannot be repeated says so for its own quantity
@@ -370,7 +372,7 @@ class Sensitivities(Listed):
             turned = self._dimensions[text] == ANGLE
             try:
                 self._slopes[text, name] = slope_of(
-                    expression, name, sides, self._shifting, turned, self._sizes(text)
+                    expression, name, sides, shifting, turned, self._sizes(text)
                 )
             except NotRepeated as reason:
                 self._slopes[text, name] = str(reason)

@@ -8,6 +8,7 @@ import pytest
 from references import FILE_OF
 
 import mechkin_cli as mk
+from mechkin_cli.show import Listed
 
 
 def pickled(model: mk.Model) -> mk.Model:
@@ -87,6 +88,49 @@ def test_answers_are_copied(again) -> None:
         assert len(again(answer) if hasattr(answer, "__len__") else [again(answer)]) > 0
     for answer in (model.mobility(), run.certificate, run.summary(), run.peak("O1.effort")):
         assert repr(again(answer)) == repr(answer)
+
+
+@pytest.fixture(scope="module")
+def answers() -> list[Listed]:
+    """One of every class of answers, and a few more."""
+    model = mk.load(FILE_OF["rcsr"])
+    run = model.analyze()
+    study = {"vary": {"P1": ["0.49 in", "0.51 in"]}, "keep": [{"of": "O4.theta", "as": "max"}]}
+    response = mk.load(FILE_OF["rcsr_response"])
+    free = response.respond()
+    target = {"of": "O4.theta", "at": [161.0], "is": [float(run["O4.theta"][0])]}
+    return [
+        model,
+        model.parameters,
+        run,
+        next(iter(run.tables)),
+        run.errors,
+        run.certificate,
+        free,
+        free.errors,
+        model.modes(certify=True),
+        model.ranges(),
+        model.mobility(),
+        model.vary({"P1": [0.49, 0.5]}, ["O4.theta"]),
+        response.vary({"P1": [0.49, 0.5]}, ["O4.theta"], run=response.runs[0]),
+        model.sensitivities(["O4.theta"], ["P1"]),
+        response.sensitivities(["O4.theta"], ["P1"], run=response.runs[0]),
+        model.tolerances({"P1": 0.001}, ["O4.theta"], samples=100),
+        model.fit(target, {"P1": (0.4, 0.6)}, starts=1),
+        model.study(study),
+    ]
+
+
+def test_every_class_of_answers_is_copied(answers: list[Listed]) -> None:
+    """Before and after they are asked, as what is found only then is copied, too."""
+    classes = {one for one in Listed.__subclasses__() if one.__module__.startswith("mechkin_cli.")}
+    assert {type(one) for one in answers} == classes
+    for answer in answers:
+        before = [again(answer) for again in PICKLED]
+        text = repr(answer)
+        for other in (*before, *(again(answer) for again in PICKLED)):
+            assert type(other) is type(answer)
+            assert repr(other) == text
 
 
 @pytest.mark.parametrize(
