@@ -1,4 +1,9 @@
-"""Many variants of a sweep at once: chunks through the kernel, what takes more one at a time."""
+"""Many variants of a run at once.
+
+Of a sweep: chunks through the kernel, what takes more one at a time (`_SweepRun`). Of a response:
+each is built as `with_parameters` builds it, and those of one structure are integrated together,
+several to a pack of the kernel's lanes (`_ResponseRun`).
+"""
 
 from __future__ import annotations
 
@@ -8,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis import Solvable, a_packing, response_name
+from mechkin_cli.analysis import Analysis, Design, Solvable, a_packing, response_name
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
@@ -20,14 +25,15 @@ from mechkin_cli.mechanism import (
     bearing_load,
     friction_states,
     read_for,
+    response_problem,
 )
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
 from mechkin_cli.sweep import has_turns
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.design import VariedDesign, base_of
-from mechkin_cli.variants.responses import vary_response
 from mechkin_cli.variants.result import (
     Reduce,
     Reductions,
@@ -47,6 +53,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Wanted
+    from mechkin_cli.response import Prepared, ResponseResult
     from mechkin_cli.session import Session
 
 
@@ -61,8 +68,8 @@ PERIODIC = re.compile(r"\b(?:wrap|sin|cos|tan)\s*\(")
 """Functions to which whole turns of an angle do not matter."""
 
 
-class VariantRun:
-    """One call of `vary`."""
+class _SweepRun:
+    """One call of `vary` for a sweep."""
 
     def __init__(
         self,
@@ -275,7 +282,7 @@ class _Resolver:
 
     def __init__(
         self,
-        run: VariantRun,
+        run: _SweepRun,
         variation: SessionVariation,
         reading: VariantReadout,
         runs: Runs,
@@ -351,6 +358,79 @@ def _doubtful(runs: Runs) -> Bools:
     return np.asarray((~rates_are_clear(runs.condition)).any(axis=1))
 
 
+TIME = "time"
+
+CHUNK = 512
+"""Variants that are held at a time: memory stays flat, and packs are full."""
+
+
+class _ResponseRun:
+    """One call of `vary` for a response: arrays (variants, rows) or (variants, rows, 3) by the
+    texts asked for."""
+
+    def __init__(
+        self, model: Solvable, names: tuple[str, ...], asked: list[str], run: str, packing: Packing
+    ) -> None:
+        self.model, self.base = model, base_of(model.design)
+        self.names, self.asked = names, asked
+        self.name, self.packing = run, packing
+        self.rows = self.base.design.problem.responses[run].rows
+        self.errors: dict[int, MechkinError] = {}
+        self.codes: NDArray[np.int8] = np.empty((0, self.rows), dtype=np.int8)
+
+    def run(self, values: Floats) -> dict[str, Floats]:
+        """All variants, chunk by chunk."""
+        count = values.shape[1]
+        self.codes = np.full((count, self.rows), int(Status.not_assembled), dtype=np.int8)
+        found: dict[str, Floats] = {}
+        for begin in range(0, count, CHUNK):
+            models: dict[int, tuple[Solvable, Prepared]] = {}
+            for number in range(begin, min(begin + CHUNK, count)):
+                self._prepare(number, values[:, number], models)
+            results = integrated([one for _, one in models.values()], self.packing)
+            for number, result in zip(models, results, strict=True):
+                self._take(number, models[number][0], result, found, count)
+        for text in self.asked:
+            found.setdefault(text, np.full((count, self.rows), np.nan))
+        return found
+
+    def _prepare(
+        self, number: int, row: Floats, models: dict[int, tuple[Solvable, Prepared]]
+    ) -> None:
+        try:
+            built = self.base.built(dict(zip(self.names, row.tolist(), strict=True)))
+            design = Design(built, self.base.design.stem)
+            session = design.session_of(self.name)
+            response = built.problem.responses[self.name]
+            prepared = prepare(built.problem, response, self.packing, session)
+            models[number] = self.model.of(design), prepared
+        except MechkinError as error:
+            self.errors[number] = error
+
+    def _take(
+        self,
+        number: int,
+        model: Solvable,
+        result: ResponseResult,
+        found: dict[str, Floats],
+        count: int,
+    ) -> None:
+        known = result.problem.quantities()
+        parse = result.problem.definitions.parse
+        used = (name for text in self.asked for name in sorted(parse(text).names))
+        whole = (name if name in known else name.rpartition(".")[0] for name in used)
+        read(result, [name for name in dict.fromkeys(whole) if name in known])
+        analysis = Analysis(model, (), result, self.name)
+        rows = min(result.rows, self.rows)
+        self.codes[number] = int(Status.ok)
+        self.codes[number, :rows] = result.status[:rows]
+        for text in self.asked:
+            array = np.asarray(analysis[text], dtype=np.float64)[:rows]
+            if text not in found:
+                found[text] = np.full((count, self.rows, *array.shape[1:]), np.nan)
+            found[text][number, :rows] = array
+
+
 def vary(
     model: Solvable,
     parameters: Mapping[str, Any],
@@ -365,7 +445,7 @@ def vary(
     packing = a_packing(lanes, threads)
     if a_text("run", run, f'"{SWEEP}"') != SWEEP:
         name = response_name(model.problem, run)
-        return vary_response(model, parameters, quantities, reduce, name, packing)
+        return _vary_response(model, parameters, quantities, reduce, name, packing)
     if SWEEP not in model.runs:
         raise UsageError(
             f"{model.name} has no sweep to vary; vary a response one by one: "
@@ -374,7 +454,7 @@ def vary(
     problem = base_of(model.design).design.problem
     varied, names, values = varied_parameters(problem, parameters, model.design.values)
     asked = expressions_of(quantities, problem)
-    call = VariantRun(model, names, asked, reductions_of(asked, reduce), packing)
+    call = _SweepRun(model, names, asked, reductions_of(asked, reduce), packing)
     numbers = values.shape[1] * call.numbers_returned()
     if numbers > MOST_KEPT:
         raise UsageError(
@@ -382,3 +462,29 @@ def vary(
             "ask for less, reduce over the rows, or take fewer variants at a time"
         )
     return Variants(varied, *call.run(values))
+
+
+def _vary_response(
+    model: Solvable,
+    parameters: Mapping[str, Any],
+    quantities: Iterable[str] | None,
+    reduce: Reduce | Sequence[Reduce] | Mapping[str, Any] | None,
+    run: str,
+    packing: Packing,
+) -> Variants:
+    """`vary` for a response.
+
+    Rows are the moments asked for; where a stop ends a variant its row takes the place of the next
+    moment (see `time`), and those behind it hold nan.
+    """
+    problem = base_of(model.design).design.problem
+    varied, names, values = varied_parameters(problem, parameters, model.design.values)
+    if quantities is None:
+        quantities = problem.mechanism.coordinates
+    asked = expressions_of(quantities, response_problem(problem, problem.responses[run]))
+    reductions = reductions_of(asked, reduce)
+    read = dict.fromkeys((*asked, TIME)) if need_places(reductions) else asked
+    call = _ResponseRun(model, names, list(read), run, packing)
+    rows = call.run(values)
+    results = {text: reduced(text, rows[text], reductions[text], rows.get(TIME)) for text in asked}
+    return Variants(varied, results, call.codes, call.errors)
