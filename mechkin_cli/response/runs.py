@@ -28,13 +28,13 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
-from mechkin_cli.response.endings import ending
 from mechkin_cli.response.integration import (
     Beginning,
     MotionEnd,
     MotionRows,
     WatchedStop,
     driven_laws,
+    ending,
     free_session,
     integrate,
 )
@@ -191,15 +191,15 @@ _DIRECTIONS = {"up": 1, "down": -1, "any": 0}
 def watched_stop(stop: Stop) -> WatchedStop:
     """A stop as the kernel takes it."""
     if isinstance(stop, CrossingEnd):
-        return WatchedStop(0, _DIRECTIONS[stop.direction], 1, stop.at, *_powers(stop.dimension))
+        return 0, _DIRECTIONS[stop.direction], 1, stop.at, *_powers(stop.dimension)
     if isinstance(stop, DeadCentreEnd):
         rate = dimension_of(stop.coordinate) / TIME
-        return WatchedStop(1, 0, stop.count, 0.0, *_powers(rate))
-    return WatchedStop(2, 0, stop.count, 0.0)
+        return 1, 0, stop.count, 0.0, *_powers(rate)
+    return 2, 0, stop.count, 0.0, 0, -1
 
 
 def _powers(dimension: Dimension) -> tuple[int, int]:
-    """`lengths` and `rates` of a `WatchedStop`."""
+    """The powers of length and of 1/time of a `WatchedStop`."""
     length, mass, time, _ = dimension.exponents
     if mass or time > 0 or length != int(length) or time != int(time):
         return 0, -1

@@ -74,7 +74,7 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
-    ("response/endings.py", "np.linalg"): "eigenvectors for a message",
+    ("response/integration.py", "np.linalg"): "eigenvectors for a message",
     ("building/links.py", "np.linalg"): "eigenvalues for a warning",
     (
         "building/motion.py",
