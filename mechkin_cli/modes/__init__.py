@@ -6,15 +6,19 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.modes.circuits import Passage as Passage, Walker as Walker
-    from mechkin_cli.modes.modes import UNNAMED as UNNAMED, Modes as Modes, find_modes as find_modes
-    from mechkin_cli.modes.ranges import Ranges as Ranges, find_ranges as find_ranges
+    from mechkin_cli.modes.circuits import Walker as Walker
+    from mechkin_cli.modes.modes import (
+        UNNAMED as UNNAMED,
+        Modes as Modes,
+        Ranges as Ranges,
+        find_modes as find_modes,
+        find_ranges as find_ranges,
+    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "circuits": "Passage Walker",
-        "modes": "Modes UNNAMED find_modes",
-        "ranges": "Ranges find_ranges",
+        "circuits": "Walker",
+        "modes": "Modes Ranges UNNAMED find_modes find_ranges",
     },
 )

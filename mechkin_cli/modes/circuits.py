@@ -41,11 +41,9 @@ class End(NamedTuple):
     fold: BranchFold | None = None
 
 
-class Passage(NamedTuple):
-    """States where the input has its first value, or whole turns more."""
-
-    value: float
-    state: Floats
+Passage = tuple[float, "Floats"]
+"""The value of the input and the states (states,) where it has its first value, or whole turns
+more."""
 
 
 @dataclass
@@ -86,7 +84,7 @@ class Walker:
     def circuit(self, state: Floats) -> list[Branch]:
         """All branches of the circuit through an assembly at the first value, that one first."""
         origin = float(self.inputs[self.number])
-        start = Passage(origin, state)
+        start = origin, state
         upper, above = self._climb(start, 1.0, start)
         if upper.kind == "full-turn":
             return [Branch(upper._replace(value=origin), upper, [start, *above])]
@@ -107,8 +105,7 @@ class Walker:
         walked: list[Branch] = []
         goal = first.lower if direction > 0.0 else first.upper
         while end.fold is not None and len(walked) < tolerances.MOST_BRANCHES:
-            beyond = float(end.fold.inputs_beyond[self.number])
-            start = Passage(beyond, end.fold.beyond)
+            start = float(end.fold.inputs_beyond[self.number]), end.fold.beyond
             direction = -direction
             far, places = self._climb(start, direction, None)
             places = [*self._back_to(end, start, direction), *places]
@@ -123,23 +120,24 @@ class Walker:
 
     def _back_to(self, fold: End, start: Passage, direction: float) -> list[Passage]:
         """The place between a dead centre and the first place of the branch beyond it."""
-        value = self._next(start.value, -direction, here=True)
+        begin, state = start
+        value = self._next(begin, -direction, here=True)
         if (fold.value - value) * -direction <= 0.0:
             return []
-        if value == start.value:
+        if value == begin:
             return [start]
-        followed = self.follow(np.array([start.value, value]), start.state)
-        return [Passage(value, followed.state)] if followed.end == TrackEnd.FINISHED else []
+        followed = self.follow(np.array([begin, value]), state)
+        return [(value, followed.state)] if followed.end == TrackEnd.FINISHED else []
 
     def _climb(
         self, start: Passage, direction: float, first: Passage | None
     ) -> tuple[End, list[Passage]]:
         """Follows a branch in a direction to its end; the places passed."""
-        place = start
+        value, state = start
         places: list[Passage] = []
         for _ in range(tolerances.MOST_TURNS):
-            target = self._next(place.value, direction)
-            followed = self.follow(np.array([place.value, target]), place.state)
+            target = self._next(value, direction)
+            followed = self.follow(np.array([value, target]), state)
             if followed.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, followed)
                 last = float(followed.inputs[self.number])
@@ -150,13 +148,13 @@ class Walker:
                 if isinstance(limit, BranchPoint):
                     return End("branch-point", float(limit.inputs[self.number])), places
                 return End("branch-lost", last), places
-            place = Passage(target, followed.state)
+            value, state = target, followed.state
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places
-            if first is not None and self._is_same(place.state, first.state):
+            if first is not None and self._is_same(state, first[1]):
                 return End("full-turn", target), places
-            places.append(place)
-        return End("far", place.value), places
+            places.append((value, state))
+        return End("far", value), places
 
     def follow(self, values: Floats, state: Floats) -> Followed:
         """The branch through a state along values of the input."""
@@ -196,33 +194,27 @@ class Walker:
         return pose_number(self.session.layout, one[:, None], other, limit) is not None
 
 
-class Circuit(NamedTuple):
-    """Modes that are reached from one another, and whether others may be reached, too: no walk
-    through them came to all of its ends."""
-
-    modes: frozenset[str]
-    is_open: bool
-
-    @property
-    def shown(self) -> tuple[str, ...]:
-        """The modes in the order of their letters."""
-        return tuple(sorted(self.modes, key=lambda name: (len(name), name)))
+Circuit = tuple[frozenset[str], bool]
+"""Modes that are reached from one another, and whether others may be reached, too: no walk through
+them came to all of its ends."""
 
 
 def joined(circuits: Sequence[Circuit]) -> list[Circuit]:
     """Circuits that share a mode with the last are one with it: a walk may end early on one side of
     a narrow place and get through from the other, and one that came to all ends knows them all."""
-    *before, last = circuits
-    apart = [one for one in before if not one.modes & last.modes]
-    same = [last, *(one for one in before if one.modes & last.modes)]
-    modes = frozenset().union(*(one.modes for one in same))
-    return [*apart, Circuit(modes, all(one.is_open for one in same))]
+    *before, (modes, open_) = circuits
+    apart = [one for one in before if not one[0] & modes]
+    same = [one for one in before if one[0] & modes]
+    return [
+        *apart,
+        (modes.union(*(others for others, _ in same)), open_ and all(other for _, other in same)),
+    ]
 
 
 def undecided(circuits: Sequence[Circuit], name: str) -> list[Diagnostic]:
     """A warning that circuits may be one: those of which no walk came to all ends; a closed one has
     no part in the others."""
-    numbers = [str(number) for number, one in enumerate(circuits, 1) if one.is_open]
+    numbers = [str(number) for number, (_, open_) in enumerate(circuits, 1) if open_]
     if len(numbers) < 2:
         return []
     *first, last = numbers

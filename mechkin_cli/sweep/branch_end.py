@@ -207,7 +207,7 @@ def _assembled_again(
     direction = float(np.sign(followed.direction[number]))
     if walker.period is None or direction == 0.0:
         return None
-    other = walker.end(modes.Passage(float(path[number, 0]), rows.states[:, 0]), -direction)
+    other = walker.end((float(path[number, 0]), rows.states[:, 0]), -direction)
     value = other.value + direction * walker.period
     ahead = direction * (path[number, ~rows.reached] - value)
     behind = direction * (value - float(limit.inputs[number]))

@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.modes.ranges import Range
+from mechkin_cli.modes.modes import Range
 
 FOUR_BAR = """
 format: 1
