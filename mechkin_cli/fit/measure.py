@@ -23,7 +23,7 @@ from mechkin_cli.analysis import Design
 from mechkin_cli.building import build, open_data
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.fit.nearest import nearest_places, nearest_slopes
-from mechkin_cli.fit.request import FitConstraint, FitRequest, Target
+from mechkin_cli.fit.request import Bounds, FitConstraint, Target
 from mechkin_cli.fit.search import Measures
 from mechkin_cli.sensitivities import sensitivities
 from mechkin_cli.tables import row_weights
@@ -150,18 +150,24 @@ TIME = "time"
 class FitValues:
     """A request to a model, for populations of its parameters in parts of their bounds."""
 
-    def __init__(self, models: FitModels, request: FitRequest) -> None:
-        self.models, self.request = models, request
-        self.lower = np.array([one.lower for one in request.parameters])
-        self.width = np.array([one.upper for one in request.parameters]) - self.lower
-        self.names = [one.name for one in request.parameters]
-        targets = request.targets
+    def __init__(
+        self,
+        models: FitModels,
+        parameters: tuple[Bounds, ...],
+        targets: tuple[Target, ...],
+        constraints: tuple[FitConstraint, ...],
+    ) -> None:
+        self.models, self.parameters = models, parameters
+        self.targets, self.constraints = targets, constraints
+        self.lower = np.array([one.lower for one in parameters])
+        self.width = np.array([one.upper for one in parameters]) - self.lower
+        self.names = [one.name for one in parameters]
         self.at_inputs = [one for one in targets if one.at is not None and one.run == SWEEP]
         self.at_moments = [one for one in targets if one.at is not None and one.run != SWEEP]
         self.anywhere = [one for one in targets if one.at is None and not one.least]
         self.least = [one for one in targets if one.least]
         swept = [SWEEP] if SWEEP in models.model.runs else []
-        asked = [one.run for one in targets] + [one.run for one in request.constraints]
+        asked = [one.run for one in targets] + [one.run for one in constraints]
         self.runs = tuple(dict.fromkeys([*swept, *asked]))
         self.weights = {run: rms_weights(models.model, run) for run in self.runs}
         # rows in the order of the inputs, so that each is followed from its neighbour
@@ -173,7 +179,7 @@ class FitValues:
     def texts(self, run: str) -> list[str]:
         """What is read of the rows of a run."""
         read = [(one.run, one.of) for one in (*self.least, *self.at_moments)]
-        read += [(one.run, one.of) for one in self.request.constraints]
+        read += [(one.run, one.of) for one in self.constraints]
         return [of for asked, of in read if asked == run]
 
     def values(self, unknowns: Floats) -> dict[str, Floats]:
@@ -215,7 +221,7 @@ class FitValues:
                 weights = self.weights[target.run]
                 parts = scaled.reshape(count, len(weights), -1) * weights[:, None]
                 residuals.append(parts.reshape(count, -1))
-        for constraint in self.request.constraints:
+        for constraint in self.constraints:
             margins += margins_of(constraint, rows[constraint.run][constraint.of])
         for target in self.at_moments:
             values_there = rows[target.run][target.of][:, self.rows_of(target)]
@@ -297,7 +303,7 @@ class FitSlopes:
         """Derivatives of `Measures.stacked` (all, unknowns) at (unknowns,), nan where a sensitivity
         has another verdict than `ok` or one of a row that is solved."""
         values = self._values
-        models, request = values.models, values.request
+        models = values.models
         self.why = {}
         named = {name: float(one[0]) for name, one in values.values(unknowns[:, None]).items()}
         rows = {
@@ -318,7 +324,7 @@ class FitSlopes:
             parts += self._anywhere(named, values.anywhere)
         peaks = [one for one in values.least if one.least == "peak"]
         parts += [rows[one.run][one.of] / one.within for one in peaks]
-        for constraint in request.constraints:
+        for constraint in values.constraints:
             for bound, sign in constraint.bounds:
                 slopes = rows[constraint.run][constraint.of]
                 parts.append(sign * slopes / (abs(bound) or 1.0))

@@ -190,16 +190,10 @@ class FitConstraint(NamedTuple):
         return [(bound, sign) for bound, sign in ends if np.isfinite(bound)]
 
 
-class FitRequest(NamedTuple):
-    """Parameters, targets and constraints of a fit."""
-
-    parameters: tuple[Bounds, ...]
-    targets: tuple[Target, ...]
-    constraints: tuple[FitConstraint, ...]
-
-
-def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -> FitRequest:
-    """The checked request, in the file's units.
+def request(
+    problem: Problem, targets: Any, parameters: Any, constraints: Any
+) -> tuple[tuple[Bounds, ...], tuple[Target, ...], tuple[FitConstraint, ...]]:
+    """The checked parameters, targets and constraints, in the file's units.
 
     Raises:
         UsageError: the first thing that is wrong, and what to write.
@@ -222,7 +216,7 @@ def request(problem: Problem, targets: Any, parameters: Any, constraints: Any) -
                 f"targets[{number}]: targets have different units ({', '.join(sorted(units))}), so "
                 f'each needs within:, the deviation that counts as one, such as "1 {target.unit}"'
             )
-    return FitRequest(_bounds(problem, parameters), tuple(t for t, _ in checked), limits)
+    return _bounds(problem, parameters), tuple(t for t, _ in checked), limits
 
 
 def _bounds(problem: Problem, parameters: Any) -> tuple[Bounds, ...]:

@@ -141,10 +141,9 @@ class Fit(Listed):
     ) -> None:
         self._values, self._best = values, best
         self._analyses: dict[str, Analysis] = {}
-        request = values.request
         columns = values.values(best.unknowns[:, None])
         self.parameters = {name: float(column[0]) for name, column in columns.items()}
-        self.units = {one.name: one.unit for one in request.parameters}
+        self.units = {one.name: one.unit for one in values.parameters}
         self.model: Solvable = with_parameters(values.models.model, self.parameters)
         self.evaluations, self.slopes_taken = measured.evaluations, measured.slopes_taken
         self.exact_taken = measured.exact_taken
@@ -165,7 +164,7 @@ class Fit(Listed):
     def at_bounds(self) -> dict[str, str]:
         """The parameters that lie at a bound, and at which: `lower` or `upper`."""
         sides = {}
-        for one, part in zip(self._values.request.parameters, self._best.unknowns, strict=True):
+        for one, part in zip(self._values.parameters, self._best.unknowns, strict=True):
             if part <= FIT_AT_BOUND or part >= 1.0 - FIT_AT_BOUND:
                 sides[one.name] = "lower" if part < 0.5 else "upper"
         return sides
@@ -214,12 +213,12 @@ class Fit(Listed):
     @cached_property
     def targets(self) -> tuple[Met, ...]:
         """How each target is met, in the order in which they were given."""
-        return tuple(self._met(target) for target in self._values.request.targets)
+        return tuple(self._met(target) for target in self._values.targets)
 
     @cached_property
     def constraints(self) -> tuple[ConstraintCheck, ...]:
         """How each bound is held, where it is nearest to be exceeded."""
-        constraints = self._values.request.constraints
+        constraints = self._values.constraints
         return tuple(check for one in constraints for check in self._checks(one))
 
     @property
@@ -233,11 +232,11 @@ class Fit(Listed):
     def listing(self) -> Listing:
         """Parameters, targets and constraints."""
         rows = []
-        for one in self._values.request.parameters:
+        for one in self._values.parameters:
             side = self.at_bounds.get(one.name)
             words = f"{one.lower:g} to {one.upper:g}" + (f", at the {side} bound" if side else "")
             rows.append((one.name, f"{self.parameters[one.name]:.9g}", one.unit, words))
-        for met, target in zip(self.targets, self._values.request.targets, strict=True):
+        for met, target in zip(self.targets, self._values.targets, strict=True):
             digits, words = ".3g", f"largest deviation of {len(target.wanted)}"
             if target.least:
                 digits, words = ".6g", f"least {target.least}"
@@ -280,7 +279,7 @@ class Fit(Listed):
             return None
         values = self._values
         lacks = [lack_of(self._rows(run), values.texts(run)) for run in values.runs]
-        for met, target in zip(self.targets, values.request.targets, strict=True):
+        for met, target in zip(self.targets, values.targets, strict=True):
             if target.at is not None and target.run == SWEEP:
                 along = values.models.moved.name, values.models.unit
                 lacks.append(lack_at(target.of, met.values, met.inputs, *along))
@@ -381,11 +380,10 @@ def fit_of(
     generations = a_whole_number("generations", generations, "generations", 0)
     seed = a_whole_number("seed", seed, "", 0)
     models = FitModels(model)
-    asked = request(model.problem, targets, parameters, constraints)
-    values = FitValues(models, asked)
+    values = FitValues(models, *request(model.problem, targets, parameters, constraints))
     slopes = FitSlopes(values)
     measured = Measured(values.measure, slopes.stacked)
-    own = np.array([one.own for one in asked.parameters])
+    own = np.array([one.own for one in values.parameters])
     start = (own - values.lower) / values.width
     best = best_of(measured, start, seed, starts, generations, progress)
     return Fit(values, best, measured, slopes.why)

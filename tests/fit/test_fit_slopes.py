@@ -71,7 +71,9 @@ def derivatives(of: Any) -> np.ndarray:
 
 
 def measured(targets: Any, constraints: Any = ()) -> tuple[FitSlopes, Measured]:
-    values = FitValues(FitModels(FOUR_BAR), request(FOUR_BAR.problem, targets, BOUNDS, constraints))
+    values = FitValues(
+        FitModels(FOUR_BAR), *request(FOUR_BAR.problem, targets, BOUNDS, constraints)
+    )
     slopes = FitSlopes(values)
     return slopes, Measured(values.measure, slopes.stacked)
 
@@ -146,7 +148,7 @@ def test_what_has_no_sensitivity_is_told_and_taken_from_differences(beside: floa
     # at the own values abs() has its kink in the row
     target = {"of": f"abs(C.theta - {float(wanted[0]) + beside!r} deg)", "at": [60, 120]}
     values = FitValues(
-        FitModels(file), request(file.problem, {**target, "is": [0, 0]}, {"a": (30, 50)}, ())
+        FitModels(file), *request(file.problem, {**target, "is": [0, 0]}, {"a": (30, 50)}, ())
     )
     slopes = FitSlopes(values)
     both = Measured(values.measure, slopes.stacked)
