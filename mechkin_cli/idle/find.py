@@ -86,6 +86,10 @@ class LinkMotion(NamedTuple):
         """The first freedom that has it."""
         return max(self.rates, key=lambda freedom: abs(self.rates[freedom]))
 
+    def part(self, freedom: Freedom) -> float:
+        """The rate of a freedom in parts of the largest."""
+        return abs(self.rates.get(freedom, 0.0)) / (self.fastest or 1.0)
+
     def less(self, factor: float, other: LinkMotion) -> LinkMotion:
         """This, less another motion times a factor."""
         rates = {
@@ -276,21 +280,6 @@ Coordinate = tuple[str, str]
 """A joint and its coordinate."""
 
 
-class Moving(NamedTuple):
-    """A motion as a group makes it (`own`), and less the motions before it (`beside`)."""
-
-    own: LinkMotion
-    beside: LinkMotion
-
-    def rate(self, freedom: Freedom) -> float:
-        """The rate of a freedom in `beside`, in parts of the fastest."""
-        return abs(self.beside.rates.get(freedom, 0.0)) / (self.beside.fastest or 1.0)
-
-    def less(self, factor: float, other: Moving) -> Moving:
-        """This, less another motion times a factor."""
-        return Moving(self.own.less(factor, other.own), self.beside.less(factor, other.beside))
-
-
 class IdleBasis:
     """The idle motions that are accounted for, at each place, each with a freedom that no other of
     them moves."""
@@ -318,14 +307,15 @@ class IdleBasis:
 class RigidGroup:
     """Links that move as one body, and what they may do that is not accounted for.
 
-    `joints` lead to other links; `left` are the motions at each place.
+    `joints` lead to other links; `left` are the motions at each place, each as the group makes it,
+    and less the motions before it.
     """
 
     def __init__(
         self, links: tuple[str, ...], joints: tuple[Joint, ...], motions: list[list[LinkMotion]]
     ) -> None:
         self.links, self.joints = links, joints
-        self.left = [[Moving(motion, motion) for motion in place] for place in motions]
+        self.left = [[(motion, motion) for motion in place] for place in motions]
 
     @property
     def count(self) -> int:
@@ -335,13 +325,13 @@ class RigidGroup:
     def reduce(self, basis: IdleBasis) -> None:
         """Leaves the motions that are independent of a basis."""
         for place, motions in enumerate(self.left):
-            independent: list[Moving] = []
-            own = IdleBasis()
-            for moving in motions:
-                beside = own.beside(place, basis.beside(place, moving.own))
-                if beside.fastest > tolerances.SAME_COMMON_MOTION * moving.own.fastest:
-                    own.add(place, beside.fastest_freedom, beside)
-                    independent.append(Moving(moving.own, beside))
+            independent: list[tuple[LinkMotion, LinkMotion]] = []
+            before = IdleBasis()
+            for own, _ in motions:
+                beside = before.beside(place, basis.beside(place, own))
+                if beside.fastest > tolerances.SAME_COMMON_MOTION * own.fastest:
+                    before.add(place, beside.fastest_freedom, beside)
+                    independent.append((own, beside))
             self.left[place] = independent
 
     def join(self, basis: IdleBasis) -> None:
@@ -353,25 +343,24 @@ class RigidGroup:
     def least_rate(self, freedom: Freedom) -> float:
         """The rate of a freedom in the motion that moves it most, at the place where it is
         least."""
-        return min(max(moving.rate(freedom) for moving in place) for place in self.left)
+        return min(max(beside.part(freedom) for _, beside in place) for place in self.left)
 
-    def take(self, freedom: Freedom, basis: IdleBasis) -> Moving:
+    def take(self, freedom: Freedom, basis: IdleBasis) -> LinkMotion:
         """Moves the motion that moves a freedom most to a basis, so that the others leave the
         freedom at rest; gives it as it is at the first place."""
         taken = []
         for place, motions in enumerate(self.left):
-            best = max(range(len(motions)), key=lambda k: motions[k].rate(freedom))
-            one, own = motions[best], freedom
-            if one.rate(own) <= tolerances.SAME_COMMON_MOTION:  # at rest here, by chance
-                own = one.beside.fastest_freedom
-            rate = one.beside.rates[own]
-            basis.add(place, own, one.beside)
+            best = max(range(len(motions)), key=lambda k: motions[k][1].part(freedom))
+            (own, beside), moved = motions.pop(best), freedom
+            if beside.part(moved) <= tolerances.SAME_COMMON_MOTION:  # at rest here, by chance
+                moved = beside.fastest_freedom
+            basis.add(place, moved, beside)
+            factors = [other.rates.get(moved, 0.0) / beside.rates[moved] for _, other in motions]
             self.left[place] = [
-                other.less(other.beside.rates.get(own, 0.0) / rate, one)
-                for k, other in enumerate(motions)
-                if k != best
+                (one.less(factor, own), other.less(factor, beside))
+                for factor, (one, other) in zip(factors, motions, strict=True)
             ]
-            taken.append(one)
+            taken.append(own)
         return taken[0]
 
     def carried(self, link: str) -> Screw | None:
@@ -379,7 +368,7 @@ class RigidGroup:
         none."""
         if any(len(place) != 1 for place in self.left):
             return None
-        twists = [place[0].own.twists[link] for place in self.left]
+        twists = [place[0][0].twists[link] for place in self.left]
         if not all(any(angular) or any(linear) for angular, linear in twists):
             return None
         screws = [_scaled_screw(twist) for twist in twists]
@@ -391,13 +380,13 @@ class RigidGroup:
         if any(len(place) != 1 for place in self.left):
             return True
         speeds = []
-        for (moving,) in self.left:
-            angular, linear = moving.own.twists[self.links[0]]
+        for ((motion, _),) in self.left:
+            angular, linear = motion.twists[self.links[0]]
             turn, slide = norm(angular), norm(linear)
             if turn == slide == 0.0:
                 return False
             speed = turn if turn > tolerances.SAME_COMMON_MOTION * slide else slide
-            speeds.append(abs(moving.own.rates.get(freedom, 0.0)) / speed)
+            speeds.append(abs(motion.rates.get(freedom, 0.0)) / speed)
         apart = max(speeds) - min(speeds)
         return min(speeds) > tolerances.HELD_RATE and apart <= tolerances.SAME_COMMON_MOTION
 

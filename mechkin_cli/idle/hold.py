@@ -29,7 +29,7 @@ from mechkin_cli.idle.find import (
     DrawnGroup,
     Freedom,
     IdleBasis,
-    Moving,
+    LinkMotion,
     RigidGroup,
     idle_groups,
     is_pure_turn,
@@ -151,7 +151,7 @@ class Holder:
     def leave(self, group: RigidGroup) -> None:
         """Accounts for the motions of a group that need nothing to hold them."""
         while group.count:
-            group.take(group.left[0][0].beside.fastest_freedom, self.basis)
+            group.take(group.left[0][0][1].fastest_freedom, self.basis)
 
     def named(self, group: RigidGroup) -> list[tuple[Joint, str, Freedom]]:
         """The coordinates by which a group may be held: angles first, of one turn before two."""
@@ -213,8 +213,8 @@ class Holder:
             screw = screws[link]
             if screw is None or not is_slide(screw) or joint.name in self.inside:
                 continue
-            moving = group.take(group.left[0][0].own.fastest_freedom, self.basis)
-            self._put(group, None, moving, screws, stop=stop_of(joint, link, screw[1]))
+            motion = group.take(group.left[0][0][0].fastest_freedom, self.basis)
+            self._put(group, None, motion, screws, stop=stop_of(joint, link, screw[1]))
             return True
         return False
 
@@ -228,7 +228,7 @@ class Holder:
     def _hold_by_line(self, group: RigidGroup) -> bool:
         """Holds one turn about a line of a link at a ball."""
         screws = self._screws(group)
-        rates = group.left[0][0]
+        _, motion = group.left[0][0]
         for ball in self._balls(group) if group.count == 1 else ():
             link = ball.second if ball.second in group.links else ball.first
             line = self._line(group, ball, link, screws[link])
@@ -237,8 +237,8 @@ class Holder:
             turns, freedom = _turns_with_line(self.mechanism, ball, link, line)
             chain = enumerate(ball.type.chain)
             own = [(ball.name, number) for number, one in chain if one.motion == "ball"]
-            most = max(own, key=rates.rate)
-            if rates.rate(most) <= tolerances.HELD_RATE:
+            most = max(own, key=motion.part)
+            if motion.part(most) <= tolerances.HELD_RATE:
                 continue
             coordinate = (ball.name, turn_name(freedom))
             self._put(group, coordinate, group.take(most, self.basis), screws, told=turns)
@@ -270,9 +270,9 @@ class Holder:
             return False
         joint, number, name = best
         self.split.add(joint.name)
-        moving = group.take((joint.name, number), self.basis)
+        motion = group.take((joint.name, number), self.basis)
         turns = _three_turns(joint) if joint.type.is_oriented else None
-        self._put(group, (joint.name, name), moving, {}, told=turns)
+        self._put(group, (joint.name, name), motion, {}, told=turns)
         return True
 
     def _unnamed(
@@ -298,7 +298,7 @@ class Holder:
         self,
         group: RigidGroup,
         coordinate: Coordinate | None,
-        moving: Moving,
+        motion: LinkMotion,
         screws: Screws,
         *,
         told: Joint | None = None,
@@ -319,15 +319,15 @@ class Holder:
         holding = f"{group.links[0]}.holding_{kind}"
         if any(one.holding == holding for one in self.held):
             holding = f"{group.links[-1]}.holding_{kind}"
-        least = tolerances.HELD_RATE * tolerances.SAME_COMMON_MOTION * moving.own.fastest
+        least = tolerances.HELD_RATE * tolerances.SAME_COMMON_MOTION * motion.fastest
         moves = frozenset(
             (joint.name, name)
             for joint in group.joints
             for name, freedom in joint.type.freedom_of.items()
-            if abs(moving.own.rates.get((joint.name, freedom), 0.0)) > least
+            if abs(motion.rates.get((joint.name, freedom), 0.0)) > least
         )
         joints = tuple(joint.name for joint in group.joints)
-        miss = moving.own.miss / (moving.own.fastest or 1.0)
+        miss = motion.miss / (motion.fastest or 1.0)
         held = LockedFreedom(
             group.links, joints, coordinate, moves, axes, slides, holding, told, stop, miss=miss
         )
