@@ -46,38 +46,31 @@ UNIT_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.
 _XYZ = "xyz"
 
 
-class Unknown(NamedTuple):
-    """One component: what it exerts on the second link of its joint per unit, in SI.
+class PairTerm(NamedTuple):
+    """An unknown or a condition of a joint.
 
-    `rank` orders the unknowns as the source does: forces, moments, what stands apart, efforts.
+    Of an unknown `wrench` is what it exerts on the second link per unit, in SI, and `rank` orders
+    the unknowns as the source does: forces, moments, what stands apart, efforts. Of a condition
+    `wrench` has the factors of F and M in the sum that vanishes.
     """
 
     name: str
     joint: str
     dimension: Dimension
     wrench: Wrench
-    rank: int
+    rank: int = 0
 
-
-class ForceCondition(NamedTuple):
-    """A sum of a joint's force and moment components (per unknown of F and M) that vanishes."""
-
-    name: str
-    joint: str
-    dimension: Dimension
-    force: Vector
-    moment: Vector
-
-    def coefficient(self, wrench: Wrench) -> float:
-        """The factor of an unknown."""
-        parts = zip((*self.force, *self.moment), (*wrench.force, *wrench.moment), strict=True)
+    def coefficient(self, unknown: PairTerm) -> float:
+        """The factor of an unknown in this condition."""
+        factors, wrench = self.wrench, unknown.wrench
+        parts = zip((*factors.force, *factors.moment), (*wrench.force, *wrench.moment), strict=True)
         total = 0.0
-        for weight, component in parts:
-            total += weight * component
+        for factor, component in parts:
+            total += factor * component
         return total
 
 
-PairTerms = tuple[list[Unknown], list[ForceCondition]]
+PairTerms = tuple[list[PairTerm], list[PairTerm]]
 """The unknowns and the conditions of one pair."""
 
 Along = tuple[tuple[str, Attached], tuple[str, Attached]]
@@ -103,12 +96,12 @@ def pair_terms(joint: Joint, motion: RowMotion, along: Mapping[str, Along]) -> P
     return _components(joint), [*slides, *turns]
 
 
-def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> Unknown:
+def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> PairTerm:
     """What the drive of a coordinate exerts; `word` names it."""
     known = joint.type.coordinate[coordinate]
     dimension = MOMENT if known.is_angle else FORCE
     wrench = coordinate_wrench(joint, coordinate, motion)
-    return Unknown(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
+    return PairTerm(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
 
 
 def _guide(joint: Joint, motion: RowMotion) -> PairTerms:
@@ -121,17 +114,17 @@ def _guide(joint: Joint, motion: RowMotion) -> PairTerms:
     apart = []
     if joint.type.is_threaded:
         thread = force_at(point, axis).plus(Wrench(ZERO, scale(-joint.pitch, axis)))
-        apart.append(Unknown(f"{joint.name}.FA", joint.name, FORCE, thread, 2))
+        apart.append(PairTerm(f"{joint.name}.FA", joint.name, FORCE, thread, 2))
     else:
         if not free["slide"]:
             force = force_at(point, axis)
-            apart.append(Unknown(f"{joint.name}.FA", joint.name, FORCE, force, 2))
+            apart.append(PairTerm(f"{joint.name}.FA", joint.name, FORCE, force, 2))
         if not free["turn"]:
-            apart.append(Unknown(f"{joint.name}.MA", joint.name, MOMENT, Wrench(ZERO, axis), 2))
+            apart.append(PairTerm(f"{joint.name}.MA", joint.name, MOMENT, Wrench(ZERO, axis), 2))
     return [*_components(joint), *apart], conditions
 
 
-def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> list[Unknown]:
+def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> list[PairTerm]:
     point = motion.point(joint.point)
     directions: Sequence[Vector] = UNIT_AXES
     names: Sequence[str] = _XYZ
@@ -141,16 +134,16 @@ def _ball(joint: Joint, motion: RowMotion, along: Along | None) -> list[Unknown]
         first, second = (name for name, _ in along)
         names = (f" {first}", f" {second}", f" {first} x {second}")
     return [
-        Unknown(f"{joint.name}.F{name}", joint.name, FORCE, force_at(point, direction), 3)
+        PairTerm(f"{joint.name}.F{name}", joint.name, FORCE, force_at(point, direction), 3)
         for name, direction in zip(names, directions, strict=True)
     ]
 
 
-def _components(joint: Joint) -> list[Unknown]:
+def _components(joint: Joint) -> list[PairTerm]:
     name, named = joint.name, list(zip(_XYZ, UNIT_AXES, strict=True))
-    forces = [Unknown(f"{name}.F{xyz}", name, FORCE, Wrench(axis, ZERO), 0) for xyz, axis in named]
+    forces = [PairTerm(f"{name}.F{xyz}", name, FORCE, Wrench(axis, ZERO), 0) for xyz, axis in named]
     moments = [
-        Unknown(f"{name}.M{xyz}", name, MOMENT, Wrench(ZERO, axis), 1) for xyz, axis in named
+        PairTerm(f"{name}.M{xyz}", name, MOMENT, Wrench(ZERO, axis), 1) for xyz, axis in named
     ]
     return [*forces, *moments]
 
@@ -161,14 +154,15 @@ def _numbered(free: Sequence[Attached]) -> Iterator[tuple[str, Attached]]:
         yield (f" {number}" if len(free) > 1 else ""), at
 
 
-def _no_force(joint: Joint, axis: Vector, where: str) -> ForceCondition:
-    return ForceCondition(f"{joint.name}: no force in F {where}", joint.name, FORCE, axis, ZERO)
+def _no_force(joint: Joint, axis: Vector, where: str) -> PairTerm:
+    name = f"{joint.name}: no force in F {where}"
+    return PairTerm(name, joint.name, FORCE, Wrench(axis, ZERO))
 
 
-def _no_moment(joint: Joint, motion: RowMotion, axis: Vector, where: str) -> ForceCondition:
+def _no_moment(joint: Joint, motion: RowMotion, axis: Vector, where: str) -> PairTerm:
     name = f"{joint.name}: no moment in M {where}"
     arm = scale(-1.0, cross(axis, motion.point(joint.point)))
-    return ForceCondition(name, joint.name, MOMENT, arm, axis)
+    return PairTerm(name, joint.name, MOMENT, Wrench(arm, axis))
 
 
 Matrix = list[list[float]]
@@ -179,7 +173,7 @@ class DenseSystem(NamedTuple):
     dimension."""
 
     equations: tuple[tuple[str, Dimension], ...]
-    unknowns: tuple[Unknown, ...]
+    unknowns: tuple[PairTerm, ...]
     coefficients: Matrix
     right: list[float]
 
@@ -221,7 +215,7 @@ def dense_system(
         # of F and M of its pair, not of what stands apart, nor of its drive
         coefficients.append(
             [
-                condition.coefficient(unknown.wrench)
+                condition.coefficient(unknown)
                 if unknown.joint == condition.joint and unknown.rank in (0, 1, 3)
                 else 0.0
                 for unknown in unknowns
