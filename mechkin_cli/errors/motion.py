@@ -167,15 +167,9 @@ class MotionPlaces(NamedTuple):
         )
 
 
-class ClosedPlaces(NamedTuple):
-    """The same closed: states, rates and accelerations, and what would have to act along the chart
-    (freedoms, places); `good` places are closed and all loads have values there."""
-
-    states: DoubleDoubles
-    rates: DoubleDoubles
-    accelerations: DoubleDoubles
-    forces: DoubleDoubles
-    good: Bools
+ClosedPlaces = tuple[MotionPlaces, DoubleDoubles, "Bools"]
+"""Closed places, what would have to act along the chart (freedoms, places), and which of them are
+good: closed, and all loads have values there."""
 
 
 UnitResponse = tuple["Floats", "Floats"]
@@ -212,8 +206,8 @@ class ForcedMotion:
         for k in range(n):
             seconds[k, (k + 1) * count : (k + 2) * count] = 1.0
         along = directions if directions.shape[2] == 1 else directions[:, :, copies]
-        closed = self._run(places.at(copies), along, DoubleDoubles(seconds))
-        forces = closed.forces.high.reshape(n, n + 1, count)
+        closed, acting, _ = self._run(places.at(copies), along, DoubleDoubles(seconds))
+        forces = acting.high.reshape(n, n + 1, count)
         second = closed.accelerations.high.reshape(-1, n + 1, count)
         inertia = (forces[:, 1:] - forces[:, :1]).transpose(2, 0, 1)
         return inertia, (second[:, 1:] - second[:, :1]).transpose(1, 0, 2)
@@ -225,17 +219,17 @@ class ForcedMotion:
         copies = place.at(np.zeros(n, dtype=np.intp))
         still = np.zeros_like(copies.rates.high)
         moving = copies._replace(accelerations=DoubleDoubles(still))
-        closed = self._run(moving, directions, DoubleDoubles(np.zeros((n, n))), np.eye(n))
+        closed, _, _ = self._run(moving, directions, DoubleDoubles(np.zeros((n, n))), np.eye(n))
         return np.ascontiguousarray(closed.rates.high.T)[:, :, None]
 
     def corrected(
-        self, closed: ClosedPlaces, response: UnitResponse
+        self, closed: MotionPlaces, forces: DoubleDoubles, response: UnitResponse
     ) -> tuple[DoubleDoubles, Floats]:
-        """The accelerations of the columns that leave nothing to act, as far as a `response` is
+        """The accelerations of the columns that leave no `forces` to act, as far as a `response` is
         right; and by how much they differ, in parts of unit accelerations (freedoms, places)."""
         inertia, tangents = response
         with np.errstate(all="ignore"):
-            missing = -eliminate(inertia, closed.forces.high.T).T
+            missing = -eliminate(inertia, forces.high.T).T
         step = tangents[0] * missing[0]
         for k in range(1, len(missing)):
             step = step + tangents[k] * missing[k]
@@ -252,17 +246,14 @@ class ForcedMotion:
     def settled(self, places: MotionPlaces, directions: Floats) -> tuple[MotionPlaces, Bools]:
         """Places closed, with the accelerations that follow from the forces there; and which of
         them are."""
-        closed = self.closed(places, directions)
+        closed, forces, good = self.closed(places, directions)
         response = self.response(places, directions)
         for _ in range(CORRECTIONS):
-            accelerations, missing = self.corrected(closed, response)
-            closed.good[:] &= np.isfinite(missing).all(axis=0)
-            numbers = (closed.states, closed.rates, accelerations)
-            places = MotionPlaces(places.time, *numbers, places.turned)
-            good = closed.good
-            closed = self.closed(places, directions)
-            closed.good[:] &= good
-        return places, closed.good
+            accelerations, missing = self.corrected(closed, forces, response)
+            places = closed._replace(accelerations=accelerations)
+            closed, forces, still_good = self.closed(places, directions)
+            good = good & np.isfinite(missing).all(axis=0) & still_good
+        return places, good
 
     def without(self, dropped: Callable[[Load], bool]) -> ForcedMotion | None:
         """The same mechanism without some of its loads; None where it has none of them."""
@@ -309,7 +300,8 @@ class ForcedMotion:
         for part in (batch.states, batch.first, batch.second, acting):
             good &= np.isfinite(part).all(axis=(0, 1))
         states, first, second = map(as_number, (batch.states, batch.first, batch.second))
-        return ClosedPlaces(states, first, second, as_number(acting), good)
+        closed = MotionPlaces(places.time, states, first, second, places.turned)
+        return closed, as_number(acting), good
 
 
 Fineness = tuple[int, float]
@@ -429,13 +421,13 @@ class Marching:
             places = MotionPlaces(
                 times, moved[:states, :count], moved[states:, :count], rates[states:], turned
             )
-            closed = self.motion.closed(places, directions)
-            if not closed.good.all():
+            closed, forces, good = self.motion.closed(places, directions)
+            if not good.all():
                 return None, 0.4
             if sweep in (0, 3):
                 response = self.motion.response(places, directions)
             assert response is not None
-            accelerations, missing = self.motion.corrected(closed, response)
+            accelerations, missing = self.motion.corrected(closed, forces, response)
             if not np.isfinite(missing).all():
                 return None, 0.4
             new = joined([self.state_rates(closed.states, closed.rates), accelerations])
@@ -470,12 +462,12 @@ class Marching:
         between = np.concatenate([[0.0], 0.5 * (nodes[1:] + nodes[:-1]), [1.0]])
         times = step.begin.time + step.length * between
         places, _ = step.at(times, self.turned_at(times.high))
-        closed = self.motion.closed(places, directions)
-        if not closed.good.all():
+        closed, forces, good = self.motion.closed(places, directions)
+        if not good.all():
             return np.inf
         number = np.arange(between.size).clip(max=nodes.size - 1)
         near = (response[0][number], response[1][:, :, number])
-        accelerations, _ = self.motion.corrected(closed, near)
+        accelerations, _ = self.motion.corrected(closed, forces, near)
         off = np.abs((accelerations - places.accelerations).high)
         h = float(step.length.high[0])
         level = max(self.level, h * float(np.abs(places.accelerations.high).max()))
@@ -524,7 +516,7 @@ class Marching:
         for number, (fewer, sign) in enumerate(zip(self.working, (1.0, -1.0), strict=True)):
             if fewer is None:
                 continue
-            forces = fewer.closed(places, directions).forces
+            _, forces, _ = fewer.closed(places, directions)
             moved = fewer.along(directions, places.rates)
             total = forces[0] * moved[0]
             for k in range(1, len(forces)):

@@ -22,7 +22,6 @@ import numpy as np
 from mechkin_cli.analysis import Design
 from mechkin_cli.building import build, open_data
 from mechkin_cli.diagnostics import MechkinError, UsageError
-from mechkin_cli.fit.nearest import nearest_places, nearest_slopes
 from mechkin_cli.fit.request import Bounds, FitConstraint, Target
 from mechkin_cli.fit.search import Measures
 from mechkin_cli.sensitivities import sensitivities
@@ -38,6 +37,8 @@ from mechkin_cli.verdict import SWEEP, has_solution
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from mechkin_cli.analysis import Solvable
     from mechkin_cli.mechanism import DrivenInput
@@ -374,3 +375,106 @@ class FitSlopes:
                 notes.append(f"{name}: {found.why(text, name) or verdicts}")
         if notes:
             self.why[text] = "; ".join(notes)
+
+
+NODES = 10
+"""Rows of a polynomial."""
+
+HALF = 0.5 * (NODES - 1)
+POWERS = np.arange(NODES)
+TO_COEFFICIENTS = np.linalg.inv(((POWERS - HALF) / HALF)[:, None] ** POWERS)
+"""From the values at the rows to a polynomial in z in [-1, 1]."""
+
+STEPS = 30
+"""Newton steps, each at most a row."""
+
+
+def nearest_places(curves: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """Of curves (S, rows, width) the nearest places to points (points, width).
+
+    Returns their rows, in parts (S, points), and where they are (S, points, width).
+    """
+    first, z, places, _ = _nearest(curves, points)
+    return first + HALF + HALF * z, places
+
+
+def nearest_slopes(curve: Floats, slopes: Floats, points: Floats) -> Floats:
+    """Derivatives of the nearest places of one curve (rows, width), whose own derivatives with
+    some unknowns are `slopes` (unknowns, rows, width): (unknowns, points, width).
+
+    The place itself moves along the curve so that what is left stays perpendicular to it: with
+    c(z, u) the curve and r = c - point, r . c_z = 0 gives z_u = -(c_zu . r + c_u . c_z) /
+    (c_z . c_z + r . c_zz), and c_u + c_z z_u is the derivative. At an end of the curve it stays.
+    """
+    first, z, places, at_end = (part[0] for part in _nearest(curve[None], points))
+    around = curve[first[:, None] + POWERS]
+    moved = slopes[:, first[:, None] + POWERS]
+    coefficients = np.einsum("pn,knw->kpw", TO_COEFFICIENTS, around)
+    c_u, c_zu = (
+        np.einsum("kn,uknw->ukw", _powers(z, order) @ TO_COEFFICIENTS, moved) for order in (0, 1)
+    )
+    c_z, c_zz = (np.einsum("kp,kpw->kw", _powers(z, order), coefficients) for order in (1, 2))
+    away = places - points
+    curved = (c_z * c_z + away * c_zz).sum(axis=1)
+    down = (c_zu * away + c_u * c_z).sum(axis=2)
+    stays = at_end | (curved == 0.0)
+    z_u = np.where(stays, 0.0, -down / np.where(stays, 1.0, curved))
+    return np.asarray(c_u + c_z * z_u[:, :, None])
+
+
+CurvePlaces = tuple["NDArray[np.intp]", "Floats", "Floats", "Bools"]
+"""Of curves (S) the nearest places to points: the first rows of their polynomials and z there
+(S, points), the places (S, points, width), and whether they are ends of the curve."""
+
+
+def _nearest(curves: Floats, points: Floats) -> CurvePlaces:
+    distances = np.square(curves[:, :, None, :] - points).sum(axis=3)
+    rows = distances.argmin(axis=1)
+    last = curves.shape[1] - 1
+    nearest = _from(curves, points, rows)
+    # a closed curve has its ends at one place, and the nearest may lie on the other side of it
+    at_end = (rows == 0) | (rows == last)
+    if at_end.any():
+        other = _from(curves, points, np.where(rows == 0, last, np.where(rows == last, 0, rows)))
+        there, here = (np.square(p[2] - points).sum(axis=2) for p in (other, nearest))
+        nearer = at_end & (there < here)
+        first, z, ends = (np.where(nearer, other[k], nearest[k]) for k in (0, 1, 3))
+        nearest = first, z, np.where(nearer[..., None], other[2], nearest[2]), ends
+    return nearest
+
+
+def _powers(z: Floats, order: int) -> Floats:
+    """Derivatives of an order of the powers of z, of as many as a polynomial has."""
+    factors = np.ones(NODES)
+    for step in range(order):
+        factors = factors * (POWERS - step)
+    return np.asarray(factors * z[..., None] ** np.maximum(POWERS - order, 0))
+
+
+def _from(curves: Floats, points: Floats, rows: NDArray[np.intp]) -> CurvePlaces:
+    """The nearest place within a row of given ones (S, points)."""
+    last = curves.shape[1] - 1
+    first = np.clip(rows - NODES // 2 + 1, 0, last - NODES + 1)
+    of = np.arange(len(curves))[:, None, None]
+    around = curves[of, first[:, :, None] + POWERS]
+    coefficients = np.einsum("pn,sknw->skpw", TO_COEFFICIENTS, around)
+    slopes = coefficients[:, :, 1:] * POWERS[1:, None]
+    bends = slopes[:, :, 1:] * POWERS[1:-1, None]
+
+    def at(polynomial: Floats, z: Any) -> Floats:
+        powers = z[..., None] ** np.arange(polynomial.shape[2])
+        return np.asarray(np.einsum("skp,skpw->skw", powers, polynomial))
+
+    middle = rows - first
+    low = (np.maximum(middle - 1, 0) - HALF) / HALF
+    high = (np.minimum(middle + 1, NODES - 1) - HALF) / HALF
+    z: Floats = np.asarray((middle - HALF) / HALF)
+    for _ in range(STEPS):
+        away, slope, bend = at(coefficients, z) - points, at(slopes, z), at(bends, z)
+        down = (away * slope).sum(axis=2)
+        flat = (slope * slope).sum(axis=2)
+        curved = flat + (away * bend).sum(axis=2)
+        steep = np.where(curved > 0.1 * flat, curved, flat)
+        z = np.clip(z - down / np.where(steep > 0.0, steep, 1.0), low, high)
+    row = first + HALF + HALF * z
+    return first, z, at(coefficients, z), (row <= 0.0) | (row >= last)

@@ -12,8 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.arguments import a_whole_number
-from mechkin_cli.fit.measure import TIME, FitModels, FitSlopes, FitValues, deviations, margins_of
-from mechkin_cli.fit.nearest import nearest_places
+from mechkin_cli.fit.measure import (
+    TIME,
+    FitModels,
+    FitSlopes,
+    FitValues,
+    deviations,
+    margins_of,
+    nearest_places,
+)
 from mechkin_cli.fit.request import FitConstraint, Target, request
 from mechkin_cli.fit.search import Measured, Progress, SearchResult, best_of
 from mechkin_cli.mechanism import response_problem
