@@ -28,7 +28,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.tables import run_parameter
 from mechkin_cli.tolerances import FIT_AT_BOUND, FIT_HELD
-from mechkin_cli.variants import vary, with_parameters
+from mechkin_cli.variants import read_by, vary, with_parameters
 from mechkin_cli.verdict import SWEEP, Status, has_solution
 
 if TYPE_CHECKING:
@@ -366,10 +366,7 @@ def _slopes_text(measured: Measured, why: dict[str, str]) -> str:
 
 def _names(problem: Problem, texts: list[str]) -> list[str]:
     """Quantities that expressions read."""
-    known = problem.quantities()
-    names = (n for text in texts for n in sorted(problem.definitions.parse(text).names))
-    whole = (name if name in known else name.rpartition(".")[0] for name in names)
-    return [name for name in dict.fromkeys(whole) if name in known]
+    return read_by(map(problem.definitions.parse, texts), problem.quantities())
 
 
 def fit_of(

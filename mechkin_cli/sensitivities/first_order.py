@@ -23,7 +23,7 @@ from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.tables import row_texts
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
-from mechkin_cli.variants import sample_of
+from mechkin_cli.variants import read_by, sample_of
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ class Sensitivities(Listed):
             for text, expression in self._expressions.items()
         }
         known = problem.quantities()
-        asked = [n for e in self._expressions.values() for n in used_names(e, known)]
+        asked = read_by(self._expressions.values(), known)
         # the shifted runs are not kept: they hold what no process can hand to another
         shifting = Shifting(analysis, chosen, asked)
         self._scales = {name: shifting.scale_of(name) for name in self.parameters}
@@ -378,12 +378,6 @@ class Sensitivities(Listed):
                 self._slopes[text, name] = str(reason)
 
 
-def used_names(expression: Expression, known: Any) -> list[str]:
-    """The quantities that an expression reads, without components."""
-    names = [n if n in known else n.rpartition(".")[0] for n in expression.names]
-    return [name for name in dict.fromkeys(names) if name in known]
-
-
 def expression_of(analysis: Analysis, text: str) -> Expression:
     """What a column's label or an expression stands for.
 
@@ -419,7 +413,7 @@ def sensitivities(
     read: list[str] = []
     for text in names:
         if which == SWEEP and text.strip() not in row_texts(which):
-            read += used_names(_parsed(model, problem, which, text), known)
+            read += read_by([_parsed(model, problem, which, text)], known)
     if which == SWEEP:
         analysis = model.analyze(read, tables=[], threads=threads)
     else:

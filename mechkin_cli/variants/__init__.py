@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         Reduce as Reduce,
         Variants as Variants,
         expressions_of as expressions_of,
+        read_by as read_by,
         sample_of as sample_of,
         swept_parameter as swept_parameter,
     )
@@ -35,7 +36,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "design": "file_values one_value parameter_values varied_design with_parameters",
         "many": "vary",
-        "result": "Reduce Variants expressions_of sample_of swept_parameter",
+        "result": "Reduce Variants expressions_of read_by sample_of swept_parameter",
         "samples": "Draws draws has_scipy needs_scipy normal uniform",
     },
 )

@@ -40,6 +40,7 @@ from mechkin_cli.variants.result import (
     Variants,
     expressions_of,
     need_places,
+    read_by,
     reduced,
     reductions_of,
     sample_of,
@@ -90,16 +91,9 @@ class _SweepRun:
             self.asked = {**asked, self.along: parse(self.along)}
         self.rows = self.problem.motion.rows
         known = self.problem.quantities()
-        used = (name for expression in self.asked.values() for name in sorted(expression.names))
-        own = (name for name in map(self._quantity_of, used) if name is not None)
-        self.read = tuple(read_for(own, known))
+        self.read = tuple(read_for(read_by(self.asked.values(), known), known))
         self.wanted = tuple(known[name] for name in self.read)
         self.errors: dict[int, MechkinError] = {}
-
-    def _quantity_of(self, name: str) -> str | None:
-        if name in self.problem.parameters:
-            return None
-        return name if name in self.problem.quantities() else name.rpartition(".")[0]
 
     def run(
         self, values: Floats
@@ -417,9 +411,7 @@ class _ResponseRun:
     ) -> None:
         known = result.problem.quantities()
         parse = result.problem.definitions.parse
-        used = (name for text in self.asked for name in sorted(parse(text).names))
-        whole = (name if name in known else name.rpartition(".")[0] for name in used)
-        read(result, [name for name in dict.fromkeys(whole) if name in known])
+        read(result, read_by(map(parse, self.asked), known))
         analysis = Analysis(model, (), result, self.name)
         rows = min(result.rows, self.rows)
         self.codes[number] = int(Status.ok)

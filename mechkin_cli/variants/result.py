@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -139,6 +139,13 @@ def expressions_of(quantities: Iterable[str] | None, problem: Problem) -> dict[s
             shortened = text[:LONGEST_NAME]
             raise UsageError(f"{shortened}: {error.message[:LONGEST_MESSAGE]}; {hint}") from None
     return found
+
+
+def read_by(expressions: Iterable[Expression], known: Container[str]) -> list[str]:
+    """The quantities among those `known` that expressions read, without components."""
+    names = (name for expression in expressions for name in sorted(expression.names))
+    whole = (name if name in known else name.rpartition(".")[0] for name in names)
+    return [name for name in dict.fromkeys(whole) if name in known]
 
 
 def reductions_of(asked: Iterable[str], reduce: Any) -> dict[str, Reductions]:
