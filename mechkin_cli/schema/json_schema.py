@@ -18,10 +18,10 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
 from mechkin_cli.schema.base import (
-    Barred,
     DimensionRule,
     FormChoice,
     Limits,
+    Rule,
     SchemaName,
     Section,
     ShortForm,
@@ -32,6 +32,7 @@ from mechkin_cli.schema.base import (
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
+from mechkin_cli.schema.study import StudyFile
 from mechkin_cli.schema.validation import RESERVED
 
 Schema = dict[str, Any]
@@ -361,8 +362,6 @@ def study_schema() -> Schema:
 
     It cannot say what the mechanism has, nor that something varies and what is drawn is counted.
     """
-    from mechkin_cli.schema.study import StudyFile
-
     definitions: Schema = {}
     top: Schema = {"$schema": DIALECT, "$id": STUDY_IDENTITY, "title": "mechkin study file, form 1"}
     return _whole(top | _section(StudyFile, definitions), definitions)
@@ -498,8 +497,8 @@ def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Sche
         elif isinstance(rule, DimensionRule):
             definitions[rule.schema_name] = schema | _dimension(rule)
             schema = {"$ref": f"#/$defs/{rule.schema_name}"}
-        elif isinstance(rule, Barred):
-            schema |= {"not": {"pattern": rule.pattern}}
+        elif isinstance(rule, Rule) and rule.barred is not None:
+            schema |= {"not": {"pattern": rule.barred}}
         elif isinstance(rule, ShortForm):
             schema = {"anyOf": [_short_form(rule), schema]}
     return schema

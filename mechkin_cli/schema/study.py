@@ -5,21 +5,19 @@ from typing import Annotated, Any, ClassVar, Literal
 from mechkin_cli.schema.base import (
     NOTHING,
     STEP_OR_COUNT,
-    After,
-    BeforeRule,
     FormChoice,
-    Key,
     Limits,
+    Rule,
     SchemaName,
     Section,
     ShortForm,
     Shown,
-    Tag,
     check_step_or_count,
     each_once,
     refuse,
 )
 from mechkin_cli.schema.scalars import AnyDimension, CsvPath, Name, RunName, Text, WholeNumber
+from mechkin_cli.schema.validation import validated
 
 MechanismPath = Annotated[
     str,
@@ -37,9 +35,9 @@ class RangeOfValues(Section):
     tag = "(range)"
     editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
-    first: Annotated[AnyDimension, Key("from")]
+    first: AnyDimension
     """First value."""
-    last: Annotated[AnyDimension, Key("to")]
+    last: AnyDimension
     """Value that the last reaches or stays below; with `count` it is the last."""
     step: AnyDimension | None = None
     """Distance between values, its sign does not matter; left out, `count` says it."""
@@ -82,7 +80,7 @@ class Tolerance(Section):
 
     tolerance: Annotated[
         tuple[AnyDimension, ...],
-        BeforeRule(_one_or_more),
+        Rule(_one_or_more, before=True),
         Limits(min_length=1, max_length=2),
         ShortForm(("string", "number"), "plus and minus this"),
     ]
@@ -102,7 +100,7 @@ def _form(value: Any) -> str:
 
 
 Variation = Annotated[
-    Annotated[ListOfValues, Tag("(values)")] | RangeOfValues | Uniform | Normal | Tolerance,
+    Annotated[ListOfValues, "(values)"] | RangeOfValues | Uniform | Normal | Tolerance,
     FormChoice(_form),
 ]
 
@@ -130,14 +128,15 @@ KeptWord = Literal[
 class Kept(Section):
     """A quantity, and what of its rows is kept of every variant."""
 
+    keys: ClassVar[dict[str, str]] = {"words": "as"}
+
     of: AnyDimension
     """A quantity or expression, one number in every row."""
     words: Annotated[
         tuple[KeptWord, ...],
-        Key("as"),
-        BeforeRule(_one_or_more),
+        Rule(_one_or_more, before=True),
         Limits(min_length=1),
-        After(each_once),
+        Rule(each_once),
         ShortForm(("string",), "one of the words: peak"),
     ]
     """`max`, `min`, `peak` (largest magnitude), `range`, `mean`, `rms`, `place_of_max`,
@@ -170,7 +169,7 @@ class StudyFile(Section):
     sample of what is drawn.
     """
 
-    study: Annotated[Literal[1], BeforeRule(_study_number)]
+    study: Annotated[Literal[1], Rule(_study_number, before=True)]
     """Version of the form of studies."""
     mechanism: MechanismPath | None = None
     """The mechanism file; left out, the one that Python gives."""
@@ -211,3 +210,8 @@ class StudyFile(Section):
         if self.sample is not None and not drawn:
             hint = "remove sample:, or write {between: [...]}, {mean, deviation} or {tolerance}"
             raise refuse("needless-key", "nothing in vary: is drawn", hint, "sample")
+
+
+def validate_study(data: object) -> StudyFile:
+    """The study that plain data describes; raises `InvalidDataError`."""
+    return validated(StudyFile, data)

@@ -4,9 +4,8 @@ from typing import Annotated, Any, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    After,
-    BeforeRule,
     Limits,
+    Rule,
     SchemaName,
     Section,
     ShortForm,
@@ -49,11 +48,13 @@ def _with_kind(value: Any) -> Any:
 
 
 KindOrShape = Annotated[
-    ShapeOfLink, BeforeRule(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
+    ShapeOfLink,
+    Rule(_with_kind, before=True),
+    ShortForm(("string",), "the kind alone", f"^({KINDS})$"),
 ]
 
 
-Names = Annotated[tuple[Name, ...], After(each_once)]
+Names = Annotated[tuple[Name, ...], Rule(each_once)]
 
 
 class ViewSection(Section):
