@@ -44,13 +44,16 @@ def unknown_key(key: str, context: dict[str, Any]) -> Wording:
     return "unknown-key", f"there is no key {shown(key)} here", hint
 
 
-def unknown_word(node: Node | None, known: list[str], advice: str | None = None) -> Wording:
-    """A value is not a known word of its place; `advice` is what to do instead."""
+def unknown_word(node: Node | None, known: list[str], context: dict[str, Any]) -> Wording:
+    """A value is not a known word of its place; `context` may hold the `noun` for what stands there
+    and `advice` on what to write instead."""
     if not isinstance(node, ScalarNode):
         text = f"expected one of the words {', '.join(known)}, found {kind(node)}"
         return "unknown-word", text, None
-    hint = advice or choice_hint(node.text, known, "words")
-    return "unknown-word", f"{shown(node.text)} is not one of the words allowed here", hint
+    hint = context.get("advice") or choice_hint(node.text, known, "words")
+    noun = context.get("noun")
+    expected = f"a known {noun}" if noun else "one of the words allowed here"
+    return "unknown-word", f"{shown(node.text)} is not {expected}", hint
 
 
 def wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
@@ -220,7 +223,7 @@ def _unknown_word(
             words = missing_key(key, {"purpose": f"one of {', '.join(known)}"})
             return _at_path(words, path, document.place(path))
         path = (*path, key)
-    words = unknown_word(document.node(path), known, context.get("advice"))
+    words = unknown_word(document.node(path), known, context)
     return _at_path(words, path, document.place(path))
 
 

@@ -45,7 +45,11 @@ def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict
         expected, hint = FORMS[error["ctx"]["pattern"]]
         return error | {"ctx": {"expected": expected, "hint": hint}}
     if error["type"] == "unknown-word":
-        return _with_advice(error, data, form)
+        noun = _noun(error["loc"], error["ctx"]["key"])
+        return _with_advice(error | {"ctx": error["ctx"] | {"noun": noun}}, data, form)
+    if error["type"] == "literal_error":
+        key = next((step for step in reversed(error["loc"]) if isinstance(step, str)), "")
+        return error | {"ctx": error["ctx"] | {"noun": _noun(error["loc"], key)}}
     if error["type"] not in ("missing", "extra_forbidden"):
         return error
     *mapping, key = error["loc"]
@@ -59,6 +63,22 @@ def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict
         "purpose": descriptions.get(str(key)),
     }
     return error | {"ctx": context}
+
+
+_TYPES = {"joints": "joint", "chain": "joint", "loads": "load", "balances": "balance"}
+_NOUNS = {
+    "law": "law",
+    "interpolation": "interpolation",
+    "direction": "direction",
+    "distribution": "distribution",
+    "method": "sampling method",
+    "kind": "shape",
+}
+
+
+def _noun(location: tuple[str | int, ...], key: str) -> str | None:
+    """What the word at a key is; None where there is no plain noun for it."""
+    return f"{_TYPES[str(location[0])]} type" if key == "type" else _NOUNS.get(key)
 
 
 def _with_advice(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
