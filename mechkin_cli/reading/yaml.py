@@ -33,12 +33,8 @@ from mechkin_cli.reading.text import (
 )
 from mechkin_cli.record import NamedTuple, dataclass, field
 
-
-class Mark(NamedTuple):
-    """A position in a text; line and column count from 1, columns in characters."""
-
-    line: int
-    column: int
+Mark: TypeAlias = tuple[int, int]
+"""A position in a text: line and column, from 1, columns in characters."""
 
 
 class Style(Enum):
@@ -65,17 +61,11 @@ class Sequence(NamedTuple):
     mark: Mark
 
 
-class Entry(NamedTuple):
-    """One `key: value` of a mapping; `mark` is the first character of the key."""
-
-    mark: Mark
-    value: Node
-
-
 class Mapping(NamedTuple):
-    """Keys and values in the order written; `mark` is the brace, in block style the first key."""
+    """Keys in the order written, each with the place of its first character and its value; `mark`
+    is the brace, in block style the first key."""
 
-    entries: dict[str, Entry]
+    entries: dict[str, tuple[Mark, Node]]
     mark: Mark
 
 
@@ -86,14 +76,14 @@ PlainData: TypeAlias = "str | list[PlainData] | dict[str, PlainData]"
 def plain_data(node: Node) -> PlainData:
     """The node as dict, list and str, without places.
 
-    >>> plain_data(Sequence((ScalarNode("1", Mark(1, 2), Style.PLAIN),), Mark(1, 1)))
+    >>> plain_data(Sequence((ScalarNode("1", (1, 2), Style.PLAIN),), (1, 1)))
     ['1']
     """
     if isinstance(node, ScalarNode):
         return node.text
     if isinstance(node, Sequence):
         return [plain_data(item) for item in node.items]
-    return {key: plain_data(entry.value) for key, entry in node.entries.items()}
+    return {key: plain_data(value) for key, (_, value) in node.entries.items()}
 
 
 # The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes. Inside braces
@@ -141,7 +131,7 @@ def is_empty(node: Node) -> bool:
 
 def cut_at_comma(scalar: ScalarNode, line: str, file: str) -> Diagnostic:
     """The message for a cut off scalar; `line` is the source line on which it starts."""
-    whole = _whole_expression(line, scalar.mark.column - 1)
+    whole = _whole_expression(line, scalar.mark[1] - 1)
     hint = f'put it in quotes: "{whole}"' if whole else "put the whole expression in quotes"
     return Diagnostic(
         "comma-without-quotes",
@@ -282,7 +272,7 @@ class TreeBuilder:
     def _mapping(self, collection: _Open) -> Mapping:
         children = collection.children
         pairs = list(zip(children[::2], children[1::2], strict=True))
-        entries: dict[str, Entry] = {}
+        entries: dict[str, tuple[Mark, Node]] = {}
         index = 0
         while index < len(pairs):
             key, value = pairs[index]
@@ -294,11 +284,11 @@ class TreeBuilder:
             if self._accepts_key(key, entries) and isinstance(key, ScalarNode):
                 if is_empty(value):
                     self._report_empty(key)
-                entries[key.text] = Entry(key.mark, value)
+                entries[key.text] = key.mark, value
             index += 1 + pieces
         return Mapping(entries, collection.mark)
 
-    def _accepts_key(self, key: Node, entries: dict[str, Entry]) -> bool:
+    def _accepts_key(self, key: Node, entries: dict[str, tuple[Mark, Node]]) -> bool:
         if not isinstance(key, ScalarNode):
             hint = "write key: value; put an expression with brackets in quotes"
             self._report("bad-key", "a list or mapping cannot be a key", key.mark, hint)
@@ -309,8 +299,8 @@ class TreeBuilder:
             self._report("merge-key", "merge keys (<<) are not used here", key.mark, hint)
         elif key.text in entries:
             message = f"the key '{shortened(key.text)}' is written twice in one mapping"
-            first = entries[key.text].mark
-            hint = f"keep one of them; the first is at line {first.line}, column {first.column}"
+            (line, column), _ = entries[key.text]
+            hint = f"keep one of them; the first is at line {line}, column {column}"
             self._report("duplicate-key", message, key.mark, hint)
         else:
             return True
@@ -344,7 +334,7 @@ class TreeBuilder:
             self._report("bad-character", message, mark_of(event), hint)
 
     def _cut_at_comma(self, scalar: ScalarNode) -> Diagnostic:
-        return cut_at_comma(scalar, self._lines[scalar.mark.line - 1], self._file)
+        return cut_at_comma(scalar, self._lines[scalar.mark[0] - 1], self._file)
 
     def _report(self, code: str, message: str, mark: Mark, hint: str) -> None:
         place = Place(self._file, *mark)
@@ -354,7 +344,7 @@ class TreeBuilder:
 def mark_of(event: events.Event) -> Mark:
     """Where an event starts."""
     start = event.start_mark
-    return Mark(start.line + 1, start.column + 1) if start else Mark(1, 1)
+    return (start.line + 1, start.column + 1) if start else (1, 1)
 
 
 FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
