@@ -31,7 +31,7 @@ from mechkin_cli.reading.text import (
     lines_of,
     shortened,
 )
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import NamedTuple
 
 Mark: TypeAlias = tuple[int, int]
 """A position in a text: line and column, from 1, columns in characters."""
@@ -180,19 +180,13 @@ class TooDeepError(Exception):
     """Raised when the nesting exceeds `MOST_LEVELS`; the diagnostic exists already."""
 
 
-@dataclass(slots=True)
-class _Open:
-    mark: Mark
-    is_mapping: bool
-    children: list[Node] = field(default_factory=list)
-
-
 class TreeBuilder:
     """Takes the events of one document in order; afterwards `root` is its node.
 
     `diagnostics` has every problem that is not one of YAML's grammar; without any the tree is
-    valid. A stack holds the lists and mappings that are still open; their children are gathered in
-    one flat list (key, value, key, value for a mapping) and judged when the collection closes.
+    valid. A stack holds the lists and mappings that are still open, with their marks and whether
+    they are mappings; their children are gathered in one flat list (key, value, key, value for a
+    mapping) and judged when the collection closes.
     Without recursion deep nesting ends in a message and not in a full stack.
     """
 
@@ -201,7 +195,7 @@ class TreeBuilder:
         self.root: Node | None = None
         self._lines = lines
         self._file = file
-        self._stack: list[_Open] = []
+        self._stack: list[tuple[Mark, bool, list[Node]]] = []
         self._last: Node | None = None
 
     def take(self, event: events.Event) -> None:
@@ -217,11 +211,9 @@ class TreeBuilder:
             self._check_properties(event)
             self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
         elif isinstance(event, (events.SequenceEndEvent, events.MappingEndEvent)):
-            collection = self._stack.pop()
-            node = (
-                self._mapping(collection) if collection.is_mapping else self._sequence(collection)
-            )
-            self._add(node)
+            mark, is_mapping, children = self._stack.pop()
+            close = self._mapping if is_mapping else self._sequence
+            self._add(close(children, mark))
         elif isinstance(event, events.AliasEvent):
             hint = _WRITE_OUT.format("*")
             self._report("alias", "aliases (*) are not used here", mark_of(event), hint)
@@ -242,17 +234,16 @@ class TreeBuilder:
                 "format 1 needs no such depth; check the brackets",
             )
             raise TooDeepError
-        self._stack.append(_Open(mark, is_mapping))
+        self._stack.append((mark, is_mapping, []))
 
     def _add(self, node: Node) -> None:
         self._last = node
         if self._stack:
-            self._stack[-1].children.append(node)
+            self._stack[-1][2].append(node)
         else:
             self.root = node
 
-    def _sequence(self, collection: _Open) -> Sequence:
-        items = collection.children
+    def _sequence(self, items: list[Node], mark: Mark) -> Sequence:
         index = 0
         while index < len(items):
             item = items[index]
@@ -260,17 +251,16 @@ class TreeBuilder:
                 # the parsers disagree on the place of nothing, but not on that of the list
                 hint = "write a value or remove the item"
                 message = f"item {index + 1} of this list is empty"
-                self._report("empty-value", message, collection.mark, hint)
+                self._report("empty-value", message, mark, hint)
             elif isinstance(item, ScalarNode) and is_cut_off(item):
                 pieces = pieces_of_sequence(items, index)
                 if pieces:
                     self.diagnostics.append(self._cut_at_comma(item))
                 index += pieces
             index += 1
-        return Sequence(tuple(items), collection.mark)
+        return Sequence(tuple(items), mark)
 
-    def _mapping(self, collection: _Open) -> Mapping:
-        children = collection.children
+    def _mapping(self, children: list[Node], mark: Mark) -> Mapping:
         pairs = list(zip(children[::2], children[1::2], strict=True))
         entries: dict[str, tuple[Mark, Node]] = {}
         index = 0
@@ -286,7 +276,7 @@ class TreeBuilder:
                     self._report_empty(key)
                 entries[key.text] = key.mark, value
             index += 1 + pieces
-        return Mapping(entries, collection.mark)
+        return Mapping(entries, mark)
 
     def _accepts_key(self, key: Node, entries: dict[str, tuple[Mark, Node]]) -> bool:
         if not isinstance(key, ScalarNode):

@@ -200,11 +200,14 @@ class Rule(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """For editors, of a scalar: the JSON types it may have, a help text, examples."""
+    """For editors: the JSON types that a scalar may have, a help text, examples, a pattern. With
+    `is_short` it is the scalar that may be written instead of a section."""
 
     types: tuple[str, ...]
     description: str
     examples: tuple[str | float, ...] = ()
+    pattern: str | None = None
+    is_short: bool = False
 
 
 class DimensionRule(NamedTuple):
@@ -214,14 +217,6 @@ class DimensionRule(NamedTuple):
     name: str
     examples: tuple[str | float, ...]
     schema_name: str
-
-
-class ShortForm(NamedTuple):
-    """For editors: a section may be written as a single value."""
-
-    types: tuple[str, ...]
-    description: str
-    pattern: str | None = None
 
 
 def field_descriptions(section: type[Section]) -> dict[str, str]:

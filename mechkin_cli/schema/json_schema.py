@@ -24,7 +24,6 @@ from mechkin_cli.schema.base import (
     Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     field_descriptions,
     fields_of,
@@ -493,14 +492,12 @@ def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Sche
         elif isinstance(rule, Limits):
             schema |= _limits(rule, schema)
         elif isinstance(rule, Shown):
-            schema |= _shown(rule)
+            schema = {"anyOf": [_shown(rule), schema]} if rule.is_short else schema | _shown(rule)
         elif isinstance(rule, DimensionRule):
             definitions[rule.schema_name] = schema | _dimension(rule)
             schema = {"$ref": f"#/$defs/{rule.schema_name}"}
         elif isinstance(rule, Rule) and rule.barred is not None:
             schema |= {"not": {"pattern": rule.barred}}
-        elif isinstance(rule, ShortForm):
-            schema = {"anyOf": [_short_form(rule), schema]}
     return schema
 
 
@@ -518,6 +515,7 @@ def _limits(limits: Limits, schema: Schema) -> Schema:
 
 def _shown(rule: Shown) -> Schema:
     shown = {"type": _types(rule.types), "description": rule.description}
+    shown |= {"pattern": rule.pattern} if rule.pattern else {}
     return shown | ({"examples": list(rule.examples)} if rule.examples else {})
 
 
@@ -526,11 +524,6 @@ def _dimension(rule: DimensionRule) -> Schema:
     not_finite = {"type": "string", "pattern": _NOT_A_NUMBER}
     shown = _shown(Shown(("number", "string"), text, rule.examples))
     return shown | {"minLength": 1, "not": not_finite}
-
-
-def _short_form(rule: ShortForm) -> Schema:
-    form = {"type": _types(rule.types), "description": rule.description}
-    return form | ({"pattern": rule.pattern} if rule.pattern else {})
 
 
 def _types(names: tuple[str, ...]) -> str | list[str]:

@@ -10,7 +10,6 @@ from mechkin_cli.schema.base import (
     Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     check_step_or_count,
     each_once,
@@ -82,7 +81,7 @@ class Tolerance(Section):
         tuple[AnyDimension, ...],
         Rule(_one_or_more, before=True),
         Limits(min_length=1, max_length=2),
-        ShortForm(("string", "number"), "plus and minus this"),
+        Shown(("string", "number"), "plus and minus this", is_short=True),
     ]
     """How far: one number for plus and minus, or both limits, as [-0.1 mm, 0.2 mm]."""
     distribution: Literal["uniform", "normal"] = "uniform"
@@ -137,7 +136,7 @@ class Kept(Section):
         Rule(_one_or_more, before=True),
         Limits(min_length=1),
         Rule(each_once),
-        ShortForm(("string",), "one of the words: peak"),
+        Shown(("string",), "one of the words: peak", is_short=True),
     ]
     """`max`, `min`, `peak` (largest magnitude), `range`, `mean`, `rms`, `place_of_max`,
     `place_of_min`, `place_of_peak` (where along the run), or `value` with `at`."""

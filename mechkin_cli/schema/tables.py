@@ -12,7 +12,6 @@ from mechkin_cli.schema.base import (
     Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     by_word,
     each_once,
@@ -68,7 +67,7 @@ def _in_full(value: Any) -> Any:
 ColumnOrText = Annotated[
     Column,
     Rule(_in_full, before=True),
-    ShortForm(("string", "number"), "label and value in one: O1.theta"),
+    Shown(("string", "number"), "label and value in one: O1.theta", is_short=True),
 ]
 
 
@@ -103,7 +102,7 @@ _PATH_ALONE = "a CSV file with the printed values, relative to the mechanism fil
 PathOrPublishedValues = Annotated[
     PublishedValues,
     Rule(_with_file, before=True),
-    ShortForm(("string",), _PATH_ALONE, CSV_PATH_PATTERN),
+    Shown(("string",), _PATH_ALONE, pattern=CSV_PATH_PATTERN, is_short=True),
 ]
 
 _TAKEN = {

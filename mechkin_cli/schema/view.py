@@ -8,7 +8,6 @@ from mechkin_cli.schema.base import (
     Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     each_once,
 )
@@ -50,7 +49,7 @@ def _with_kind(value: Any) -> Any:
 KindOrShape = Annotated[
     ShapeOfLink,
     Rule(_with_kind, before=True),
-    ShortForm(("string",), "the kind alone", f"^({KINDS})$"),
+    Shown(("string",), "the kind alone", pattern=f"^({KINDS})$", is_short=True),
 ]
 
 
