@@ -120,17 +120,22 @@ def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
     return names
 
 
-STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
-"""For editors, of sections with `from` and `to`."""
+class Spaced(Section):
+    """A section with `from`, `to` and one of `step` and `count`, which counts the `counted`."""
 
+    editors: ClassVar[dict[str, Any]] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
+    counted = "rows"
+    if TYPE_CHECKING:
+        step: Any
+        count: Any
 
-def check_step_or_count(step: Any, count: Any, what: str) -> None:
-    """Raises an error unless exactly one of the two is there; `what` they count is for messages."""
-    if step is None and count is None:
-        raise refuse("missing-key", "from and to need a step or a count", "add one of them")
-    if step is not None and count is not None:
-        text = f"step and count both define the number of {what}"
-        raise refuse("two-choices", text, "keep one of them", "count")
+    def check(self) -> None:
+        """Exactly one of step and count."""
+        if self.step is None and self.count is None:
+            raise refuse("missing-key", "from and to need a step or a count", "add one of them")
+        if self.step is not None and self.count is not None:
+            text = f"step and count both define the number of {self.counted}"
+            raise refuse("two-choices", text, "keep one of them", "count")
 
 
 def tagged(member: Any) -> tuple[str, Any, tuple[Any, ...]]:

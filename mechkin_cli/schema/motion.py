@@ -9,11 +9,10 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    STEP_OR_COUNT,
     Limits,
     Section,
+    Spaced,
     by_word,
-    check_step_or_count,
     refuse,
 )
 from mechkin_cli.schema.scalars import (
@@ -137,11 +136,10 @@ class WithRates(Section):
     """Third rate of the input, the same in every row."""
 
 
-class SweptInput(WithRates):
+class SweptInput(Spaced, WithRates):
     """An input that runs from one value to another in equal steps."""
 
     tag = "(swept)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
     first: AngleOrLength
     """Value of the first row."""
@@ -151,10 +149,6 @@ class SweptInput(WithRates):
     """Distance between rows, its sign does not matter; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows, the last of which is exactly `to`; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "rows")
 
 
 class ListedInput(WithRates):
@@ -188,11 +182,10 @@ class FollowingInput(Section):
     of its own; left out, `own`."""
 
 
-class TimeSection(Section):
+class TimeSection(Spaced):
     """The moments of the rows, where the inputs are given by laws."""
 
     tag = "(spaced)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
     first: Duration
     """First moment."""
@@ -202,10 +195,6 @@ class TimeSection(Section):
     """Time between rows; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "rows")
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:

@@ -4,14 +4,13 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    STEP_OR_COUNT,
     FormChoice,
     Limits,
     Rule,
     SchemaName,
     Section,
     Shown,
-    check_step_or_count,
+    Spaced,
     each_once,
     refuse,
 )
@@ -28,11 +27,11 @@ MechanismPath = Annotated[
 ListOfValues = Annotated[tuple[AnyDimension, ...], Limits(min_length=1)]
 
 
-class RangeOfValues(Section):
+class RangeOfValues(Spaced):
     """Values from one to another in equal steps."""
 
     tag = "(range)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
+    counted = "values"
 
     first: AnyDimension
     """First value."""
@@ -42,10 +41,6 @@ class RangeOfValues(Section):
     """Distance between values, its sign does not matter; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of values; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "values")
 
 
 class Uniform(Section):
