@@ -8,6 +8,7 @@ All others raise TypeError, never a rounded answer.
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
@@ -47,7 +48,6 @@ class DoubleDoubles(Recorded):
     """Unevaluated sums high + low, |low| <= ulp(high)/2; both of one shape, float64."""
 
     __slots__ = ("high", "low")
-    __hash__ = None  # type: ignore[assignment]
     is_row = True
 
     def __init__(self, high: Any, low: Any = 0.0) -> None:
@@ -137,23 +137,9 @@ class DoubleDoubles(Recorded):
         """The operation on a float first."""
         return exactly(first).apply(operation, self)
 
-    def __lt__(self, other: Any) -> Any:
-        return np.less(self, other)
-
-    def __le__(self, other: Any) -> Any:
-        return np.less_equal(self, other)
-
-    def __gt__(self, other: Any) -> Any:
-        return np.greater(self, other)
-
-    def __ge__(self, other: Any) -> Any:
-        return np.greater_equal(self, other)
-
-    def __eq__(self, other: Any) -> Any:
-        return np.equal(self, other)
-
-    def __ne__(self, other: Any) -> Any:
-        return np.not_equal(self, other)
+    def compared(self, relation: Callable[[Any, Any], Any], other: Any) -> Any:
+        """Whether a relation holds, row by row."""
+        return _RELATIONS[relation](self, other)
 
 
 def exactly(value: Any) -> DoubleDoubles:
@@ -268,6 +254,15 @@ def _whole(a: DoubleDoubles) -> DoubleDoubles:
     return DoubleDoubles(*fast_two_sum(high, low))
 
 
+_RELATIONS: dict[Any, Callable[..., Any]] = {
+    operator.lt: np.less,
+    operator.le: np.less_equal,
+    operator.gt: np.greater,
+    operator.ge: np.greater_equal,
+    operator.eq: np.equal,
+    operator.ne: np.not_equal,
+}
+
 _UFUNCS: dict[Any, Callable[..., Any]] = {
     np.add: _sum,
     np.subtract: _difference,
@@ -376,7 +371,6 @@ class Bounded(Recorded):
     both of one shape or of shapes that broadcast."""
 
     __slots__ = ("bound", "value")
-    __hash__ = None  # type: ignore[assignment]
     __array_ufunc__ = None
     is_row = True
 
@@ -400,23 +394,9 @@ class Bounded(Recorded):
         """The operation on a float first."""
         return bounded(first).apply(operation, self)
 
-    def __lt__(self, other: Any) -> Any:
-        return BoundedComparison(self.value < bounded(other).value)
-
-    def __le__(self, other: Any) -> Any:
-        return BoundedComparison(self.value <= bounded(other).value)
-
-    def __gt__(self, other: Any) -> Any:
-        return BoundedComparison(self.value > bounded(other).value)
-
-    def __ge__(self, other: Any) -> Any:
-        return BoundedComparison(self.value >= bounded(other).value)
-
-    def __eq__(self, other: Any) -> Any:
-        return BoundedComparison(self.value == bounded(other).value)
-
-    def __ne__(self, other: Any) -> Any:
-        return BoundedComparison(self.value != bounded(other).value)
+    def compared(self, relation: Callable[[Any, Any], Any], other: Any) -> BoundedComparison:
+        """Whether a relation holds of the values, row by row."""
+        return BoundedComparison(relation(self.value, bounded(other).value))
 
 
 def bounded(value: Any) -> Bounded:
