@@ -2,7 +2,7 @@
 carry them.
 
 A diagnostic names the place, what was measured, the limit and what to do. Unusable input raises
-`InvalidFile`; what happens to a row of a table is data (`mechkin_cli.status`), never an exception.
+`InvalidFile`; what happens to a row of a table is data (`mechkin_cli.verdict`), never an exception.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A double that knows the number it was rounded from.
 
 Arithmetic on it is that of its double and gives plain doubles; only where a computation is written
-down on a tape of exact numbers is the number itself taken (`tape.exact_recorder`).
+down on a tape of exact numbers is the number itself taken (`tape.exact`).
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ from mechkin_cli.schema import (
     WithRates,
 )
 from mechkin_cli.show import Floats
-from mechkin_cli.tape import ExactRows, JetNumber, Picked, as_recorded, cos, orders_of, sin
+from mechkin_cli.tape import ExactRows, JetNumber, as_recorded, cos, orders_of, sin
 from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def exact_moments(
         return _spaced(fields, over, path, section, TIME)
     texts = enumerate(section.values)
     listed = [fields.written((*path, "values", i), text, TIME) for i, text in texts]
-    return over.given(Picked(listed, np.arange(over.rows)))
+    return over.picked(listed, np.arange(over.rows))
 
 
 def start_motion(fields: Fields, response: ResponseProblem, recorder: ExactRecorder) -> ExactMotion:
@@ -212,7 +212,7 @@ class _Reading:
                     self.fields.written((*path, "values", i), text, dimension) for i, text in texts
                 ]
                 which = np.arange(self.rows.rows) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
-                value = self.rows.given(Picked(listed, np.resize(which, self.rows.rows)))
+                value = self.rows.picked(listed, np.resize(which, self.rows.rows))
             else:
                 value = _spaced(self.fields, self.rows, path, item, dimension)
             rates = [
@@ -330,7 +330,7 @@ class _Reading:
         piece = np.clip(piece, 0, knots.size - 1)
 
         def picked(numbers: Any) -> Any:
-            return self.rows.given(Picked(list(numbers), piece))
+            return self.rows.picked(list(numbers), piece)
 
         y, b, c, d = (picked(row) for row in curve.coefficients)
         u = self.moment - picked(table[0])

@@ -21,18 +21,15 @@ if TYPE_CHECKING:
         Definitions as Definitions,
         Differentiate as Differentiate,
         Expression as Expression,
-        exact_literal as exact_literal,
-        parse as parse,
-    )
-    from mechkin_cli.expressions.fields import (
         Move as Move,
         constant as constant,
         constant_in_file_units as constant_in_file_units,
         evaluate_parameters as evaluate_parameters,
+        exact_literal as exact_literal,
         in_order as in_order,
         literal as literal,
-        lookup as lookup,
         number_of as number_of,
+        parse as parse,
         scalar as scalar,
     )
     from mechkin_cli.expressions.grammar import parse_nodes as parse_nodes
@@ -48,6 +45,7 @@ if TYPE_CHECKING:
         UnknownName as UnknownName,
         Value as Value,
         Vector as Vector,
+        lookup as lookup,
         numbers_read_by as numbers_read_by,
     )
 
@@ -55,11 +53,10 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "differentiation": "Jet constant_jet derivatives differentiated",
-        "expression": "Definitions Differentiate Expression exact_literal parse",
-        "fields": "Move constant constant_in_file_units evaluate_parameters in_order literal "
-        "lookup number_of scalar",
+        "expression": "Definitions Differentiate Expression Move constant constant_in_file_units "
+        "evaluate_parameters exact_literal in_order literal number_of parse scalar",
         "grammar": "parse_nodes",
         "quantity": "ExpressionError MAX_QUOTED Name Node NumberNode OperationNode Quantity "
-        "Resolve UnknownName Value Vector numbers_read_by",
+        "Resolve UnknownName Value Vector lookup numbers_read_by",
     },
 )

@@ -25,13 +25,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import operations
-from mechkin_cli.expressions.expression import Expression, refuse_large
+from mechkin_cli.expressions.expression import Expression
 from mechkin_cli.expressions.grammar import parse_nodes
 from mechkin_cli.expressions.quantity import (
     Name,
     Node,
     NumberNode,
     OperationNode,
+    refuse_large,
 )
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import SLOPES

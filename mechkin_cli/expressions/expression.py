@@ -1,4 +1,4 @@
-"""A parsed expression and its evaluation.
+"""A parsed expression and its evaluation; the fields, parameters and definitions of a file.
 
 Example:
     >>> from mechkin_cli.expressions import Quantity, parse
@@ -9,8 +9,11 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+import math
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -24,9 +27,10 @@ from mechkin_cli.expressions.functions import (
     of_infinite,
     without_new,
 )
-from mechkin_cli.expressions.grammar import VANISHES, WRITE_ZERO, parse_nodes
+from mechkin_cli.expressions.grammar import VANISHES, WRITE_ZERO, parse_nodes, vanishes
 from mechkin_cli.expressions.quantity import (
-    MAX_EXPANDED,
+    MAX_CHAIN,
+    MAX_ERRORS,
     MAX_EXPONENT,
     MAX_QUOTED,
     ExpressionError,
@@ -37,14 +41,18 @@ from mechkin_cli.expressions.quantity import (
     OperationNode,
     Quantity,
     Resolve,
+    Scalar,
     Site,
     UnknownName,
     Vector,
     components,
+    lookup,
+    read,
+    refuse_large,
 )
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import DoubleDoubles, Recorded, as_recorded, is_finite, is_number, plain
-from mechkin_cli.units import UNITS, UnitError, UnitSystem, conversion
+from mechkin_cli.units import UNITS, Dimension, UnitError, UnitSystem, conversion
 
 _NAMES_ARE = "names are those of parameters and directions, and of quantities such as J.theta"
 
@@ -255,11 +263,11 @@ def _look_up(node: Name, resolve: Resolve) -> Quantity:
 def _resolved(name: str, resolve: Resolve) -> Quantity:
     """The quantity of a name, its constants as plain floats."""
     quantity = resolve(name)
-    if not isinstance(quantity.value, Vector):
-        number = quantity.value if isinstance(quantity.value, np.ndarray) else plain(quantity.value)
-        return quantity if number is quantity.value else replace(quantity, value=number)
-    parts = [p if isinstance(p, np.ndarray) else plain(p) for p in quantity.value.components]
-    return replace(quantity, value=Vector(*parts))
+    value = quantity.value
+    parts = [p if isinstance(p, np.ndarray) else plain(p) for p in components(value)]
+    if isinstance(value, Vector):
+        return replace(quantity, value=Vector(*parts))
+    return quantity if parts[0] is value else replace(quantity, value=parts[0])
 
 
 def _exists(name: str, resolve: Resolve) -> bool:
@@ -268,6 +276,231 @@ def _exists(name: str, resolve: Resolve) -> bool:
     except (KeyError, ExpressionError):
         return False
     return True
+
+
+def exact_literal(number: NumberNode) -> Quantity:
+    """The number of a text in double-double, so that functions of it have all their digits, too."""
+    exact = PI if number.text == "pi" else Fraction(number.text)
+    if number.unit is None:
+        return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
+    value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
+    return Quantity(value, number.unit.dimension)
+
+
+# Scalar fields and parameters of a file. A text that is only a number takes the field's unit;
+# anything else must have the field's dimension. Parameters may use one another in any order.
+
+_LITERAL = re.compile(
+    r"[ \t]*([-+]?)[ \t]*((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)[ \t]*"
+)
+_LONGEST_LITERAL = 400
+
+_NO_VALUES: Mapping[str, Quantity] = MappingProxyType({})
+_NO_NAMES = lookup(_NO_VALUES)
+
+
+def literal(text: str) -> float | None:
+    """The value of a text that is only a finite number with an optional sign; otherwise None.
+
+    Example:
+        >>> literal("010"), literal("-1e-3"), literal("0.5 in")
+        (10.0, -0.001, None)
+    """
+    match = _LITERAL.fullmatch(text) if len(text) <= _LONGEST_LITERAL else None
+    if match is None:
+        return None
+    value = float(match[1] + match[2])
+    return value if math.isfinite(value) and not vanishes(match[2], value) else None
+
+
+def number_of(text: str) -> float | None:
+    """As `literal`, for a number to compute with: it may be a recorded one (`written`)."""
+    value = literal(text)
+    return value if value is None else read(value, "".join(text.split()))
+
+
+def constant(
+    text: str, dimension: Dimension, units: UnitSystem, resolve: Resolve = _NO_NAMES
+) -> float:
+    """The SI value of a field.
+
+    Raises:
+        ExpressionError: the text is no expression, or its value is not one finite number of the
+            field's dimension.
+    """
+    bare = number_of(text)
+    if bare is None:
+        return _evaluated(parse(text), dimension, units, resolve)
+    value = units.to_si(bare, dimension)
+    if not is_finite(value):
+        raise ExpressionError(f"{text.strip()} {units.label(dimension)} is too large", 0)
+    if value == 0.0 and bare != 0.0:
+        raise ExpressionError(f"{text.strip()} {units.label(dimension)} {VANISHES}", 0, WRITE_ZERO)
+    return value
+
+
+def constant_in_file_units(
+    text: str, dimension: Dimension, units: UnitSystem, resolve: Resolve = _NO_NAMES
+) -> float:
+    """The value of a field in the file's units; a number is returned exactly as written.
+
+    A literal with a unit is converted by the exact ratio of the units, so `192 deg` in a file in
+    degrees is 192 and `5 cm` in a file in mm is 50.
+
+    Raises:
+        ExpressionError: as `constant`.
+    """
+    bare = number_of(text)
+    if bare is not None:
+        return bare
+    expression = parse(text)
+    value = _evaluated(expression, dimension, units, resolve)
+    number = expression.number
+    if number is None or number.unit is None:
+        return units.from_si(value, dimension)
+    try:
+        return conversion(number.unit.factor / units.unit(dimension).factor).apply(number.value)
+    except UnitError as error:
+        raise ExpressionError(error.message, number.offset, error.hint) from None
+
+
+def _evaluated(
+    expression: Expression, dimension: Dimension, units: UnitSystem, resolve: Resolve
+) -> float:
+    value = scalar(expression, dimension, units, resolve)
+    if not is_number(value):
+        raise ExpressionError(
+            "expected a constant, found a value per row", _start(expression), "use parameters only"
+        )
+    return value
+
+
+def scalar(
+    expression: Expression, dimension: Dimension, units: UnitSystem, resolve: Resolve
+) -> Scalar:
+    """The SI value of an expression that must be one number (per row) of a dimension.
+
+    Raises:
+        ExpressionError: a vector, another dimension, or as `Expression.evaluate`.
+    """
+    quantity = expression.evaluate(resolve, units)
+    value = quantity.value
+    start = _start(expression)
+    if isinstance(value, Vector):
+        raise ExpressionError(
+            f"expected {dimension.phrase}, found {quantity.phrase}",
+            start,
+            "take a component with .x, .y or .z, or norm(...)",
+        )
+    if not quantity.dimension.compatible(dimension):
+        operand = Operand(quantity, start, expression.number)
+        hint = Site("", start, units).unit_hint(operand, dimension)
+        raise ExpressionError(f"expected {dimension.phrase}, found {quantity.phrase}", start, hint)
+    return value
+
+
+def _start(expression: Expression) -> int:
+    return len(expression.text) - len(expression.text.lstrip())
+
+
+Move = Callable[[str, Quantity], Quantity]
+"""Changes the value of a parameter, of which it takes name and value."""
+
+
+def evaluate_parameters(
+    texts: Mapping[str, str],
+    units: UnitSystem,
+    errors: list[ExpressionError] | None = None,
+    given: Mapping[str, Quantity] = _NO_VALUES,
+    moved: Move | None = None,
+) -> dict[str, Quantity]:
+    """The values of all parameters in SI, in the order of `texts`.
+
+    A number without unit is dimensionless. With a list `errors`, every independent error (up to
+    a little over `MAX_ERRORS`) is appended to it and the parameters that cannot be evaluated are
+    left out; without one the first is raised. `given` are values instead of some texts. `moved`
+    changes each value, and so those that depend on it.
+
+    Raises:
+        ExpressionError: a text that is no constant, or parameters that depend on themselves; `name`
+            is the parameter, `offset` counts within its text.
+    """
+    all_errors: list[ExpressionError] = [] if errors is None else errors
+    before = len(all_errors)
+    expressions = {}
+    for name, text in texts.items():
+        if name not in given:
+            try:
+                expressions[name] = parse(text)
+            except ExpressionError as error:
+                error.name = name
+                all_errors.append(error)
+    needs = {
+        name: sorted({used.partition(".")[0] for used in expression.names})
+        for name, expression in expressions.items()
+    }
+    move = moved or (lambda _, value: value)
+    values = {name: move(name, value) for name, value in given.items()}
+    resolve = lookup(values, texts)
+    for name in in_order(expressions, needs, all_errors):
+        if len(all_errors) - before > MAX_ERRORS:
+            break
+        if any(need in texts and need not in values for need in needs[name]):
+            continue
+        try:
+            expressions[name].reject_ambiguous_units(texts.__contains__)
+            quantity = expressions[name].evaluate(resolve, units)
+            if isinstance(quantity.value, Vector):
+                hint = "take a component with .x, .y or .z"
+                raise ExpressionError("a parameter is one number, not a vector", 0, hint)
+            values[name] = move(name, quantity)
+        except ExpressionError as error:
+            error.name = name
+            all_errors.append(error)
+    if errors is None and len(all_errors) > before:
+        raise all_errors[before]
+    return {name: values[name] for name in texts if name in values}
+
+
+def in_order(
+    expressions: Mapping[str, Expression],
+    needs: Mapping[str, list[str]],
+    errors: list[ExpressionError],
+    kind: str = "parameters",
+) -> list[str]:
+    """Names with what they need before them; the members of a cycle are left out with one error,
+    in which `kind` is the noun for them."""
+    order: list[str] = []
+    finished: set[str] = set()
+    for root in expressions:
+        path: dict[str, Iterator[str]] = {} if root in finished else {root: iter(needs[root])}
+        while path:
+            name = next(reversed(path))
+            need = next(path[name], None)
+            if need is None:
+                del path[name]
+                if name not in finished:
+                    finished.add(name)
+                    order.append(name)
+            elif need in path:
+                chain = list(path)[list(path).index(need) :]
+                errors.append(_cycle(expressions[name], chain, kind))
+                finished.update(chain)
+            elif need in expressions and need not in finished:
+                path[need] = iter(needs[need])
+    return order
+
+
+def _cycle(expression: Expression, chain: list[str], kind: str) -> ExpressionError:
+    shown = chain
+    if len(chain) > MAX_CHAIN:
+        shown = [*chain[: MAX_CHAIN - 1], f"... ({len(chain)} names)"]
+    return ExpressionError(
+        f"{kind} depend on themselves: {' -> '.join([*shown, chain[0]])}",
+        expression.offset_of(chain[0]),
+        "give one of them a value" if kind == "parameters" else "write one without the others",
+        chain[-1],
+    )
 
 
 Differentiate = Callable[[tuple[Node, ...], Name, int], tuple[Node, ...]]
@@ -354,23 +587,3 @@ class Definitions:
 def _at(offset: int, nodes: Sequence[Node]) -> list[Node]:
     """The nodes with one offset; those that have it are shared, as most are in a chain of names."""
     return [node if node.offset == offset else node._replace(offset=offset) for node in nodes]
-
-
-def exact_literal(number: NumberNode) -> Quantity:
-    """The number of a text in double-double, so that functions of it have all their digits, too."""
-    exact = PI if number.text == "pi" else Fraction(number.text)
-    if number.unit is None:
-        return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
-    value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)
-    return Quantity(value, number.unit.dimension)
-
-
-def refuse_large(size: int, offset: int) -> None:
-    """Refuses an expression that has grown too large.
-
-    Raises:
-        ExpressionError: it has more nodes than the limit.
-    """
-    if size > MAX_EXPANDED:
-        text = f"with the quantities in it the expression has more than {MAX_EXPANDED} parts"
-        raise ExpressionError(text, offset, "use fewer of them in one another")

@@ -6,7 +6,7 @@ scalars in one frame, in a plane two. The same operations serve all.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
@@ -127,6 +127,17 @@ MAX_QUOTED = 40
 """Characters of the user's text repeated in a message."""
 
 
+def refuse_large(size: int, offset: int) -> None:
+    """Refuses an expression that has grown too large.
+
+    Raises:
+        ExpressionError: it has more nodes than the limit.
+    """
+    if size > MAX_EXPANDED:
+        text = f"with the quantities in it the expression has more than {MAX_EXPANDED} parts"
+        raise ExpressionError(text, offset, "use fewer of them in one another")
+
+
 # Nodes of a parsed expression are in postfix order, operands before their operation: evaluation
 # is a loop over a stack, so long sums need no recursion.
 
@@ -164,6 +175,19 @@ Node = NumberNode | Name | OperationNode
 
 Resolve = Callable[[str], Quantity]
 """A quantity by its dotted name; raises `UnknownName` for a name that it does not have."""
+
+
+def lookup(quantities: Mapping[str, Quantity], known: Iterable[str] | None = None) -> Resolve:
+    """A resolver for the names of a mapping; its hints for others are names of `known` (None: of
+    the mapping)."""
+
+    def resolve(name: str) -> Quantity:
+        try:
+            return quantities[name]
+        except KeyError:
+            raise UnknownName(name, quantities if known is None else known) from None
+
+    return resolve
 
 
 @dataclass(frozen=True, slots=True, eq=False)

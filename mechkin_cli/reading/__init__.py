@@ -15,12 +15,10 @@ if TYPE_CHECKING:
         KeyPath as KeyPath,
         document_from_data as document_from_data,
         document_from_text as document_from_text,
-        read_document as read_document,
-    )
-    from mechkin_cli.reading.messages import (
         explain as explain,
         is_mechanism as is_mechanism,
         is_study as is_study,
+        read_document as read_document,
     )
     from mechkin_cli.reading.text import (
         MOST_BYTES as MOST_BYTES,
@@ -35,8 +33,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "document": "Document KeyPath document_from_data document_from_text read_document",
-        "messages": "explain is_mechanism is_study",
+        "document": "Document KeyPath document_from_data document_from_text explain is_mechanism "
+        "is_study read_document",
         "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
         "yaml": "CORRECT_FIRST in_order",
     },

@@ -1,4 +1,5 @@
-"""One mechanism file as plain data, and the place in its text of every value and character.
+"""One mechanism file as plain data, the place in its text of every value and character, and what is
+wrong with them in words.
 
 A path leads into the file from the top, by keys and by the numbers of list items from 0:
 `("tables", 0, "columns", 2, "value")`.
@@ -13,12 +14,12 @@ from __future__ import annotations
 import collections.abc
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from math import isfinite
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, cast
 
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError, nearest
 from mechkin_cli.reading.text import (
@@ -29,9 +30,9 @@ from mechkin_cli.reading.text import (
     check_size,
     lines_of,
     read_text,
+    shortened,
 )
 from mechkin_cli.reading.yaml import (
-    Entry,
     Mapping,
     Mark,
     Node,
@@ -39,6 +40,7 @@ from mechkin_cli.reading.yaml import (
     ScalarNode,
     Sequence,
     Style,
+    in_order,
     parse,
     plain_data,
 )
@@ -79,7 +81,7 @@ class Document:
     @cached_property
     def data(self) -> dict[str, PlainData]:
         """The file as dict, list and str, with the overrides in place."""
-        data = {key: plain_data(entry.value) for key, entry in self.root.entries.items()}
+        data = {key: plain_data(value) for key, (_, value) in self.root.entries.items()}
         parameters = data.get(_PARAMETERS)
         if isinstance(parameters, dict):
             data[_PARAMETERS] = parameters | self.overrides
@@ -87,20 +89,20 @@ class Document:
 
     def node(self, path: KeyPath) -> Node | None:
         """The node at a path, None where there is nothing; overrides count."""
-        entry, depth = self._reach(path)
-        return entry.value if depth == len(path) else None
+        _, node, depth = self._reach(path)
+        return node if depth == len(path) else None
 
     def place(self, path: KeyPath) -> Place:
         """Where the value at a path stands; for a missing one, its nearest ancestor that exists."""
         if override := self._override(path):
             return self._outside(override, 0)
-        entry, depth = self._reach(path)
-        return self._at(path[:depth], entry.value.mark)
+        _, node, depth = self._reach(path)
+        return self._at(path[:depth], node.mark)
 
     def key_place(self, path: KeyPath) -> Place:
         """Where the key at a path stands (of a list item, the item); missing keys as in `place`."""
-        entry, depth = self._reach(path)
-        return self._at(path, entry.mark) if depth == len(path) else self.place(path)
+        mark, _, depth = self._reach(path)
+        return self._at(path, mark) if depth == len(path) else self.place(path)
 
     def place_in(self, path: KeyPath, offset: int) -> Place:
         """Where the character `offset` (from 0) of the scalar at a path, or at its nearest ancestor
@@ -108,7 +110,7 @@ class Document:
         if override := self._override(path):
             return self._outside(override, offset)
         # a number that stands for several has one text
-        node = self._reach(path)[0].value
+        _, node, _ = self._reach(path)
         if not isinstance(node, ScalarNode):
             return self.place(path)
         if self.is_data:
@@ -120,8 +122,8 @@ class Document:
 
         Raises `UsageError` for a name that the file does not define.
         """
-        entry = self.root.entries.get(_PARAMETERS)
-        defined = entry.value.entries if entry and isinstance(entry.value, Mapping) else {}
+        section = self.node((_PARAMETERS,))
+        defined = section.entries if isinstance(section, Mapping) else {}
         for name, value in parameters.items():
             if name not in defined:
                 raise UsageError(_unknown_parameter(name, list(defined), self.file))
@@ -133,18 +135,18 @@ class Document:
     def _lines(self) -> list[str]:
         return lines_of(self.text)
 
-    def _reach(self, path: KeyPath) -> tuple[Entry, int]:
-        """The last entry on the path that exists, and the number of steps that lead to it."""
-        entry = Entry(self.root.mark, self.root)
+    def _reach(self, path: KeyPath) -> tuple[Mark, Node, int]:
+        """The last node on the path that exists, with the place of its key, and the number of steps
+        that lead to it."""
+        mark, node = self.root.mark, cast(Node, self.root)
         for depth, step in enumerate(path):
-            child = _child(entry.value, step)
+            child = _child(node, step)
             if child is None:
-                return entry, depth
-            entry = child
+                return mark, node, depth
+            mark, node = child
         if override := self._override(path):
-            text = self.overrides[override]
-            entry = Entry(entry.mark, ScalarNode(text, entry.value.mark, Style.PLAIN))
-        return entry, len(path)
+            node = ScalarNode(self.overrides[override], node.mark, Style.PLAIN)
+        return mark, node, len(path)
 
     def _at(self, path: KeyPath, mark: Mark) -> Place:
         if self.is_data:
@@ -186,11 +188,11 @@ def key_words(path: KeyPath) -> str:
     return words.removeprefix(".") or "the top"
 
 
-def _child(node: Node, step: str | int) -> Entry | None:
+def _child(node: Node, step: str | int) -> tuple[Mark, Node] | None:
     if isinstance(node, Mapping) and isinstance(step, str):
         return node.entries.get(step)
     if isinstance(node, Sequence) and isinstance(step, int) and 0 <= step < len(node.items):
-        return Entry(node.items[step].mark, node.items[step])
+        return node.items[step].mark, node.items[step]
     return None
 
 
@@ -213,8 +215,8 @@ def source_mark(scalar: ScalarNode, offset: int, lines: list[str]) -> Mark:
 
     An offset behind the last character gives the place just behind it.
 
-    >>> source_mark(ScalarNode("a''b", Mark(1, 4), Style.DOUBLE_QUOTED), 3, ["x: \\"a''b\\""])
-    Mark(line=1, column=8)
+    >>> source_mark(ScalarNode("a''b", (1, 4), Style.DOUBLE_QUOTED), 3, ["x: \\"a''b\\""])
+    (1, 8)
     """
     visible_before = sum(not character.isspace() for character in scalar.text[:offset])
     if visible_before == 0 and scalar.style is Style.PLAIN:
@@ -225,7 +227,7 @@ def source_mark(scalar: ScalarNode, offset: int, lines: list[str]) -> Mark:
         if at_blank and seen + 1 == visible_before:
             before = scalar.text[:offset]
             blanks = len(before) - len(before.rstrip())
-            return Mark(mark.line, mark.column + width + blanks)
+            return mark[0], mark[1] + width + blanks
         if not at_blank and seen == visible_before:
             return mark
         position = mark
@@ -245,7 +247,7 @@ def _visible(scalar: ScalarNode, lines: list[str]) -> Iterator[tuple[Mark, int]]
         while index < len(source):
             width = _width(source, index, scalar.style)
             if _is_visible(source, index, scalar.style):
-                yield Mark(number, index + 1), width
+                yield (number, index + 1), width
             index += width
 
 
@@ -348,3 +350,247 @@ class _DataReader:
     def _refused(self, path: KeyPath, what: str, hint: str) -> InvalidFile:
         place = Place(f"{self._name} at {key_words(path)}", 0, 1)
         return InvalidFile([Diagnostic("bad-value", "error", what, place, hint=hint)])
+
+
+# Errors of a validation as diagnostics with file, line and column. An error is a plain record:
+# `type` (its kind, by the names that validators use: `missing`, `too_short`, ...), `loc` (the path
+# to the value), `ctx` (numbers and words for the message). Three conventions let a rule refer to
+# another place than that of the validator: a step of `loc` in parentheses that is not a key of the
+# file names one of several forms; a last step `[key]` means the key itself and not its value;
+# `ctx["at"]` leads on from `loc`, `ctx["text"]` is the whole message, `ctx["hint"]` what to do.
+# Messages name what is written in the file, never the validator's types.
+
+_KEY = "[key]"
+
+
+def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagnostic]:
+    """One diagnostic per error, in the order of the file."""
+    errors = list(errors)
+    # keys that are missing only because they are misspelt, which has its own message
+    misspelt = set()
+    for error in errors:
+        if error["type"] == "extra_forbidden":
+            *mapping, key = error["loc"]
+            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
+            misspelt.add((*mapping, close or ""))
+    diagnostics = (
+        _diagnostic(error, document)
+        for error in errors
+        if not _is_echo(error, document)
+        and not (error["type"] == "missing" and tuple(error["loc"]) in misspelt)
+    )
+    return in_order(list(dict.fromkeys(diagnostics)))
+
+
+def _is_echo(error: dict[str, Any], document: Document) -> bool:
+    """Whether a list counts as too short only because some of its items were refused."""
+    if error["type"] != "too_short":
+        return False
+    node = document.node(_path(error["loc"], document))
+    if isinstance(node, ScalarNode):
+        return True  # it stands for a list of one
+    if isinstance(node, Mapping):
+        return bool(error["ctx"].get("field_type") != "Dictionary")  # so does this
+    return isinstance(node, Sequence) and len(node.items) >= error["ctx"]["min_length"]
+
+
+def _path(steps: Iterable[str | int], document: Document) -> KeyPath:
+    """The steps without the names of forms, and without the number of an item where one value
+    stands for a list; a key in parentheses stays."""
+    path: KeyPath = ()
+    for step in steps:
+        if isinstance(step, int) and isinstance(document.node(path), ScalarNode | Mapping):
+            continue
+        is_form = str(step).startswith("(") and document.node((*path, step)) is None
+        path = path if is_form else (*path, step)
+    return path
+
+
+def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
+    context = error.get("ctx") or {}
+    path = _path([*error["loc"], *context.get("at", ())], document)
+    code = str(error["type"])
+    if code == "missing":
+        words = _missing_key(str(path[-1]), context)
+        return _at_path(words, path[:-1], document.place(path[:-1]))
+    if code == "extra_forbidden":
+        words = _unknown_key(str(path[-1]), context)
+        return _at_path(words, path[:-1], document.key_place(path))
+    if code in ("unknown-word", "literal_error"):
+        return _unknown_word(code, path, context, document)
+    at_key = path[-1:] == (_KEY,)
+    path = path[:-1] if at_key else path
+    place = document.key_place(path) if at_key else document.place(path)
+    if "text" in context:
+        text = str(context["text"])
+        if text.startswith("expected"):
+            text += f", found {_kind(document.node(path))}"
+        words = code, text, context.get("hint")
+    elif at_key:
+        text = f"{_shown(str(path[-1]))} is not {context.get('expected', 'a key')}"
+        words = "wrong-form", text, context.get("hint")
+    else:
+        words = _wrong_value(error, document.node(path))
+    return _at_path(words, path[:-1] if at_key else path, place)
+
+
+def _unknown_word(
+    code: str, path: KeyPath, context: dict[str, Any], document: Document
+) -> Diagnostic:
+    if code == "literal_error":
+        known = re.findall(r"'([^']*)'", str(context.get("expected")))
+    else:
+        known = str(context["words"]).split(", ")
+        if not isinstance(document.node(path), Mapping):
+            words = _wrong_value({"type": "model_type"}, document.node(path))
+            return _at_path(words, path, document.place(path))
+        key = str(context["key"])
+        if document.node((*path, key)) is None:
+            words = _missing_key(key, {"purpose": f"one of {', '.join(known)}"})
+            return _at_path(words, path, document.place(path))
+        path = (*path, key)
+    words = _not_a_known_word(document.node(path), known, context)
+    return _at_path(words, path, document.place(path))
+
+
+def _at_path(words: Wording, path: KeyPath, place: Place) -> Diagnostic:
+    where = "".join(f"#{step + 1}" if isinstance(step, int) else f".{step}" for step in path)
+    code, message, hint = words
+    text = f"{where[1:]}: {message}" if where else message
+    return Diagnostic(code, "error", text, place, hint=hint)
+
+
+_LONGEST_LIST = 16
+"""Known words up to this number are listed in a message."""
+
+
+Wording = tuple[str, str, str | None]
+"""The code, message and hint of a diagnostic."""
+
+
+def _missing_key(key: str, context: dict[str, Any]) -> Wording:
+    """A mapping lacks a key; `context` may say the key's `purpose`."""
+    purpose = context.get("purpose")
+    hint = f"add {key}: {_lower_first(purpose)}" if purpose else f"add {key}"
+    return "missing-key", f"the key {key} is missing", hint.rstrip(".")
+
+
+def _unknown_key(key: str, context: dict[str, Any]) -> Wording:
+    """A key is not known; `context` may hold the `known` keys and `advice`."""
+    known = context.get("known") or []
+    hint = context.get("advice") or _choice_hint(key, known, "keys") or "remove it"
+    return "unknown-key", f"there is no key {_shown(key)} here", hint
+
+
+def _not_a_known_word(node: Node | None, known: list[str], context: dict[str, Any]) -> Wording:
+    """A value is not a known word of its place; `context` may hold the `noun` for what stands there
+    and `advice` on what to write instead."""
+    if not isinstance(node, ScalarNode):
+        text = f"expected one of the words {', '.join(known)}, found {_kind(node)}"
+        return "unknown-word", text, None
+    hint = context.get("advice") or _choice_hint(node.text, known, "words")
+    noun = context.get("noun")
+    expected = f"a known {noun}" if noun else "one of the words allowed here"
+    return "unknown-word", f"{_shown(node.text)} is not {expected}", hint
+
+
+def _wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
+    """A value is of the wrong kind, too long, too short, or not of the expected form."""
+    name, context = str(error["type"]), error.get("ctx") or {}
+    if name in ("too_short", "too_long"):
+        return _wrong_length(context, node)
+    if name in _KINDS:
+        expected, hint = _KINDS[name]
+        return "wrong-kind", f"expected {expected}, found {_kind(node)}", hint
+    if name == "string_pattern_mismatch":
+        expected = context.get("expected") or f"of the form {context.get('pattern')}"
+        return "wrong-form", f"{_kind(node)} is not {expected}", context.get("hint")
+    if name in _BOUNDS:
+        key, relation, direction = _BOUNDS[name]
+        limit = context.get(key)
+        message = f"{_kind(node)} is {relation} the limit {limit}"
+        return "out-of-range", message, f"write {limit} or {direction}"
+    return "invalid-value", f"{_kind(node)} cannot stand here", None
+
+
+def _choice_hint(word: str, known: list[str], what: str) -> str | None:
+    """'did you mean ...?' for a close word, else the list of known words where it is short."""
+    close = nearest(word, known)
+    if close:
+        return f"did you mean {close}?"
+    if known and len(known) <= _LONGEST_LIST:
+        return f"known {what}: {', '.join(known)}"
+    return None
+
+
+def _kind(node: Node | None) -> str:
+    """The value of a node in words."""
+    if isinstance(node, ScalarNode):
+        return _shown(node.text)
+    if isinstance(node, Sequence):
+        return "an empty list" if not node.items else f"a list of {len(node.items)}"
+    if isinstance(node, Mapping):
+        return "a mapping {key: value}" if node.entries else "an empty mapping"
+    return "nothing"
+
+
+def _shown(text: str) -> str:
+    """A text of the file as messages quote it."""
+    return f"'{shortened(text)}'"
+
+
+_LIST = ("a list [...]", "write it in brackets: [x, y, z]")
+_MAPPING = ("a mapping", "write {key: value}, or key: value on indented lines")
+_KINDS = {
+    "tuple_type": _LIST,
+    "list_type": _LIST,
+    "dict_type": _MAPPING,
+    "model_type": _MAPPING,
+    "model_attributes_type": _MAPPING,
+    "string_type": ("a word", "write a name"),
+}
+_BOUNDS = {
+    "greater_than_equal": ("ge", "below", "more"),
+    "less_than_equal": ("le", "above", "less"),
+}
+
+
+def _wrong_length(context: dict[str, Any], node: Node | None) -> Wording:
+    least, most = context.get("min_length"), context.get("max_length")
+    count = len(node.items) if isinstance(node, Sequence) else context.get("actual_length")
+    if isinstance(node, Mapping):
+        count = len(node.entries)
+    what = "entry" if count == 1 else "entries"
+    limit = f"at least {least}" if most is None else f"at most {most}"
+    is_vector = 3 in (least, most)
+    hint = "a vector has three: [x, y, z]; with plane: xy two" if is_vector else None
+    return "wrong-length", f"found {count} {what}, expected {limit}", hint
+
+
+def _lower_first(text: str) -> str:
+    # an abbreviation stays as it is: "CSV file"
+    return text if text[1:2].isupper() else text[:1].lower() + text[1:]
+
+
+def is_study(document: Document) -> list[Diagnostic]:
+    """One message where a mechanism is needed and the file is a study; none where it is not."""
+    if "study" not in document.data or "format" in document.data:
+        return []
+    text = "this is a study, and a mechanism file is needed"
+    hint = f"run it with mechkin study {document.file}"
+    mechanism = document.data.get("mechanism")
+    if isinstance(mechanism, str):
+        hint += f", or give its mechanism, {mechanism}"
+    return [Diagnostic("a-study", "error", text, document.place(("study",)), hint=hint)]
+
+
+def is_mechanism(document: Document) -> list[Diagnostic]:
+    """One message where a study is needed and the file is a mechanism; none where it is not."""
+    if "format" not in document.data or "study" in document.data:
+        return []
+    text = "this is a mechanism file, and a study is needed"
+    hint = (
+        "write study: 1, mechanism: FILE, vary: {NAME: [VALUES]} and keep: into a file of its own "
+        f"(docs/studies.md), or run this one with mechkin analyze {document.file}"
+    )
+    return [Diagnostic("a-mechanism", "error", text, document.place(("format",)), hint=hint)]

@@ -31,14 +31,10 @@ from mechkin_cli.reading.text import (
     lines_of,
     shortened,
 )
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import NamedTuple
 
-
-class Mark(NamedTuple):
-    """A position in a text; line and column count from 1, columns in characters."""
-
-    line: int
-    column: int
+Mark: TypeAlias = tuple[int, int]
+"""A position in a text: line and column, from 1, columns in characters."""
 
 
 class Style(Enum):
@@ -65,17 +61,11 @@ class Sequence(NamedTuple):
     mark: Mark
 
 
-class Entry(NamedTuple):
-    """One `key: value` of a mapping; `mark` is the first character of the key."""
-
-    mark: Mark
-    value: Node
-
-
 class Mapping(NamedTuple):
-    """Keys and values in the order written; `mark` is the brace, in block style the first key."""
+    """Keys in the order written, each with the place of its first character and its value; `mark`
+    is the brace, in block style the first key."""
 
-    entries: dict[str, Entry]
+    entries: dict[str, tuple[Mark, Node]]
     mark: Mark
 
 
@@ -86,14 +76,14 @@ PlainData: TypeAlias = "str | list[PlainData] | dict[str, PlainData]"
 def plain_data(node: Node) -> PlainData:
     """The node as dict, list and str, without places.
 
-    >>> plain_data(Sequence((ScalarNode("1", Mark(1, 2), Style.PLAIN),), Mark(1, 1)))
+    >>> plain_data(Sequence((ScalarNode("1", (1, 2), Style.PLAIN),), (1, 1)))
     ['1']
     """
     if isinstance(node, ScalarNode):
         return node.text
     if isinstance(node, Sequence):
         return [plain_data(item) for item in node.items]
-    return {key: plain_data(entry.value) for key, entry in node.entries.items()}
+    return {key: plain_data(value) for key, (_, value) in node.entries.items()}
 
 
 # The classic mistake of one-line mappings: `{value: det(a, b, c)}` without quotes. Inside braces
@@ -141,7 +131,7 @@ def is_empty(node: Node) -> bool:
 
 def cut_at_comma(scalar: ScalarNode, line: str, file: str) -> Diagnostic:
     """The message for a cut off scalar; `line` is the source line on which it starts."""
-    whole = _whole_expression(line, scalar.mark.column - 1)
+    whole = _whole_expression(line, scalar.mark[1] - 1)
     hint = f'put it in quotes: "{whole}"' if whole else "put the whole expression in quotes"
     return Diagnostic(
         "comma-without-quotes",
@@ -190,19 +180,13 @@ class TooDeepError(Exception):
     """Raised when the nesting exceeds `MOST_LEVELS`; the diagnostic exists already."""
 
 
-@dataclass(slots=True)
-class _Open:
-    mark: Mark
-    is_mapping: bool
-    children: list[Node] = field(default_factory=list)
-
-
 class TreeBuilder:
     """Takes the events of one document in order; afterwards `root` is its node.
 
     `diagnostics` has every problem that is not one of YAML's grammar; without any the tree is
-    valid. A stack holds the lists and mappings that are still open; their children are gathered in
-    one flat list (key, value, key, value for a mapping) and judged when the collection closes.
+    valid. A stack holds the lists and mappings that are still open, with their marks and whether
+    they are mappings; their children are gathered in one flat list (key, value, key, value for a
+    mapping) and judged when the collection closes.
     Without recursion deep nesting ends in a message and not in a full stack.
     """
 
@@ -211,7 +195,7 @@ class TreeBuilder:
         self.root: Node | None = None
         self._lines = lines
         self._file = file
-        self._stack: list[_Open] = []
+        self._stack: list[tuple[Mark, bool, list[Node]]] = []
         self._last: Node | None = None
 
     def take(self, event: events.Event) -> None:
@@ -227,11 +211,9 @@ class TreeBuilder:
             self._check_properties(event)
             self._open(mark_of(event), isinstance(event, events.MappingStartEvent))
         elif isinstance(event, (events.SequenceEndEvent, events.MappingEndEvent)):
-            collection = self._stack.pop()
-            node = (
-                self._mapping(collection) if collection.is_mapping else self._sequence(collection)
-            )
-            self._add(node)
+            mark, is_mapping, children = self._stack.pop()
+            close = self._mapping if is_mapping else self._sequence
+            self._add(close(children, mark))
         elif isinstance(event, events.AliasEvent):
             hint = _WRITE_OUT.format("*")
             self._report("alias", "aliases (*) are not used here", mark_of(event), hint)
@@ -252,17 +234,16 @@ class TreeBuilder:
                 "format 1 needs no such depth; check the brackets",
             )
             raise TooDeepError
-        self._stack.append(_Open(mark, is_mapping))
+        self._stack.append((mark, is_mapping, []))
 
     def _add(self, node: Node) -> None:
         self._last = node
         if self._stack:
-            self._stack[-1].children.append(node)
+            self._stack[-1][2].append(node)
         else:
             self.root = node
 
-    def _sequence(self, collection: _Open) -> Sequence:
-        items = collection.children
+    def _sequence(self, items: list[Node], mark: Mark) -> Sequence:
         index = 0
         while index < len(items):
             item = items[index]
@@ -270,19 +251,18 @@ class TreeBuilder:
                 # the parsers disagree on the place of nothing, but not on that of the list
                 hint = "write a value or remove the item"
                 message = f"item {index + 1} of this list is empty"
-                self._report("empty-value", message, collection.mark, hint)
+                self._report("empty-value", message, mark, hint)
             elif isinstance(item, ScalarNode) and is_cut_off(item):
                 pieces = pieces_of_sequence(items, index)
                 if pieces:
                     self.diagnostics.append(self._cut_at_comma(item))
                 index += pieces
             index += 1
-        return Sequence(tuple(items), collection.mark)
+        return Sequence(tuple(items), mark)
 
-    def _mapping(self, collection: _Open) -> Mapping:
-        children = collection.children
+    def _mapping(self, children: list[Node], mark: Mark) -> Mapping:
         pairs = list(zip(children[::2], children[1::2], strict=True))
-        entries: dict[str, Entry] = {}
+        entries: dict[str, tuple[Mark, Node]] = {}
         index = 0
         while index < len(pairs):
             key, value = pairs[index]
@@ -294,11 +274,11 @@ class TreeBuilder:
             if self._accepts_key(key, entries) and isinstance(key, ScalarNode):
                 if is_empty(value):
                     self._report_empty(key)
-                entries[key.text] = Entry(key.mark, value)
+                entries[key.text] = key.mark, value
             index += 1 + pieces
-        return Mapping(entries, collection.mark)
+        return Mapping(entries, mark)
 
-    def _accepts_key(self, key: Node, entries: dict[str, Entry]) -> bool:
+    def _accepts_key(self, key: Node, entries: dict[str, tuple[Mark, Node]]) -> bool:
         if not isinstance(key, ScalarNode):
             hint = "write key: value; put an expression with brackets in quotes"
             self._report("bad-key", "a list or mapping cannot be a key", key.mark, hint)
@@ -309,8 +289,8 @@ class TreeBuilder:
             self._report("merge-key", "merge keys (<<) are not used here", key.mark, hint)
         elif key.text in entries:
             message = f"the key '{shortened(key.text)}' is written twice in one mapping"
-            first = entries[key.text].mark
-            hint = f"keep one of them; the first is at line {first.line}, column {first.column}"
+            (line, column), _ = entries[key.text]
+            hint = f"keep one of them; the first is at line {line}, column {column}"
             self._report("duplicate-key", message, key.mark, hint)
         else:
             return True
@@ -344,7 +324,7 @@ class TreeBuilder:
             self._report("bad-character", message, mark_of(event), hint)
 
     def _cut_at_comma(self, scalar: ScalarNode) -> Diagnostic:
-        return cut_at_comma(scalar, self._lines[scalar.mark.line - 1], self._file)
+        return cut_at_comma(scalar, self._lines[scalar.mark[0] - 1], self._file)
 
     def _report(self, code: str, message: str, mark: Mark, hint: str) -> None:
         place = Place(self._file, *mark)
@@ -354,7 +334,7 @@ class TreeBuilder:
 def mark_of(event: events.Event) -> Mark:
     """Where an event starts."""
     start = event.start_mark
-    return Mark(start.line + 1, start.column + 1) if start else Mark(1, 1)
+    return (start.line + 1, start.column + 1) if start else (1, 1)
 
 
 FASTEST_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

@@ -82,12 +82,11 @@ if TYPE_CHECKING:
         PointOfLink as PointOfLink,
         UnitsSection as UnitsSection,
     )
-    from mechkin_cli.schema.study import StudyFile as StudyFile
+    from mechkin_cli.schema.study import StudyFile as StudyFile, validate_study as validate_study
     from mechkin_cli.schema.tables import Coefficients as Coefficients
     from mechkin_cli.schema.validation import (
         InvalidDataError as InvalidDataError,
         validate as validate,
-        validate_study as validate_study,
     )
     from mechkin_cli.schema.view import ShapeOfLink as ShapeOfLink, ViewSection as ViewSection
 
@@ -108,9 +107,9 @@ __getattr__, __dir__ = lazy_names(
         "TableLaw TimeSection WithRates",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
-        "study": "StudyFile",
+        "study": "StudyFile validate_study",
         "tables": "Coefficients",
-        "validation": "InvalidDataError validate validate_study",
+        "validation": "InvalidDataError validate",
         "view": "ShapeOfLink ViewSection",
     },
 )

@@ -1,9 +1,10 @@
 """Sections and the rules of their values; how annotations become validators and help texts.
 
-A section is declared by its annotations: `Annotated[str, BeforeRule(...), ...]`. `validation`
-makes functions of them when the first value of that section is met, so that a run pays only for the
-sections that its file uses, and `validator` finds the errors of a value. Both obey `Limits`,
-`BeforeRule`, `After` and `FormChoice`; the JSON Schema shows them, and the other rules, too.
+A section is declared by its annotations: `Annotated[str, Rule(...), ...]`. `validation` makes
+functions of them when the first value of that section is met, so that a run pays only for the
+sections that its file uses, and `errors` finds the errors of a value. Both obey `Limits`, `Rule`
+and `FormChoice`; the JSON Schema shows them, and the other rules, too. A text in parentheses among
+the rules is the tag of a form that is not a section.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ NOTHING: Any = {}
 class Section:
     """A mapping of the file with fixed keys; frozen.
 
-    The text below a field is its help text. `advice` answers keys that people are likely to try and
+    The text below a field is its help text. `keys` are the keys of fields, by the field's name,
+    where they cannot be names in Python. `advice` answers keys that people are likely to try and
     that the format does not have; `editors` is added to the mapping in the JSON Schema. `tag` names
     the section among several forms of a value: by default its word at `type` or `law`. It starts
     with a parenthesis, which no key does, so that an error's location shows which steps are tags.
@@ -38,6 +40,7 @@ class Section:
         "__pydantic_fields_set__",
         "__pydantic_private__",
     )
+    keys: ClassVar[dict[str, str]] = {"first": "from", "last": "to"}
     advice: ClassVar[dict[str, str]] = {}
     editors: ClassVar[dict[str, Any]] = {}
     tag: ClassVar[str] = ""
@@ -68,12 +71,6 @@ def section_of(kind: type[AnySection], **values: Any) -> AnySection:
     return section
 
 
-class Key(NamedTuple):
-    """The key in the file, where it cannot be the name of a field in Python."""
-
-    key: str
-
-
 class FieldOfSection(NamedTuple):
     """A key of a section: the name of its field, the values it may have, its default."""
 
@@ -95,9 +92,7 @@ def fields_of(section: type[Section]) -> dict[str, FieldOfSection]:
         for name, annotation in get_annotations(model).items():
             if name in Section.__annotations__:
                 continue
-            metadata = getattr(annotation, "__metadata__", ())
-            key = next((item.key for item in metadata if isinstance(item, Key)), name)
-            default = getattr(section, name, _REQUIRED)
+            key, default = section.keys.get(name, name), getattr(section, name, _REQUIRED)
             fields[key] = FieldOfSection(name, annotation, default is _REQUIRED, default)
     _FIELDS[section] = fields
     return fields
@@ -125,30 +120,29 @@ def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
     return names
 
 
-STEP_OR_COUNT: dict[str, Any] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
-"""For editors, of sections with `from` and `to`."""
+class Spaced(Section):
+    """A section with `from`, `to` and one of `step` and `count`, which counts the `counted`."""
 
+    editors: ClassVar[dict[str, Any]] = {"oneOf": [{"required": ["step"]}, {"required": ["count"]}]}
+    counted = "rows"
+    if TYPE_CHECKING:
+        step: Any
+        count: Any
 
-def check_step_or_count(step: Any, count: Any, what: str) -> None:
-    """Raises an error unless exactly one of the two is there; `what` they count is for messages."""
-    if step is None and count is None:
-        raise refuse("missing-key", "from and to need a step or a count", "add one of them")
-    if step is not None and count is not None:
-        text = f"step and count both define the number of {what}"
-        raise refuse("two-choices", text, "keep one of them", "count")
-
-
-class Tag(NamedTuple):
-    """The tag of one form that is not a section."""
-
-    tag: str
+    def check(self) -> None:
+        """Exactly one of step and count."""
+        if self.step is None and self.count is None:
+            raise refuse("missing-key", "from and to need a step or a count", "add one of them")
+        if self.step is not None and self.count is not None:
+            text = f"step and count both define the number of {self.counted}"
+            raise refuse("two-choices", text, "keep one of them", "count")
 
 
 def tagged(member: Any) -> tuple[str, Any, tuple[Any, ...]]:
     """The tag of a form (empty: none), the form, and its rules."""
     form, *rules = get_args(member) if get_origin(member) is Annotated else (member,)
-    tags = [rule.tag for rule in rules if isinstance(rule, Tag)]
-    return (tags[0] if tags else getattr(form, "tag", "")), form, tuple(rules)
+    tag = next((rule for rule in rules if isinstance(rule, str)), getattr(form, "tag", ""))
+    return tag, form, tuple(rules)
 
 
 class FormChoice(NamedTuple):
@@ -201,24 +195,24 @@ class Limits(NamedTuple):
     pattern: str | None = None
 
 
-class BeforeRule(NamedTuple):
-    """A function from the value as written to the value to validate."""
+class Rule(NamedTuple):
+    """A function that returns or refuses the valid value; `before`: one from the value as written
+    to the value to validate. `barred` is a pattern of texts that it refuses, for editors."""
 
     function: Callable[[Any], Any]
-
-
-class After(NamedTuple):
-    """A function that returns or refuses the valid value."""
-
-    function: Callable[[Any], Any]
+    before: bool = False
+    barred: str | None = None
 
 
 class Shown(NamedTuple):
-    """For editors, of a scalar: the JSON types it may have, a help text, examples."""
+    """For editors: the JSON types that a scalar may have, a help text, examples, a pattern. With
+    `is_short` it is the scalar that may be written instead of a section."""
 
     types: tuple[str, ...]
     description: str
     examples: tuple[str | float, ...] = ()
+    pattern: str | None = None
+    is_short: bool = False
 
 
 class DimensionRule(NamedTuple):
@@ -228,20 +222,6 @@ class DimensionRule(NamedTuple):
     name: str
     examples: tuple[str | float, ...]
     schema_name: str
-
-
-class ShortForm(NamedTuple):
-    """For editors: a section may be written as a single value."""
-
-    types: tuple[str, ...]
-    description: str
-    pattern: str | None = None
-
-
-class Barred(NamedTuple):
-    """A pattern that editors refuse; the reader has a rule with words of its own."""
-
-    pattern: str
 
 
 def field_descriptions(section: type[Section]) -> dict[str, str]:

@@ -2,13 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from mechkin_cli.schema.base import (
-    NOTHING,
-    After,
-    BeforeRule,
-    Section,
-    refuse,
-)
+from mechkin_cli.schema.base import NOTHING, Rule, Section, refuse
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
@@ -39,7 +33,7 @@ class AnyFile(Section):
 
     in_plane = False
 
-    format: Annotated[Literal[1], BeforeRule(_format_number)]
+    format: Annotated[Literal[1], Rule(_format_number, before=True)]
     """Version of the file format."""
     name: Text | None = None
     """Name of the mechanism; left out, that of the file."""
@@ -57,11 +51,11 @@ class AnyFile(Section):
     assembly: AssemblySection | None = None
     """Which way of assembling the mechanism is meant; left out, an assembled drawing, else the way
     nearest to it."""
-    responses: Annotated[dict[Name, Response], After(free_run_names)] = NOTHING
+    responses: Annotated[dict[Name, Response], Rule(free_run_names)] = NOTHING
     """Motions under forces, by name; left out, none."""
     actuators: tuple[Coordinate, ...] = ()
     """Where efforts act, at least as many coordinates as freedoms; left out, at the inputs."""
-    tables: Annotated[tuple[Table, ...], After(differing_names)] = ()
+    tables: Annotated[tuple[Table, ...], Rule(differing_names)] = ()
     """The tables a run writes; left out, one table of all coordinates, their rates and efforts."""
     balances: tuple[Balance, ...] = ()
     """Work over a cycle, harmonics and flywheels of the sweep, a table each; left out, none."""
@@ -98,7 +92,7 @@ class MechanismFile(AnyFile):
     """Directions that turn with links, by name; left out, none."""
     loads: tuple[Load, ...] = ()
     """Gravity, forces, torques, springs, dampers and friction; left out, none."""
-    coefficients: Annotated[tuple[Coefficients, ...], After(differing_names)] = ()
+    coefficients: Annotated[tuple[Coefficients, ...], Rule(differing_names)] = ()
     """Tables of the dense system of all reactions at one row, as textbooks write it; left out,
     none."""
     idle: Literal["hold"] | None = None

@@ -18,13 +18,12 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
 from mechkin_cli.schema.base import (
-    Barred,
     DimensionRule,
     FormChoice,
     Limits,
+    Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     field_descriptions,
     fields_of,
@@ -32,6 +31,7 @@ from mechkin_cli.schema.base import (
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
+from mechkin_cli.schema.study import StudyFile
 from mechkin_cli.schema.validation import RESERVED
 
 Schema = dict[str, Any]
@@ -361,8 +361,6 @@ def study_schema() -> Schema:
 
     It cannot say what the mechanism has, nor that something varies and what is drawn is counted.
     """
-    from mechkin_cli.schema.study import StudyFile
-
     definitions: Schema = {}
     top: Schema = {"$schema": DIALECT, "$id": STUDY_IDENTITY, "title": "mechkin study file, form 1"}
     return _whole(top | _section(StudyFile, definitions), definitions)
@@ -494,14 +492,12 @@ def _with_rules(inner: Any, rules: tuple[Any, ...], definitions: Schema) -> Sche
         elif isinstance(rule, Limits):
             schema |= _limits(rule, schema)
         elif isinstance(rule, Shown):
-            schema |= _shown(rule)
+            schema = {"anyOf": [_shown(rule), schema]} if rule.is_short else schema | _shown(rule)
         elif isinstance(rule, DimensionRule):
             definitions[rule.schema_name] = schema | _dimension(rule)
             schema = {"$ref": f"#/$defs/{rule.schema_name}"}
-        elif isinstance(rule, Barred):
-            schema |= {"not": {"pattern": rule.pattern}}
-        elif isinstance(rule, ShortForm):
-            schema = {"anyOf": [_short_form(rule), schema]}
+        elif isinstance(rule, Rule) and rule.barred is not None:
+            schema |= {"not": {"pattern": rule.barred}}
     return schema
 
 
@@ -519,6 +515,7 @@ def _limits(limits: Limits, schema: Schema) -> Schema:
 
 def _shown(rule: Shown) -> Schema:
     shown = {"type": _types(rule.types), "description": rule.description}
+    shown |= {"pattern": rule.pattern} if rule.pattern else {}
     return shown | ({"examples": list(rule.examples)} if rule.examples else {})
 
 
@@ -527,11 +524,6 @@ def _dimension(rule: DimensionRule) -> Schema:
     not_finite = {"type": "string", "pattern": _NOT_A_NUMBER}
     shown = _shown(Shown(("number", "string"), text, rule.examples))
     return shown | {"minLength": 1, "not": not_finite}
-
-
-def _short_form(rule: ShortForm) -> Schema:
-    form = {"type": _types(rule.types), "description": rule.description}
-    return form | ({"pattern": rule.pattern} if rule.pattern else {})
 
 
 def _types(names: tuple[str, ...]) -> str | list[str]:

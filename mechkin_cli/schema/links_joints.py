@@ -7,7 +7,7 @@ place is [x, y, z], or the name of a point.
 
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
-from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, Tag, by_word, refuse
+from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, by_word, refuse
 from mechkin_cli.schema.scalars import (
     Angle,
     DirectionVector,
@@ -109,14 +109,14 @@ PerLink = Annotated[dict[Name, _Vector], Limits(min_length=2, max_length=2)]
 
 _Place = TypeVar("_Place")
 PlaceOrPerLink = Annotated[
-    Annotated[Name, Tag("(name)")]
-    | Annotated[_Vector, Tag("(vector)")]
-    | Annotated[PerLink[_Place], Tag("(per link)")],
+    Annotated[Name, "(name)"]
+    | Annotated[_Vector, "(vector)"]
+    | Annotated[PerLink[_Place], "(per link)"],
     FormChoice(_place_or_per_link),
 ]
 """A place as a vector or by its name, or one place for each link."""
 DirectionOrPerLink = Annotated[
-    Annotated[_Vector, Tag("(vector)")] | Annotated[PerLink[_Vector], Tag("(per link)")],
+    Annotated[_Vector, "(vector)"] | Annotated[PerLink[_Vector], "(per link)"],
     FormChoice(_vector_or_per_link),
 ]
 """A direction, or one for each link."""

@@ -5,7 +5,7 @@ A value may be an expression of coordinates, their rates and `time`, or `{table:
 
 from typing import Annotated, Any, Literal, TypeVar
 
-from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, Tag, by_word, refuse
+from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, by_word, refuse
 from mechkin_cli.schema.scalars import (
     AccelerationVector,
     Angle,
@@ -46,7 +46,7 @@ def _expression_or_table(value: Any) -> str:
 
 _Expression = TypeVar("_Expression")
 OrTable = Annotated[
-    Annotated[_Expression, Tag("(expression)")] | TableValue, FormChoice(_expression_or_table)
+    Annotated[_Expression, "(expression)"] | TableValue, FormChoice(_expression_or_table)
 ]
 """An expression, or a table of its values."""
 
@@ -63,8 +63,7 @@ def standard_or_vector(value: Any) -> str:
 
 
 FreeFall = Annotated[
-    Annotated[AccelerationVector, Tag("(vector)")]
-    | Annotated[Literal["standard"], Tag("(standard)")],
+    Annotated[AccelerationVector, "(vector)"] | Annotated[Literal["standard"], "(standard)"],
     FormChoice(standard_or_vector),
     SchemaName("FreeFall"),
 ]
@@ -222,7 +221,7 @@ def _number_or_falling(value: Any) -> str:
 
 
 Coefficient = Annotated[
-    Annotated[Dimensionless, Tag("(number)")] | FallingCoefficient,
+    Annotated[Dimensionless, "(number)"] | FallingCoefficient,
     FormChoice(_number_or_falling),
     SchemaName("Coefficient"),
 ]

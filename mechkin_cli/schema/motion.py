@@ -9,12 +9,10 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    STEP_OR_COUNT,
-    Key,
     Limits,
     Section,
+    Spaced,
     by_word,
-    check_step_or_count,
     refuse,
 )
 from mechkin_cli.schema.scalars import (
@@ -76,9 +74,9 @@ class Harmonic(_Rise):
     """x = from + (to - from) * (1 - cos(pi*u))/2, with u from 0 to 1 over the duration."""
 
     law: Literal["harmonic"]
-    first: Annotated[AngleOrLength, Key("from")]
+    first: AngleOrLength
     """Value before the rise."""
-    last: Annotated[AngleOrLength, Key("to")]
+    last: AngleOrLength
     """Value after the rise."""
 
 
@@ -86,9 +84,9 @@ class Cycloidal(_Rise):
     """x = from + (to - from) * (u - sin(2*pi*u)/(2*pi)), with u from 0 to 1 over the duration."""
 
     law: Literal["cycloidal"]
-    first: Annotated[AngleOrLength, Key("from")]
+    first: AngleOrLength
     """Value before the rise."""
-    last: Annotated[AngleOrLength, Key("to")]
+    last: AngleOrLength
     """Value after the rise."""
 
 
@@ -138,24 +136,19 @@ class WithRates(Section):
     """Third rate of the input, the same in every row."""
 
 
-class SweptInput(WithRates):
+class SweptInput(Spaced, WithRates):
     """An input that runs from one value to another in equal steps."""
 
     tag = "(swept)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
-    first: Annotated[AngleOrLength, Key("from")]
+    first: AngleOrLength
     """Value of the first row."""
-    last: Annotated[AngleOrLength, Key("to")]
+    last: AngleOrLength
     """Value that the last row reaches or stays below."""
     step: AngleOrLength | None = None
     """Distance between rows, its sign does not matter; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows, the last of which is exactly `to`; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "rows")
 
 
 class ListedInput(WithRates):
@@ -180,32 +173,28 @@ class FollowingInput(Section):
     """An input that follows others; its rates follow from the expression by the chain rule."""
 
     tag = "(following)"
+    keys: ClassVar[dict[str, str]] = {"value": "with"}
 
-    value: Annotated[AnyDimension, Key("with")]
+    value: AnyDimension
     """An expression of other inputs, and of `time` where there is one: `2*O1.theta`."""
     drive: Literal["own", "tie"] | None = None
     """`tie`: the motors of the inputs that it follows move it, too; `own`: it has a motor
     of its own; left out, `own`."""
 
 
-class TimeSection(Section):
+class TimeSection(Spaced):
     """The moments of the rows, where the inputs are given by laws."""
 
     tag = "(spaced)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
 
-    first: Annotated[Duration, Key("from")]
+    first: Duration
     """First moment."""
-    last: Annotated[Duration, Key("to")]
+    last: Duration
     """Last moment."""
     step: Duration | None = None
     """Time between rows; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of rows; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "rows")
 
 
 def _tag(mapping: dict[str, Any]) -> str | None:

@@ -8,12 +8,11 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    BeforeRule,
     FormChoice,
     Limits,
+    Rule,
     SchemaName,
     Section,
-    Tag,
     by_word,
     refuse,
 )
@@ -77,10 +76,10 @@ def _about_normal(value: Any) -> Any:
 
 _TWO: Final = Limits(min_length=2, max_length=2)
 PlaneVector = Annotated[
-    tuple[Length, ...], _TWO, BeforeRule(_two_numbers), SchemaName("PlaneVector")
+    tuple[Length, ...], _TWO, Rule(_two_numbers, before=True), SchemaName("PlaneVector")
 ]
 PlaneDirection = Annotated[
-    tuple[AnyDimension, ...], _TWO, BeforeRule(_two_numbers), SchemaName("PlaneDirection")
+    tuple[AnyDimension, ...], _TWO, Rule(_two_numbers, before=True), SchemaName("PlaneDirection")
 ]
 PlaneNamedOrGiven = Annotated[NamedOr[PlaneVector], SchemaName("PlaneNamedOrGiven")]
 PlanePoint = Annotated[PlaceOrPerLink[PlaneVector, PlaneNamedOrGiven], SchemaName("PlanePoint")]
@@ -93,7 +92,7 @@ class PlaneLink(BodyWithMass):
     center_of_mass: PlaneNamedOrGiven | None = None
     """Mass centre in the home drawing, [x, y] or the name of a point of the link; left out, the
     link has no mass."""
-    inertia: Annotated[Inertia, BeforeRule(_about_normal)] | None = None
+    inertia: Annotated[Inertia, Rule(_about_normal, before=True)] | None = None
     """Moment of inertia about the mass centre, about the plane's normal; left out, zero."""
 
 
@@ -178,9 +177,9 @@ class PlaneGravity(InRuns):
     type: Literal["gravity"]
     g: Annotated[
         Annotated[
-            Annotated[tuple[Acceleration, ...], _TWO, BeforeRule(_two_numbers)], Tag("(vector)")
+            Annotated[tuple[Acceleration, ...], _TWO, Rule(_two_numbers, before=True)], "(vector)"
         ]
-        | Annotated[Literal["standard"], Tag("(standard)")],
+        | Annotated[Literal["standard"], "(standard)"],
         FormChoice(standard_or_vector),
         SchemaName("PlaneFreeFall"),
     ]
@@ -201,7 +200,7 @@ class PlaneForce(InRuns):
     """The link it acts on."""
     point: PlaneNamedOrGiven
     """Where it acts: a point of the link in the home drawing, [x, y] or by its name."""
-    force: Annotated[tuple[ForceValue, ...], _TWO, BeforeRule(_two_numbers)]
+    force: Annotated[tuple[ForceValue, ...], _TWO, Rule(_two_numbers, before=True)]
     """The force, [x, y]."""
     axes: Axes = "ground"
     """Whether the components are in ground axes or turn with the link (its axes in the drawing)."""
@@ -219,7 +218,7 @@ class PlaneTorque(InRuns):
     type: Literal["torque"]
     link: Name
     """The link it acts on."""
-    torque: Annotated[TorqueValue, BeforeRule(_one_torque)]
+    torque: Annotated[TorqueValue, Rule(_one_torque, before=True)]
     """The torque, positive counter-clockwise."""
 
 
@@ -274,7 +273,7 @@ class PlaneFile(AnyFile):
 
     in_plane = True
 
-    plane: Annotated[Literal["xy"], BeforeRule(_plane_word)]
+    plane: Annotated[Literal["xy"], Rule(_plane_word, before=True)]
     """Everything moves in the plane x, y: vectors are two numbers, inertias and torques one; left
     out, a mechanism in space."""
     links: dict[Name, PlaneLink] = NOTHING

@@ -10,15 +10,13 @@ from numbers import Integral, Real
 from typing import Annotated, Any, Final, Literal, TypeVar
 
 from mechkin_cli.schema.base import (
-    After,
-    BeforeRule,
     DimensionRule,
     FormChoice,
     Limits,
+    Rule,
     SchemaName,
     Section,
     Shown,
-    Tag,
     each_once,
     refuse,
 )
@@ -103,11 +101,11 @@ def _number_text(value: Any) -> str | None:
     return None
 
 
-Expression = Annotated[str, BeforeRule(expression_text)]
-WholeNumber = Annotated[int, BeforeRule(whole_number)]
+Expression = Annotated[str, Rule(expression_text, before=True)]
+WholeNumber = Annotated[int, Rule(whole_number, before=True)]
 Text = Annotated[
     str,
-    BeforeRule(plain_text),
+    Rule(plain_text, before=True),
     Shown(("string", "number", "boolean"), "a text for people"),
     SchemaName("Text"),
 ]
@@ -204,7 +202,7 @@ def name_or_vector(value: Any) -> str:
 
 _Vector = TypeVar("_Vector")
 NamedOr = Annotated[
-    Annotated[Name, Tag("(name)")] | Annotated[_Vector, Tag("(vector)")], FormChoice(name_or_vector)
+    Annotated[Name, "(name)"] | Annotated[_Vector, "(vector)"], FormChoice(name_or_vector)
 ]
 """The name of a point, or coordinates: of space or of a plane."""
 
@@ -232,7 +230,7 @@ class DirectionOfLink(Section):
 
 UnitText = Annotated[
     str,
-    BeforeRule(plain_text),
+    Rule(plain_text, before=True),
     Shown(("string",), "a unit, or units joined by * / ^", ("in", "deg", "lbm*in/s^2")),
     SchemaName("UnitText"),
 ]
@@ -303,7 +301,7 @@ RunName = Annotated[
 ]
 
 
-RunNames = Annotated[tuple[RunName, ...], Limits(min_length=1), After(each_once)]
+RunNames = Annotated[tuple[RunName, ...], Limits(min_length=1), Rule(each_once)]
 
 
 def free_run_names(responses: dict[str, Any]) -> dict[str, Any]:

@@ -4,22 +4,18 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    STEP_OR_COUNT,
-    After,
-    BeforeRule,
     FormChoice,
-    Key,
     Limits,
+    Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
-    Tag,
-    check_step_or_count,
+    Spaced,
     each_once,
     refuse,
 )
 from mechkin_cli.schema.scalars import AnyDimension, CsvPath, Name, RunName, Text, WholeNumber
+from mechkin_cli.schema.validation import validated
 
 MechanismPath = Annotated[
     str,
@@ -31,24 +27,20 @@ MechanismPath = Annotated[
 ListOfValues = Annotated[tuple[AnyDimension, ...], Limits(min_length=1)]
 
 
-class RangeOfValues(Section):
+class RangeOfValues(Spaced):
     """Values from one to another in equal steps."""
 
     tag = "(range)"
-    editors: ClassVar[dict[str, Any]] = STEP_OR_COUNT
+    counted = "values"
 
-    first: Annotated[AnyDimension, Key("from")]
+    first: AnyDimension
     """First value."""
-    last: Annotated[AnyDimension, Key("to")]
+    last: AnyDimension
     """Value that the last reaches or stays below; with `count` it is the last."""
     step: AnyDimension | None = None
     """Distance between values, its sign does not matter; left out, `count` says it."""
     count: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of values; left out, `step` says it."""
-
-    def check(self) -> None:
-        """Exactly one of step and count."""
-        check_step_or_count(self.step, self.count, "values")
 
 
 class Uniform(Section):
@@ -82,9 +74,9 @@ class Tolerance(Section):
 
     tolerance: Annotated[
         tuple[AnyDimension, ...],
-        BeforeRule(_one_or_more),
+        Rule(_one_or_more, before=True),
         Limits(min_length=1, max_length=2),
-        ShortForm(("string", "number"), "plus and minus this"),
+        Shown(("string", "number"), "plus and minus this", is_short=True),
     ]
     """How far: one number for plus and minus, or both limits, as [-0.1 mm, 0.2 mm]."""
     distribution: Literal["uniform", "normal"] = "uniform"
@@ -102,7 +94,7 @@ def _form(value: Any) -> str:
 
 
 Variation = Annotated[
-    Annotated[ListOfValues, Tag("(values)")] | RangeOfValues | Uniform | Normal | Tolerance,
+    Annotated[ListOfValues, "(values)"] | RangeOfValues | Uniform | Normal | Tolerance,
     FormChoice(_form),
 ]
 
@@ -130,15 +122,16 @@ KeptWord = Literal[
 class Kept(Section):
     """A quantity, and what of its rows is kept of every variant."""
 
+    keys: ClassVar[dict[str, str]] = {"words": "as"}
+
     of: AnyDimension
     """A quantity or expression, one number in every row."""
     words: Annotated[
         tuple[KeptWord, ...],
-        Key("as"),
-        BeforeRule(_one_or_more),
+        Rule(_one_or_more, before=True),
         Limits(min_length=1),
-        After(each_once),
-        ShortForm(("string",), "one of the words: peak"),
+        Rule(each_once),
+        Shown(("string",), "one of the words: peak", is_short=True),
     ]
     """`max`, `min`, `peak` (largest magnitude), `range`, `mean`, `rms`, `place_of_max`,
     `place_of_min`, `place_of_peak` (where along the run), or `value` with `at`."""
@@ -170,7 +163,7 @@ class StudyFile(Section):
     sample of what is drawn.
     """
 
-    study: Annotated[Literal[1], BeforeRule(_study_number)]
+    study: Annotated[Literal[1], Rule(_study_number, before=True)]
     """Version of the form of studies."""
     mechanism: MechanismPath | None = None
     """The mechanism file; left out, the one that Python gives."""
@@ -211,3 +204,8 @@ class StudyFile(Section):
         if self.sample is not None and not drawn:
             hint = "remove sample:, or write {between: [...]}, {mean, deviation} or {tolerance}"
             raise refuse("needless-key", "nothing in vary: is drawn", hint, "sample")
+
+
+def validate_study(data: object) -> StudyFile:
+    """The study that plain data describes; raises `InvalidDataError`."""
+    return validated(StudyFile, data)

@@ -8,13 +8,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    After,
-    Barred,
-    BeforeRule,
     Limits,
+    Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     by_word,
     each_once,
@@ -69,8 +66,8 @@ def _in_full(value: Any) -> Any:
 
 ColumnOrText = Annotated[
     Column,
-    BeforeRule(_in_full),
-    ShortForm(("string", "number"), "label and value in one: O1.theta"),
+    Rule(_in_full, before=True),
+    Shown(("string", "number"), "label and value in one: O1.theta", is_short=True),
 ]
 
 
@@ -103,7 +100,9 @@ def _with_file(value: Any) -> Any:
 
 _PATH_ALONE = "a CSV file with the printed values, relative to the mechanism file"
 PathOrPublishedValues = Annotated[
-    PublishedValues, BeforeRule(_with_file), ShortForm(("string",), _PATH_ALONE, CSV_PATH_PATTERN)
+    PublishedValues,
+    Rule(_with_file, before=True),
+    Shown(("string",), _PATH_ALONE, pattern=CSV_PATH_PATTERN, is_short=True),
 ]
 
 _TAKEN = {
@@ -156,7 +155,7 @@ def _refuse_unknown(plot: Plot, labels: list[str]) -> None:
 class Table(Section):
     """A table with one row per position."""
 
-    name: Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
+    name: Annotated[TableName, Rule(free_name, barred=TAKEN_FOR_EDITORS)]
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
@@ -164,10 +163,10 @@ class Table(Section):
     """The run it reads, `sweep` or the name of a response; left out, the sweep if there is one,
     else the only response."""
     columns: Annotated[
-        tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), After(_differing_labels)
+        tuple[ColumnOrText, ...], Limits(min_length=1, max_length=1000), Rule(_differing_labels)
     ]
     """The columns, from left to right."""
-    summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), After(each_once)] = ()
+    summary: Annotated[tuple[SummaryWord, ...], Limits(min_length=1), Rule(each_once)] = ()
     """What stands below the table for each column that is computed: some of [max, min, peak, mean,
     rms, range]. `peak` is the largest magnitude; max, min and peak have their places; left
     out, nothing."""
@@ -201,7 +200,7 @@ class Coefficients(Section):
     their values.
     """
 
-    name: Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
+    name: Annotated[TableName, Rule(free_name, barred=TAKEN_FOR_EDITORS)]
     """Name of the files written, without ending."""
     title: Text | None = None
     """Heading in Markdown; left out, the name."""
@@ -221,7 +220,7 @@ CycleName = Annotated[
     Shown(("string",), "an input that turns, or time", ("A.theta", "time")),
     SchemaName("CycleName"),
 ]
-BalanceName = Annotated[TableName, After(free_name), Barred(TAKEN_FOR_EDITORS)]
+BalanceName = Annotated[TableName, Rule(free_name, barred=TAKEN_FOR_EDITORS)]
 
 
 class _Balance(Section):

@@ -14,26 +14,20 @@ a text, a section made in Python) and tells every error with its place.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from types import UnionType
-from typing import TYPE_CHECKING, Any, Final, Literal, Union
+from typing import Any, Final, Literal, Union
 
 from mechkin_cli.schema.base import (
-    After,
     AnySection,
-    BeforeRule,
     FormChoice,
     Limits,
+    Rule,
     Section,
     fields_of,
     tagged,
 )
 from mechkin_cli.schema.file import AnyFile, MechanismFile
-from mechkin_cli.schema.scalars import FORMS
-
-if TYPE_CHECKING:
-    from mechkin_cli.schema.study import StudyFile
-
 
 _WORDS = ("ground", "row", "time", "pi", "turn", "nan", "inf", "infinity")
 _OPERATORS = ("and", "or", "not", "if", "derivative")
@@ -116,76 +110,30 @@ class InvalidDataError(Exception):
 def validate(data: object) -> AnyFile:
     """The mechanism file that plain data describes, with `plane:` one in a plane; raises
     `InvalidDataError`."""
-    errors = name_errors(data)
     form: type[AnyFile] = MechanismFile
     if isinstance(data, dict) and "plane" in data:
         from mechkin_cli.schema.plane import PlaneFile
 
         form = PlaneFile
+    return validated(form, data, name_errors(data))
+
+
+def validated(
+    form: type[AnySection], data: object, errors: Sequence[dict[str, Any]] = ()
+) -> AnySection:
+    """The section that plain data describes; raises `InvalidDataError` with all its errors, and
+    with those found before."""
+    found: AnySection | None
+    own: list[dict[str, Any]] = []
     try:
-        file = validated(form, data)
-    except ValueError as failure:
-        errors = _records(failure, data, form) + errors
-    if errors:
-        raise InvalidDataError(errors)
-    return file
+        found = _section(form)(data)
+    except (NotSure, ValueError, AssertionError):
+        from mechkin_cli.schema.errors import section_or_errors
 
-
-def validate_study(data: object) -> StudyFile:
-    """The study that plain data describes; raises `InvalidDataError`."""
-    from mechkin_cli.schema.study import StudyFile  # only for studies
-
-    try:
-        return validated(StudyFile, data)
-    except ValueError as failure:
-        raise InvalidDataError(_records(failure, data, StudyFile)) from None
-
-
-def _records(failure: ValueError, data: object, form: type[Section]) -> list[dict[str, Any]]:
-    from pydantic_core import ValidationError  # only for messages
-
-    if not isinstance(failure, ValidationError):
-        raise failure
-    errors = failure.errors(include_url=False, include_input=False)
-    return [_completed(dict(error), data, form) for error in errors]
-
-
-def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
-    """The record with the context that a message needs beyond pydantic's own."""
-    if error["type"] == "string_pattern_mismatch":
-        expected, hint = FORMS[error["ctx"]["pattern"]]
-        return error | {"ctx": {"expected": expected, "hint": hint}}
-    if error["type"] == "unknown-word":
-        return _with_advice(error, data, form)
-    if error["type"] not in ("missing", "extra_forbidden"):
-        return error
-    from mechkin_cli.schema.advice import advice_for_key, known_keys  # only for messages
-
-    *mapping, key = error["loc"]
-    known = known_keys(form, tuple(mapping))
-    if known is None:
-        return error
-    section, descriptions = known
-    context = {
-        "known": list(descriptions),
-        "advice": section.advice.get(str(key)) or advice_for_key(section.__name__, str(key)),
-        "purpose": descriptions.get(str(key)),
-    }
-    return error | {"ctx": context}
-
-
-def _with_advice(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
-    """The record of an unknown type, with advice on what to write instead."""
-    from mechkin_cli.schema.advice import advice_for_type
-
-    value: Any = data
-    try:
-        for step in (*error["loc"], error["ctx"]["key"]):
-            value = value[step]
-    except (KeyError, IndexError, TypeError):
-        return error
-    advice = advice_for_type(str(error["loc"][0]), str(value), getattr(form, "in_plane", False))
-    return error | {"ctx": error["ctx"] | {"advice": advice}}
+        found, own = section_or_errors(form, data)
+    if errors or own or found is None:
+        raise InvalidDataError([*own, *errors])
+    return found
 
 
 Read = Callable[[Any], Any]
@@ -194,17 +142,6 @@ Read = Callable[[Any], Any]
 
 class NotSure(Exception):
     """A value of which the validator is to judge."""
-
-
-def validated(section: type[AnySection], data: object) -> AnySection:
-    """The section that plain data describes; raises pydantic's ValidationError."""
-    try:
-        found: AnySection = _section(section)(data)
-        return found
-    except (NotSure, ValueError, AssertionError):
-        from mechkin_cli.schema.validator import judged
-
-        return judged(section, data)
 
 
 _READERS: dict[type[Section], Read] = {}
@@ -276,10 +213,8 @@ def _with_rules(inner: Any, rules: tuple[Any, ...]) -> Read:
         limits = next((rule for rule in rules if isinstance(rule, Limits)), None)
         read = _value(inner) if limits is None else _plain(inner, limits)
     for rule in rules:
-        if isinstance(rule, BeforeRule):
-            read = _composed(rule.function, read)
-        elif isinstance(rule, After):
-            read = _composed(read, rule.function)
+        if isinstance(rule, Rule):
+            read = _composed(rule.function, read) if rule.before else _composed(read, rule.function)
     return read
 
 

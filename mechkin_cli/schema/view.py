@@ -4,12 +4,10 @@ from typing import Annotated, Any, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
-    After,
-    BeforeRule,
     Limits,
+    Rule,
     SchemaName,
     Section,
-    ShortForm,
     Shown,
     each_once,
 )
@@ -49,11 +47,13 @@ def _with_kind(value: Any) -> Any:
 
 
 KindOrShape = Annotated[
-    ShapeOfLink, BeforeRule(_with_kind), ShortForm(("string",), "the kind alone", f"^({KINDS})$")
+    ShapeOfLink,
+    Rule(_with_kind, before=True),
+    Shown(("string",), "the kind alone", pattern=f"^({KINDS})$", is_short=True),
 ]
 
 
-Names = Annotated[tuple[Name, ...], After(each_once)]
+Names = Annotated[tuple[Name, ...], Rule(each_once)]
 
 
 class ViewSection(Section):

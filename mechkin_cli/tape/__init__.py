@@ -11,7 +11,6 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.tape.bounds import bounded as bounded
     from mechkin_cli.tape.decimals import (
         NotEnclosed as NotEnclosed,
         double_doubles as double_doubles,
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.tape.double_double import (
         DoubleDoubles as DoubleDoubles,
+        bounded as bounded,
         difference as difference,
         eliminate as eliminate,
         exactly as exactly,
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from mechkin_cli.tape.exact import (
         ExactRecorder as ExactRecorder,
         ExactRows as ExactRows,
-        Picked as Picked,
         ShiftingRecorder as ShiftingRecorder,
     )
     from mechkin_cli.tape.identities import Identities as Identities
@@ -86,10 +85,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "bounds": "bounded",
         "decimals": "NotEnclosed double_doubles enclosures",
-        "double_double": "DoubleDoubles difference eliminate exactly joined stacked",
-        "exact": "ExactRecorder ExactRows Picked ShiftingRecorder",
+        "double_double": "DoubleDoubles bounded difference eliminate exactly joined stacked",
+        "exact": "ExactRecorder ExactRows ShiftingRecorder",
         "identities": "Identities",
         "recorder": "Filling Instruction Recorder TraceLost Traced differ is_traced of_numbers "
         "register with_rates within",

@@ -22,7 +22,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.exact import double_double, fraction_of
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape.decimals import Approximation, of_fraction, parts, replay, run
 from mechkin_cli.tape.recorder import Recorder, Traced, register
 from mechkin_cli.tape.row_programs import RowNumber, RowRecorder
@@ -43,6 +42,9 @@ if TYPE_CHECKING:
 
     from mechkin_cli.show import Floats
     from mechkin_cli.tape.recorder import Instruction
+
+    _Picked = tuple[Sequence[Any], NDArray[np.intp]]
+    """Recorded numbers or floats, and which of them each row has (rows,)."""
 
 
 DECIDED = (*CONDITIONS, Operation.SIGN, Operation.POWER_OF_TWO, Operation.WHOLE)
@@ -322,13 +324,6 @@ def _outcome(operation: Operation, values: Sequence[Decimal]) -> float:
     return float(meaning(operation)(*map(float, values)))
 
 
-class Picked(NamedTuple):
-    """Recorded numbers or floats, and which of them each row has (rows,)."""
-
-    numbers: Sequence[Any]
-    which: NDArray[np.intp]
-
-
 class ExactRows(RowRecorder):
     """Records exact numbers over `rows` rows, with the numbers of another recording as constants.
 
@@ -343,10 +338,17 @@ class ExactRows(RowRecorder):
     def __init__(self, recorder: ExactRecorder, rows: int) -> None:
         super().__init__(0)
         self.recorder, self.rows = recorder, rows
-        self._given: dict[int, Floats | Picked] = {}
+        self._given: dict[int, Floats | _Picked] = {}
 
-    def given(self, values: Floats | Picked) -> RowNumber:
-        """A number of each row: doubles (rows,) that are exact, or picked recorded numbers."""
+    def given(self, values: Floats) -> RowNumber:
+        """A number of each row: doubles (rows,) that are exact."""
+        return self._enter(values)
+
+    def picked(self, numbers: Sequence[Any], which: NDArray[np.intp]) -> RowNumber:
+        """A number of each row, picked from recorded numbers or floats by place (rows,)."""
+        return self._enter((numbers, which))
+
+    def _enter(self, values: Floats | _Picked) -> RowNumber:
         number = self._register(nan)
         self._given[number] = values
         return self.number(number)
@@ -380,7 +382,7 @@ class ExactRows(RowRecorder):
 
     def _tape_over_rows(
         self, numbers: Sequence[Any]
-    ) -> tuple[Tape, list[Approximation], list[Floats | Picked]]:
+    ) -> tuple[Tape, list[Approximation], list[Floats | _Picked]]:
         """A tape with the high parts of its constants, all constants, and all inputs."""
         outputs = [register(self, number) for number in numbers]
         needed = self._needed(outputs)
@@ -395,19 +397,21 @@ class ExactRows(RowRecorder):
         tape = self._tape(names, [*inputs, *leaves], high, needed, outputs)
         return tape, constants, [self._given[r] for r in inputs]
 
-    def _pairs(self, values: Floats | Picked) -> Floats:
+    def _pairs(self, values: Floats | _Picked) -> Floats:
         """An input in double-double (2, rows)."""
-        if not isinstance(values, Picked):
+        if not isinstance(values, tuple):
             return np.stack([values, np.zeros(self.rows)])
-        pairs: Floats = np.array([parts(near)[:2] for near in self._near(values.numbers)])
-        return pairs[values.which].T
+        numbers, which = values
+        pairs: Floats = np.array([parts(near)[:2] for near in self._near(numbers)])
+        return pairs[which].T
 
-    def _approximations(self, values: Floats | Picked) -> list[Approximation]:
+    def _approximations(self, values: Floats | _Picked) -> list[Approximation]:
         """An input of every row, not rounded."""
-        if not isinstance(values, Picked):
+        if not isinstance(values, tuple):
             return [of_fraction(Fraction(value)) for value in map(float, values)]
-        near = self._near(values.numbers)
-        return [near[k] for k in values.which]
+        numbers, which = values
+        near = self._near(numbers)
+        return [near[k] for k in which]
 
     def _near(self, numbers: Sequence[Any]) -> list[Approximation]:
         """Floats, and numbers of the recording, to all their digits."""

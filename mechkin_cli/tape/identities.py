@@ -98,26 +98,22 @@ def multiplied(a: Sum, b: Sum) -> Sum:
     return _collected(_products(a, b))
 
 
-def merged(a: tuple[tuple[Powers, Fraction], ...], b: Angle) -> Angle:
-    """The sum of two angles."""
-    return tuple(sorted((key, value) for key, value in _added(a, b, NO_TURN).items() if value))
-
-
 def opposite(angle: Angle) -> Angle:
     """The angle reversed."""
     return tuple((key, -value) for key, value in angle)
 
 
-def with_powers(a: Powers, b: Powers) -> Powers:
-    """The product of two products of generators."""
-    return tuple(sorted((key, value) for key, value in _added(a, b, 0).items() if value))
+def merged(*terms: tuple[Any, Any]) -> tuple[tuple[Any, Any], ...]:
+    """The sum of angles, or the product of products of generators, from all their parts."""
+    return tuple(sorted(_totals(terms).items()))
 
 
-def _added(a: Iterable[tuple[Any, Any]], b: Iterable[tuple[Any, Any]], zero: Any) -> dict[Any, Any]:
-    total = dict(a)
-    for key, value in b:
-        total[key] = total.get(key, zero) + value
-    return total
+def _totals(terms: Iterable[tuple[Any, Any]]) -> dict[Any, Any]:
+    """The sums of the values of equal keys that are not zero."""
+    total: dict[Any, Any] = {}
+    for key, value in terms:
+        total[key] = total.get(key, 0) + value
+    return {key: value for key, value in total.items() if value}
 
 
 def rational(a: Sum) -> Fraction | None:
@@ -130,14 +126,14 @@ def rational(a: Sum) -> Fraction | None:
 def _products(a: Sum, b: Sum) -> Iterator[tuple[Monomial, Fraction]]:
     for one, factor in a.items():
         for other, second in b.items():
-            angle = merged(one.angle, other.angle)
-            powers = with_powers(one.powers, other.powers)
+            angle = merged(*one.angle, *other.angle)
+            powers = merged(*one.powers, *other.powers)
             for turn, sign in _in_basis((one.turn + other.turn) % 1):
                 yield Monomial(turn, angle, powers), sign * factor * second
 
 
 def _collected(terms: Iterable[tuple[Monomial, Fraction | int]]) -> Sum:
-    total = {key: value for key, value in _added((), terms, NO_TURN).items() if value}
+    total = _totals(terms)
     if len(total) > MOST_TERMS:
         raise SumUndecided("a sum has too many terms")
     return total
@@ -369,7 +365,7 @@ class Identities:
                     forward, back = self.product(forward, one), self.product(back, other)
             else:
                 angle.append((powers, factor))
-        parts = merged(tuple(angle), ())
+        parts = merged(*angle)
         return (
             self.product(forward, Quotient(phase(turn, parts))),
             self.product(back, Quotient(phase(-turn, opposite(parts)))),

@@ -8,6 +8,7 @@ on them, and stand inside nested data that a `Filling` builds again with other n
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from types import MappingProxyType
@@ -146,6 +147,17 @@ class Recorder:
         return sorted(needed)
 
 
+_RELATIONS: dict[Any, tuple[Operation, bool, bool]] = {
+    operator.lt: (Operation.LESS, False, False),
+    operator.le: (Operation.NOT_MORE, False, False),
+    operator.gt: (Operation.LESS, True, False),
+    operator.ge: (Operation.NOT_MORE, True, False),
+    operator.eq: (Operation.EQUAL, False, False),
+    operator.ne: (Operation.EQUAL, False, True),
+}
+"""Each comparison as a condition: whether its operands change places, and whether it is denied."""
+
+
 class TraceLost(TypeError):
     """A number depends on a recorded one in a way that no tape holds; the message says which."""
 
@@ -197,7 +209,6 @@ class Traced(Recorded):
     """
 
     __slots__ = ("recorder", "register")
-    __hash__ = None  # type: ignore[assignment]
     __array_ufunc__ = None
 
     def __init__(self, recorder: Recorder, register: int) -> None:
@@ -224,24 +235,6 @@ class Traced(Recorded):
         self._refuse_zero()
         return self.apply_after("DIVIDE", other)
 
-    def __lt__(self, other: float | Traced) -> RecordedComparison:
-        return self._compared(Operation.LESS, other)
-
-    def __le__(self, other: float | Traced) -> RecordedComparison:
-        return self._compared(Operation.NOT_MORE, other)
-
-    def __gt__(self, other: float | Traced) -> RecordedComparison:
-        return self._compared(Operation.LESS, other, turned=True)
-
-    def __ge__(self, other: float | Traced) -> RecordedComparison:
-        return self._compared(Operation.NOT_MORE, other, turned=True)
-
-    def __eq__(self, other: object) -> RecordedComparison:  # type: ignore[override]
-        return self._compared(Operation.EQUAL, other)
-
-    def __ne__(self, other: object) -> RecordedComparison:  # type: ignore[override]
-        return self._compared(Operation.EQUAL, other, negated=True)
-
     def apply(self, operation: str, *others: float | Traced) -> Traced:
         """The operation of a name on this number first, then on others."""
         if others and _is_composite(others[0]):
@@ -253,16 +246,16 @@ class Traced(Recorded):
         """The operation of a name on a float first, then on this number."""
         return _computed(Operation[operation], first, self)
 
-    def _compared(
-        self, operation: Operation, other: object, *, turned: bool = False, negated: bool = False
-    ) -> RecordedComparison:
+    def compared(self, relation: Callable[[Any, Any], Any], other: object) -> RecordedComparison:
+        """The comparison with a number, which is recorded once it decides something."""
         if _is_composite(other):
             return NotImplemented  # type: ignore[no-any-return]
         recorder = _innermost(self, other)
         left, right = register(recorder, self), register(recorder, other)
-        if turned:
+        operation, is_turned, is_negated = _RELATIONS[relation]
+        if is_turned:
             left, right = right, left
-        return RecordedComparison(recorder, operation, left, right, negated)
+        return RecordedComparison(recorder, operation, left, right, is_negated)
 
     def _refuse_zero(self) -> None:
         if self == 0.0:

@@ -122,26 +122,14 @@ class JetNumber(Recorded):
     """Value, rate, second and third rate; each a float or a recorded number."""
 
     __slots__ = ("orders",)
-    __hash__ = None  # type: ignore[assignment]
     is_row = True
 
     def __init__(self, orders: Sequence[Any]) -> None:
         self.orders = tuple(orders)
 
-    def __lt__(self, other: Any) -> JetCondition:
-        return JetCondition(self.orders[0] < orders_of(other)[0])
-
-    def __le__(self, other: Any) -> JetCondition:
-        return JetCondition(self.orders[0] <= orders_of(other)[0])
-
-    def __gt__(self, other: Any) -> JetCondition:
-        return JetCondition(self.orders[0] > orders_of(other)[0])
-
-    def __ge__(self, other: Any) -> JetCondition:
-        return JetCondition(self.orders[0] >= orders_of(other)[0])
-
-    def __eq__(self, other: object) -> Any:
-        return JetCondition(self.orders[0] == orders_of(other)[0])
+    def compared(self, relation: Callable[[Any, Any], Any], other: Any) -> JetCondition:
+        """Whether a relation holds of the values."""
+        return JetCondition(relation(self.orders[0], orders_of(other)[0]))
 
     @staticmethod
     def chosen_by(condition: Any, chosen: Any, other: Any) -> JetNumber:

@@ -7,6 +7,7 @@ its tape. In annotations a `float` is either.
 from __future__ import annotations
 
 import math
+import operator
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Self, TypeGuard, TypeVar
@@ -46,6 +47,28 @@ class Recorded:
     def apply_after(self, operation: str, first: Any) -> Self:
         """The operation of a name on a float first, then on this number."""
         raise NotImplementedError
+
+    def compared(self, relation: Callable[[Any, Any], Any], other: Any) -> Any:
+        """Whether a relation to a number holds: one of `operator`, as `lt`."""
+        raise NotImplementedError
+
+    def __lt__(self, other: Any) -> Any:
+        return self.compared(operator.lt, other)
+
+    def __le__(self, other: Any) -> Any:
+        return self.compared(operator.le, other)
+
+    def __gt__(self, other: Any) -> Any:
+        return self.compared(operator.gt, other)
+
+    def __ge__(self, other: Any) -> Any:
+        return self.compared(operator.ge, other)
+
+    def __eq__(self, other: object) -> Any:
+        return self.compared(operator.eq, other)
+
+    def __ne__(self, other: object) -> Any:
+        return self.compared(operator.ne, other)
 
     def __add__(self, other: Any) -> Self:
         return self.apply("ADD", other)

@@ -18,7 +18,7 @@ HOME = "mechanism/constraint.py"
 KINDS = {"DistanceConstraint", "InputConstraint", "PairConstraint"}
 LEG = re.compile(r"(?<![A-Za-z])(legs?|Legs?)(?![a-z])")
 OF_THE_FORMAT = {
-    "schema/advice.py": "coordinates in an example",
+    "schema/errors.py": "coordinates in an example",
     "schema/json_schema.py": "coordinates in an example",
     "tolerances/mobility.py": "what a telescope is",
 }

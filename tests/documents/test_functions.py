@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mechkin_cli.expressions.expression import parse
-from mechkin_cli.expressions.fields import constant
+from mechkin_cli.expressions.expression import constant, parse
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.quantity import MAX_DEPTH, MAX_NODES, MAX_TEXT_LENGTH
 from mechkin_cli.units.units import UnitSystem

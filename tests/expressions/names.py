@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.expressions.fields import lookup
-from mechkin_cli.expressions.quantity import Quantity, Vector
+from mechkin_cli.expressions.quantity import Quantity, Vector, lookup
 from mechkin_cli.units.dimension import (
     ANGLE,
     ANGULAR_RATE,

@@ -8,8 +8,7 @@ from expressions.names import resolve
 from mpmath import mp
 
 from mechkin_cli.expressions.expression import parse
-from mechkin_cli.expressions.fields import lookup
-from mechkin_cli.expressions.quantity import ExpressionError, Quantity, Vector
+from mechkin_cli.expressions.quantity import ExpressionError, Quantity, Vector, lookup
 from mechkin_cli.units.dimension import ANGLE, DIMENSIONLESS, FORCE, LENGTH, Dimension
 
 NAN = float("nan")

@@ -12,10 +12,16 @@ from mpmath import mp
 
 from mechkin_cli.expressions.differentiation import STEPS, TERMS, WHOLE, differentiated
 from mechkin_cli.expressions.expression import Definitions, parse
-from mechkin_cli.expressions.fields import lookup
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.expressions.grammar import parse_nodes
-from mechkin_cli.expressions.quantity import MAX_EXPANDED, ExpressionError, Name, Node, Quantity
+from mechkin_cli.expressions.quantity import (
+    MAX_EXPANDED,
+    ExpressionError,
+    Name,
+    Node,
+    Quantity,
+    lookup,
+)
 
 COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "5"))
 ROWS = {name: Quantity(np.array(rows)) for name, rows in NAMES.items()}

@@ -7,7 +7,7 @@ import math
 import pytest
 from expressions.names import INCH_POUND, resolve
 
-from mechkin_cli.expressions.fields import constant, constant_in_file_units, literal
+from mechkin_cli.expressions.expression import constant, constant_in_file_units, literal
 from mechkin_cli.expressions.quantity import ExpressionError
 from mechkin_cli.units.dimension import (
     ANGLE,

@@ -6,9 +6,8 @@ import math
 
 import pytest
 
-from mechkin_cli.expressions.expression import parse
-from mechkin_cli.expressions.fields import evaluate_parameters, lookup
-from mechkin_cli.expressions.quantity import ExpressionError
+from mechkin_cli.expressions.expression import evaluate_parameters, parse
+from mechkin_cli.expressions.quantity import ExpressionError, lookup
 from mechkin_cli.units.dimension import ANGLE, DIMENSIONLESS, LENGTH, MASS
 from mechkin_cli.units.units import UnitSystem
 

@@ -7,8 +7,7 @@ from datetime import timedelta
 from expressions.names import INCH_POUND, QUANTITIES, resolve
 from hypothesis import given, settings, strategies as st
 
-from mechkin_cli.expressions.expression import parse
-from mechkin_cli.expressions.fields import constant
+from mechkin_cli.expressions.expression import constant, parse
 from mechkin_cli.expressions.quantity import MAX_TEXT_LENGTH, ExpressionError
 from mechkin_cli.units.dimension import LENGTH
 from mechkin_cli.units.units import CompoundUnit, UnitError, parse_unit

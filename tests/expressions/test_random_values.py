@@ -12,8 +12,7 @@ from expressions.random_expressions import NAMES, number, value, written
 from mpmath import mp
 
 from mechkin_cli.expressions.expression import exact_literal, parse
-from mechkin_cli.expressions.fields import lookup
-from mechkin_cli.expressions.quantity import ExpressionError, Quantity
+from mechkin_cli.expressions.quantity import ExpressionError, Quantity, lookup
 from mechkin_cli.tape.double_double import DoubleDoubles, exactly
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.row_programs import RowRecorder

@@ -188,8 +188,7 @@ def test_a_row_alone_has_the_bits_that_it_has_among_others(text: str) -> None:
 
 
 def _with_theta(values: Rows, expression: object) -> Rows:
-    from mechkin_cli.expressions.fields import lookup
-    from mechkin_cli.expressions.quantity import Quantity
+    from mechkin_cli.expressions.quantity import Quantity, lookup
 
     quantity = expression.evaluate(lookup({"O1.theta": Quantity(values, ANGLE)}))  # type: ignore[attr-defined]
     assert isinstance(quantity.value, np.ndarray)

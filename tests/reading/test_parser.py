@@ -8,7 +8,7 @@ from reading.bad_files import BAD_FILES
 
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading.text import MOST_EVENTS, MOST_LEVELS
-from mechkin_cli.reading.yaml import Mapping, Mark, ScalarNode, Style, parse, plain_data
+from mechkin_cli.reading.yaml import Mapping, ScalarNode, Style, parse, plain_data
 
 GOOD = sorted((Path(__file__).parent / "good").glob("*.yaml"))
 needs_libyaml = pytest.mark.skipif(not yaml.__with_libyaml__, reason="PyYAML without libyaml")
@@ -46,10 +46,10 @@ def test_scalars_stay_text(written: str) -> None:
 def test_marks_styles_and_order() -> None:
     root = parse("b: 'x'\na: {c: [1, \"2\"]}\n", "f.yaml")
     assert list(root.entries) == ["b", "a"]
-    assert root.entries["b"].value == ScalarNode("x", Mark(1, 4), Style.SINGLE_QUOTED)
-    inner = root.entries["a"].value
+    assert root.entries["b"] == ((1, 1), ScalarNode("x", (1, 4), Style.SINGLE_QUOTED))
+    _, inner = root.entries["a"]
     assert isinstance(inner, Mapping)
-    assert inner.entries["c"].mark == Mark(2, 5)
+    assert inner.entries["c"][0] == (2, 5)
     assert plain_data(inner) == {"c": ["1", "2"]}
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from mechkin_cli.reading import read_document
-from mechkin_cli.schema import validation, validator
+from mechkin_cli.schema import errors, validation
 from mechkin_cli.schema.base import Section
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
@@ -61,7 +61,7 @@ def test_a_file_becomes_the_same_sections(path: Path) -> None:
         return
     found = read(_form(data), data)
     if found is not None:
-        assert found == plain(validator.judged(_form(data), data))
+        assert found == plain(errors.judged(_form(data), data))
 
 
 def test_the_files_of_mechanisms_are_read() -> None:
@@ -105,5 +105,5 @@ def test_what_is_read_is_valid(seed: int) -> None:
             found = read(_form(other), other)
             if found is not None:
                 taken += 1
-                assert found == plain(validator.judged(_form(other), other))
+                assert found == plain(errors.judged(_form(other), other))
     assert taken

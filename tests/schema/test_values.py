@@ -7,7 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from mechkin_cli.expressions.functions import FUNCTIONS
 from mechkin_cli.schema import scalars
-from mechkin_cli.schema.advice import known_keys
+from mechkin_cli.schema.errors import known_keys
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.schema.scalars import FORMS, expression_text, plain_text, whole_number
 from mechkin_cli.schema.validation import RESERVED, InvalidDataError, name_errors, validate

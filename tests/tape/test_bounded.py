@@ -10,8 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from mechkin_cli.tape.bounds import Bounded, bounded
-from mechkin_cli.tape.double_double import DoubleDoubles
+from mechkin_cli.tape.double_double import Bounded, DoubleDoubles, bounded
 
 OPERATIONS = ["+", "-", "*", "/", "abs", "sqrt", "sin", "cos", "exp", "atan", "max", "min"]
 DIGITS = 700

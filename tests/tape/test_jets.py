@@ -9,8 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from mechkin_cli.expressions.expression import parse
-from mechkin_cli.expressions.fields import scalar
+from mechkin_cli.expressions.expression import parse, scalar
 from mechkin_cli.expressions.quantity import Quantity
 from mechkin_cli.tape.recorder import Recorder, Traced, register
 from mechkin_cli.tape.tape import compiled

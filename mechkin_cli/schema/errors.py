@@ -1,16 +1,271 @@
-"""Advice on unknown keys and types: those of other programs, misplaced ones, missing features.
+"""The errors of plain data, by pydantic's core, with advice on unknown keys and types.
 
-Looked up before the nearest known word is. `known_keys` finds the keys that a mapping may have by
-following an error's location through the sections.
+`pydantic.BaseModel` builds the same validators from the same annotations, but it inspects and
+compiles every class when it is defined: for the sections of format 1 that took longer than the
+analysis of a mechanism. Here a validator is built when the first value of its section is met, so
+that a section which a file does not use costs its class body alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from types import UnionType
-from typing import Annotated, Any, Final, Union, get_args, get_origin
+from functools import cache, partial
+from types import NoneType, UnionType
+from typing import Annotated, Any, Final, Literal, Union, get_args, get_origin
 
-from mechkin_cli.schema.base import Section, field_descriptions, fields_of, tagged
+from pydantic_core import SchemaValidator, ValidationError, core_schema as core
+
+from mechkin_cli.schema.base import (
+    AnySection,
+    FormChoice,
+    Limits,
+    Rule,
+    Section,
+    field_descriptions,
+    fields_of,
+    tagged,
+)
+from mechkin_cli.schema.scalars import FORMS
+
+
+def section_or_errors(
+    form: type[AnySection], data: object
+) -> tuple[AnySection | None, list[dict[str, Any]]]:
+    """The section that plain data describes, or None and the records of all its errors."""
+    try:
+        return judged(form, data), []
+    except ValidationError as failure:
+        errors = failure.errors(include_url=False, include_input=False)
+        return None, [_completed(dict(error), data, form) for error in errors]
+
+
+def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
+    """The record with the context that a message needs beyond pydantic's own."""
+    if error["type"] == "string_pattern_mismatch":
+        expected, hint = FORMS[error["ctx"]["pattern"]]
+        return error | {"ctx": {"expected": expected, "hint": hint}}
+    if error["type"] == "unknown-word":
+        noun = _noun(error["loc"], error["ctx"]["key"])
+        return _with_advice(error | {"ctx": error["ctx"] | {"noun": noun}}, data, form)
+    if error["type"] == "literal_error":
+        key = next((step for step in reversed(error["loc"]) if isinstance(step, str)), "")
+        return error | {"ctx": error["ctx"] | {"noun": _noun(error["loc"], key)}}
+    if error["type"] not in ("missing", "extra_forbidden"):
+        return error
+    *mapping, key = error["loc"]
+    known = known_keys(form, tuple(mapping))
+    if known is None:
+        return error
+    section, descriptions = known
+    context = {
+        "known": list(descriptions),
+        "advice": section.advice.get(str(key)) or advice_for_key(section.__name__, str(key)),
+        "purpose": descriptions.get(str(key)),
+    }
+    return error | {"ctx": context}
+
+
+_TYPES = {"joints": "joint", "chain": "joint", "loads": "load", "balances": "balance"}
+_NOUNS = {
+    "law": "law",
+    "interpolation": "interpolation",
+    "direction": "direction",
+    "distribution": "distribution",
+    "method": "sampling method",
+    "kind": "shape",
+}
+
+
+def _noun(location: tuple[str | int, ...], key: str) -> str | None:
+    """What the word at a key is; None where there is no plain noun for it."""
+    return f"{_TYPES[str(location[0])]} type" if key == "type" else _NOUNS.get(key)
+
+
+def _with_advice(error: dict[str, Any], data: object, form: type[Section]) -> dict[str, Any]:
+    """The record of an unknown type, with advice on what to write instead."""
+    value: Any = data
+    try:
+        for step in (*error["loc"], error["ctx"]["key"]):
+            value = value[step]
+    except (KeyError, IndexError, TypeError):
+        return error
+    advice = advice_for_type(str(error["loc"][0]), str(value), getattr(form, "in_plane", False))
+    return error | {"ctx": error["ctx"] | {"advice": advice}}
+
+
+_VALIDATORS: dict[type[Section], SchemaValidator] = {}
+
+
+def judged(section: type[AnySection], data: object) -> AnySection:
+    """The section that plain data describes; raises pydantic's ValidationError.
+
+    The locations of its errors continue that of the section around it.
+    """
+    if section not in _VALIDATORS:
+        _VALIDATORS[section] = _built(section)
+    return _VALIDATORS[section].validate_python(data)  # type: ignore[no-any-return]
+
+
+def _built(section: type[Section]) -> SchemaValidator:
+    fields = {}
+    for key, field in fields_of(section).items():
+        value = _schema(field.annotation)
+        if not field.required:
+            value = core.with_default_schema(value, default=field.default)
+        fields[field.name] = core.model_field(value, validation_alias=key)
+    keys = core.model_fields_schema(fields, extra_behavior="forbid")
+    schema: core.CoreSchema = core.model_schema(section, keys)
+    if section.check is not Section.check:
+        schema = core.no_info_after_validator_function(_checked, schema)
+    return SchemaValidator(schema)
+
+
+def _checked(section: Section) -> Section:
+    section.check()
+    return section
+
+
+@cache
+def _schema(annotation: Any) -> core.CoreSchema:
+    """The schema of a value; equal annotations share one."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return core.no_info_plain_validator_function(partial(judged, annotation))
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _with_rules(arguments[0], arguments[1:])
+    if origin in (Union, UnionType):
+        (inner,) = (member for member in arguments if member is not NoneType)
+        return core.nullable_schema(_schema(inner))
+    return _plain(annotation, Limits())
+
+
+def _with_rules(inner: Any, rules: tuple[Any, ...]) -> core.CoreSchema:
+    choice = next((rule for rule in rules if isinstance(rule, FormChoice)), None)
+    limits = next((rule for rule in rules if isinstance(rule, Limits)), None)
+    if choice is not None:
+        schema: core.CoreSchema = _one_of(inner, choice)
+    else:
+        schema = _schema(inner) if limits is None else _plain(inner, limits)
+    for rule in rules:
+        if isinstance(rule, Rule) and rule.before:
+            schema = core.no_info_before_validator_function(rule.function, schema)
+        elif isinstance(rule, Rule):
+            schema = core.no_info_after_validator_function(rule.function, schema)
+    return schema
+
+
+def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
+    """A scalar, a fixed word, a list or a mapping of values of one kind."""
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    least, most = limits.min_length, limits.max_length
+    if annotation is str:
+        return core.str_schema(pattern=limits.pattern)
+    if annotation is int:
+        return core.int_schema(ge=limits.ge, le=limits.le)
+    if origin is Literal:
+        return core.literal_schema(list(arguments))
+    if origin is tuple:
+        return core.tuple_schema(
+            [_schema(arguments[0])], variadic_item_index=0, min_length=least, max_length=most
+        )
+    if origin is dict:
+        return core.dict_schema(
+            _schema(arguments[0]), _schema(arguments[1]), min_length=least, max_length=most
+        )
+    raise TypeError(f"no validator for {annotation}")
+
+
+def _one_of(union: Any, choice: FormChoice) -> core.CoreSchema:
+    """A union whose members each carry their tag."""
+    choices: dict[Any, core.CoreSchema] = {
+        tag: _with_rules(form, rules) for tag, form, rules in map(tagged, get_args(union))
+    }
+    if choice.words is None:
+        return core.tagged_union_schema(choices, choice.choose)
+    return core.tagged_union_schema(
+        choices,
+        choice.choose,
+        custom_error_type="unknown-word",
+        custom_error_message=f"expected one of {choice.words}",
+        custom_error_context={"key": str(choice.key), "words": choice.words},
+    )
+
+
+def known_keys(
+    top: type[Section], location: tuple[str | int, ...]
+) -> tuple[type[Section], dict[str, str]] | None:
+    """The section at a validation error's location (which includes the tags of forms), and its keys
+    with their help texts.
+
+    None where no mapping with fixed keys is there.
+    """
+    current: Any = top
+    for step in location:
+        current = _step_into(current, step)
+        if current is None:
+            return None
+    section = next((item for item in _alternatives(current) if _is_section(item)), None)
+    if section is None:
+        return None
+    texts = field_descriptions(section)
+    return section, {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
+
+
+def _step_into(annotation: Any, step: str | int) -> Any:
+    if isinstance(step, str) and step.startswith("("):
+        return next((form for tag, form in _tagged(annotation) if tag == step), None)
+    for item in _alternatives(annotation):
+        if _is_section(item):
+            for key, field in fields_of(item).items():
+                if step in (key, field.name):
+                    return field.annotation
+        elif get_origin(item) in (dict, tuple):
+            arguments = get_args(item)
+            return arguments[1] if get_origin(item) is dict else arguments[0]
+    return None
+
+
+def _alternatives(annotation: Any) -> Iterator[Any]:
+    """The annotation without metadata, each member of a union by itself."""
+    if get_origin(annotation) is Annotated:
+        yield from _alternatives(get_args(annotation)[0])
+    elif get_origin(annotation) in (Union, UnionType):
+        for member in get_args(annotation):
+            yield from _alternatives(member)
+    else:
+        yield annotation
+
+
+def _tagged(annotation: Any) -> Iterator[tuple[str, Any]]:
+    tag, form, _ = tagged(annotation)
+    if tag:
+        yield tag, form
+    elif form is not annotation:
+        yield from _tagged(form)
+    elif get_origin(annotation) in (Union, UnionType):
+        for member in get_args(annotation):
+            yield from _tagged(member)
+
+
+def _is_section(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Section)
+
+
+# Advice on keys and types of other programs, misplaced ones and missing features; it is looked up
+# before the nearest known word is.
+
+
+def advice_for_key(section: str, key: str) -> str | None:
+    """What to do instead of a key that a section, by the name of its class, does not have."""
+    known = JOINT_KEYS if section.endswith("Joint") else {}
+    return _SECTIONS.get(section, known).get(key.casefold())
+
+
+def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
+    """What to do instead of a type that `loads` or `joints` do not have."""
+    joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
+    return {"loads": LOAD_TYPES, "joints": joints}.get(section, {}).get(word.casefold())
+
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
@@ -244,12 +499,6 @@ _SECTIONS: Final = {
 }
 
 
-def advice_for_key(section: str, key: str) -> str | None:
-    """What to do instead of a key that a section, by the name of its class, does not have."""
-    known = JOINT_KEYS if section.endswith("Joint") else {}
-    return _SECTIONS.get(section, known).get(key.casefold())
-
-
 LOAD_TYPES: Final = {
     **OUTSIDE,
     "moment": "a moment is a torque: {type: torque, ...}",
@@ -298,69 +547,3 @@ PLANE_JOINT_TYPES: Final = {
     **dict.fromkeys(("hooke", "ball", "sphere", "globe", "planar", "plane"), _SPATIAL),
 }
 """Types of a joint in a plane file."""
-
-
-def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
-    """What to do instead of a type that `loads` or `joints` do not have."""
-    joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
-    return {"loads": LOAD_TYPES, "joints": joints}.get(section, {}).get(word.casefold())
-
-
-def known_keys(
-    top: type[Section], location: tuple[str | int, ...]
-) -> tuple[type[Section], dict[str, str]] | None:
-    """The section at a validation error's location (which includes the tags of forms), and its keys
-    with their help texts.
-
-    None where no mapping with fixed keys is there.
-    """
-    current: Any = top
-    for step in location:
-        current = _step_into(current, step)
-        if current is None:
-            return None
-    section = next((item for item in _alternatives(current) if _is_section(item)), None)
-    if section is None:
-        return None
-    texts = field_descriptions(section)
-    return section, {key: texts.get(field.name, "") for key, field in fields_of(section).items()}
-
-
-def _step_into(annotation: Any, step: str | int) -> Any:
-    if isinstance(step, str) and step.startswith("("):
-        return next((form for tag, form in _tagged(annotation) if tag == step), None)
-    for item in _alternatives(annotation):
-        if _is_section(item):
-            for key, field in fields_of(item).items():
-                if step in (key, field.name):
-                    return field.annotation
-        elif get_origin(item) in (dict, tuple):
-            arguments = get_args(item)
-            return arguments[1] if get_origin(item) is dict else arguments[0]
-    return None
-
-
-def _alternatives(annotation: Any) -> Iterator[Any]:
-    """The annotation without metadata, each member of a union by itself."""
-    if get_origin(annotation) is Annotated:
-        yield from _alternatives(get_args(annotation)[0])
-    elif get_origin(annotation) in (Union, UnionType):
-        for member in get_args(annotation):
-            yield from _alternatives(member)
-    else:
-        yield annotation
-
-
-def _tagged(annotation: Any) -> Iterator[tuple[str, Any]]:
-    tag, form, _ = tagged(annotation)
-    if tag:
-        yield tag, form
-    elif form is not annotation:
-        yield from _tagged(form)
-    elif get_origin(annotation) in (Union, UnionType):
-        for member in get_args(annotation):
-            yield from _tagged(member)
-
-
-def _is_section(annotation: Any) -> bool:
-    return isinstance(annotation, type) and issubclass(annotation, Section)
