@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mechkin_cli.bench.chain import EQUATIONS, BodyTree, CommonFrame, Entries, Placing, Turned
-from mechkin_cli.bench.row_by_row import RowByRow, coordinates_of
+from mechkin_cli.bench.methods import RowByRow, coordinates_of
 from mechkin_cli.bench.scene import BenchScene, Values
 from mechkin_cli.tape import eliminate
 

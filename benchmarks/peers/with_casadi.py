@@ -20,7 +20,7 @@ import numpy as np
 from benchmarks.closure import named_motion
 from mechkin_cli.bench.chain import Entries, Placing
 from mechkin_cli.bench.measurement import Method, Unable
-from mechkin_cli.bench.row_by_row import RowByRow
+from mechkin_cli.bench.methods import RowByRow
 
 if TYPE_CHECKING:
     from mechkin_cli.bench.scene import BenchScene, Values

@@ -23,7 +23,7 @@ from mechkin_cli.bench.chain import (
     TreeDisplacement,
 )
 from mechkin_cli.bench.measurement import Method, Unable
-from mechkin_cli.bench.row_by_row import RowByRow
+from mechkin_cli.bench.methods import RowByRow
 
 if TYPE_CHECKING:
     from mechkin_cli.bench.scene import BenchScene, Values

@@ -2,7 +2,7 @@
 
 A *scene* is a mechanism whose rows are closed; a *method* is a way to its answers at one setting,
 made by a family (`runs.FAMILIES`); a *measurement* is its time and its errors against the rows
-repeated in double-double. `runs` puts them together, `outputs` writes them, `stress` judges hard
+repeated in double-double. `runs` puts them together, `report` writes them, `stress` judges hard
 mechanisms whose rows are known. Only `mechkin bench` loads the chapters.
 """
 
@@ -10,13 +10,15 @@ from mechkin_cli.lazy import TYPE_CHECKING, lazy_names
 
 if TYPE_CHECKING:
     from mechkin_cli.bench.measurement import Bench as Bench
-    from mechkin_cli.bench.outputs import NAMES as NAMES, record as record, write as write
     from mechkin_cli.bench.report import (
+        NAMES as NAMES,
         ReportTable as ReportTable,
         bench_table as bench_table,
         key_of as key_of,
         machine as machine,
         plain_text as plain_text,
+        record as record,
+        write as write,
     )
     from mechkin_cli.bench.runs import (
         FULL as FULL,
@@ -36,8 +38,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "measurement": "Bench",
-        "outputs": "NAMES record write",
-        "report": "ReportTable bench_table key_of machine plain_text",
+        "report": "NAMES ReportTable bench_table key_of machine plain_text record write",
         "runs": "FULL QUICK SUITE Rounds Suite bench",
         "scene": "BenchScene",
         "stress": "judge_hard_mechanisms stress_table",

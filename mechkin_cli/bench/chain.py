@@ -1,9 +1,9 @@
 """A mechanism as plain data for solvers that are not mechkin's: bodies, closings, coordinates.
 
-The tree and the closing joints are those of the solver graph, so that every solver is given the
+The tree and the cut joints are those of the solver graph, so that every solver is given the
 smallest systems that mechkin has found; formulas are its own. SI, ground axes of the drawing.
 A body is placed by D = D_parent B E(q) A with constant frames B and A and an elementary
-displacement E; a closing joint is a common point, a distance of two points (rods), or two frames
+displacement E; a cut joint is a common point, a distance of two points (rods), or two frames
 that its own chain of displacements brings together.
 """
 
@@ -77,11 +77,9 @@ Closed = CommonPoint | Distance | CommonFrame
 
 
 class TreeCoordinate(NamedTuple):
-    """A coordinate: its name in the file ("" without one), what a unit of it is there, and whether
-    it is a length."""
+    """A coordinate: its name in the file ("" without one), and whether it is a length."""
 
     name: str
-    factor: float
     is_length: bool
 
 
@@ -91,7 +89,7 @@ class BodyTree:
 
     `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states` says for
     each coordinate where it stands in the kernel's states, a ball's first one with its quaternion;
-    None for coordinates of closing joints. `points` are (name, body, place).
+    None for coordinates of cut joints. `points` are (name, body, place).
     """
 
     bodies: tuple[TreeBody | None, ...]
@@ -177,7 +175,7 @@ class _Builder:
         for local, freedom in enumerate(kind.freedoms):
             name = by_freedom.get(first_freedom + local, "")
             full = f"{joint.name}.{name}" if name and not kind.is_ball else ""
-            self.coordinates.append(TreeCoordinate(full, 1.0, freedom.is_slide))
+            self.coordinates.append(TreeCoordinate(full, freedom.is_slide))
             self.states.append(None if state is None else state + (0 if kind.is_ball else local))
         return TreeDisplacement(part.letter, part.before, part.after, joint.pitch, first)
 

@@ -19,9 +19,15 @@ from mechkin_cli.bench.measurement import (
     in_turns,
     measured,
 )
-from mechkin_cli.bench.methods import FAMILY, UNIT, dense_methods, kernel_methods
+from mechkin_cli.bench.methods import (
+    FAMILY,
+    UNIT,
+    dense_methods,
+    kernel_methods,
+    scipy_methods,
+    stepping_methods,
+)
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, key_of
-from mechkin_cli.bench.row_by_row import scipy_methods, stepping_methods
 from mechkin_cli.bench.scene import BATCH, BenchScene, Values
 from mechkin_cli.errors import NotRepeated, wide_run
 from mechkin_cli.kernel import _kernel

@@ -90,13 +90,6 @@ class Panel(NamedTuple):
     curves: tuple[PlotCurve, ...]
 
 
-class PlotMark(NamedTuple):
-    """A place of the run's parameter, and what happens there."""
-
-    place: float
-    words: str
-
-
 class Picture(NamedTuple):
     """What is drawn.
 
@@ -106,7 +99,7 @@ class Picture(NamedTuple):
         panels: from top to bottom; in a plane one.
         is_plane: both axes are of one unit and drawn to one scale.
         parameter: what the run goes along.
-        marks: dead centres, branch points and events, by that parameter.
+        marks: dead centres, branch points and events: where, by that parameter, and in words.
         solved: rows with a position (rows,).
         doubtful: verdicts other than ok of rows that have one: words and rows (rows,).
     """
@@ -116,7 +109,7 @@ class Picture(NamedTuple):
     panels: tuple[Panel, ...]
     is_plane: bool
     parameter: PlotCurve
-    marks: tuple[PlotMark, ...]
+    marks: tuple[tuple[float, str], ...]
     solved: Bools
     doubtful: tuple[tuple[str, Bools], ...]
 
@@ -171,7 +164,7 @@ def _picture(
 ) -> Picture:
     result = analysis.result
     marks = tuple(
-        PlotMark(float(str(mark["x"])), str(mark["text"]))
+        (float(str(mark["x"])), str(mark["text"]))
         for mark in run_marks(analysis, along.label, along.values)
     )
     doubtful = tuple(

@@ -79,7 +79,7 @@ if TYPE_CHECKING:
         effort_names as effort_names,
         row_texts as row_texts,
     )
-    from mechkin_cli.tables.markdown import (
+    from mechkin_cli.tables.markup import (
         markdown_bytes as markdown_bytes,
         rows_table as rows_table,
     )
@@ -124,7 +124,7 @@ __getattr__, __dir__ = lazy_names(
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_NUMBERS ROW_PROOF ROW_TEXTS "
         "Remark TableLayout chosen counted default_table effort_names row_texts",
-        "markdown": "markdown_bytes rows_table",
+        "markup": "markdown_bytes rows_table",
         "print": "read_table_text",
         "results": "Results",
         "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "

@@ -18,7 +18,7 @@ from mechkin_cli.record import dataclass
 from mechkin_cli.tables.columns import FloatArray, TableSource, Words, number_column
 from mechkin_cli.tables.csv import threads_for, word_column
 from mechkin_cli.tables.errors import ColumnErrors, least_digits
-from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
 

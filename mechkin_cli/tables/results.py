@@ -5,6 +5,7 @@ from __future__ import annotations
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import TableSource
+from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.errors import ColumnErrors
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
@@ -30,6 +31,4 @@ class Results(NamedTuple):
 
     def csv(self, table: Columns) -> bytes:
         """A table of the run as CSV."""
-        from mechkin_cli.tables.csv import csv_bytes
-
         return csv_bytes(table, threads=self.threads, units=self.units)

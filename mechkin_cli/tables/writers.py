@@ -30,7 +30,7 @@ def _csv(runs: Sequence[Results]) -> Iterator[File]:
 
 def _markdown(runs: Sequence[Results]) -> Iterator[File]:
     from mechkin_cli.tables.errors import worst_table
-    from mechkin_cli.tables.markdown import markdown_bytes
+    from mechkin_cli.tables.markup import markdown_bytes
 
     for results in runs:
         written = list(results.tables)
@@ -49,7 +49,7 @@ def _json(runs: Sequence[Results]) -> Iterator[File]:
 
 
 def _latex(runs: Sequence[Results]) -> Iterator[File]:
-    from mechkin_cli.tables.latex import latex_bytes
+    from mechkin_cli.tables.markup import latex_bytes
 
     for results in runs:
         for table in results.tables:
@@ -71,7 +71,7 @@ def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, 
     """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`; where errors
     were asked for, `errors.csv` and of a response `NAME.errors.csv`."""
     from mechkin_cli.tables.errors import cells_table
-    from mechkin_cli.tables.markdown import rows_table
+    from mechkin_cli.tables.markup import rows_table
 
     files = dict(file for name in formats for file in WRITERS[name](runs))
     for results in runs:

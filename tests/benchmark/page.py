@@ -29,8 +29,7 @@ from benchmark.yardstick_kernel import Yardstick, load
 from benchmarks.peers import FAMILIES
 from benchmarks.scenes import known_scenes
 from benchmarks.suite import whole_tables
-from mechkin_cli.bench.outputs import figure, page
-from mechkin_cli.bench.report import ReportTable, csv_text, machine
+from mechkin_cli.bench.report import ReportTable, csv_text, figure, machine, page
 from mechkin_cli.bench.runs import FULL, QUICK, bench
 
 RCSR_FILE = ROOT / "mechanisms" / "dissertation" / "rcsr.yaml"

@@ -15,8 +15,7 @@ from cli.test_bench import MECHANISM, command
 from references import FILE_OF
 
 import mechkin_cli as mk
-from mechkin_cli.bench.outputs import write
-from mechkin_cli.bench.report import bench_table, machine
+from mechkin_cli.bench.report import bench_table, machine, write
 from mechkin_cli.bench.runs import Rounds, bench
 from mechkin_cli.bench.scene import BenchScene
 from mechkin_cli.diagnostics import UsageError

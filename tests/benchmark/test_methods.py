@@ -20,16 +20,19 @@ from mechkin_cli.bench import runs
 from mechkin_cli.bench.chain import TreeBody
 from mechkin_cli.bench.measurement import Bench, Measurement, Skipped, errors_of
 from mechkin_cli.bench.methods import ANALYZED
-from mechkin_cli.bench.outputs import (
+from mechkin_cli.bench.report import (
     CURVES,
     NAMES,
+    ReportTable,
+    bench_table,
     best_table,
+    csv_text,
+    markdown,
     record,
     summary,
     svg,
     write,
 )
-from mechkin_cli.bench.report import ReportTable, bench_table, csv_text, markdown
 from mechkin_cli.bench.runs import TEXT, Rounds, bench, exact_values, methods_of
 from mechkin_cli.bench.scene import BenchScene
 from mechkin_cli.diagnostics import UsageError

@@ -9,7 +9,7 @@ import pytest
 import mechkin_cli as mk
 from mechkin_cli.mechanism.motion import DrivenInput
 from mechkin_cli.tables.csv import csv_bytes
-from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.markup import rows_table
 
 FILE = """\
 format: 1

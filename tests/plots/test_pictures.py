@@ -119,15 +119,15 @@ def test_the_same_mechanism_turned_draws_the_same_curve(analysis):
 
 def test_a_dead_centre_and_the_rows_beyond_it_are_marked(ended):
     found = ended.picture(["O4.theta"])
-    (mark,) = found.marks
-    assert mark.words.startswith("dead centre: O1.theta = 205.14")
-    assert mark.place == pytest.approx(205.143965945, abs=1e-8)
+    ((place, words),) = found.marks
+    assert words.startswith("dead centre: O1.theta = 205.14")
+    assert place == pytest.approx(205.143965945, abs=1e-8)
     assert np.isnan(found.panels[0].curves[0].values[~found.solved]).all()
     assert not found.solved.all()
     (axes,) = drawn(found).axes
     legend = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert legend == [mark.words, "no position"]
-    assert [line.get_xdata()[0] for line in axes.lines[1:]] == [mark.place]
+    assert legend == [words, "no position"]
+    assert [line.get_xdata()[0] for line in axes.lines[1:]] == [place]
     # in a plane, and over another column, it is the last row before it
     for other in (ended.picture(["O3.force"]), ended.picture(["O1.theta"], "O4.theta")):
         (axes,) = drawn(other).axes

@@ -9,7 +9,7 @@ import pytest
 from mechkin_cli.tables import Columns, evaluate
 from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
-from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.markup import rows_table
 
 NAN = float("nan")
 

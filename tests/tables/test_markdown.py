@@ -3,7 +3,7 @@
 import numpy as np
 
 from mechkin_cli.tables import evaluate
-from mechkin_cli.tables.markdown import markdown_bytes
+from mechkin_cli.tables.markup import markdown_bytes
 from mechkin_cli.verdict import Status
 
 EXPECTED = """\

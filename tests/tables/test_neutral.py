@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 import mechkin_cli as mk
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.layout import csv_text, link_target, markdown_line, markdown_text
-from mechkin_cli.tables.markdown import markdown_bytes
+from mechkin_cli.tables.markup import markdown_bytes
 from mechkin_cli.tables.print import read_table_text
 
 FORMULAS = [

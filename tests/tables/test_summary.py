@@ -12,7 +12,7 @@ from mechkin_cli.tables import evaluate, summary_table
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.json import table_record
 from mechkin_cli.tables.layout import ROW_NUMBER
-from mechkin_cli.tables.markdown import markdown_bytes
+from mechkin_cli.tables.markup import markdown_bytes
 from mechkin_cli.tables.summary import statistics
 from mechkin_cli.units.dimension import LENGTH
 

@@ -12,7 +12,7 @@ from mechkin_cli.tables import Columns
 from mechkin_cli.tables.columns import TableColumn, Words
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.json import JsonCells, json_bytes, json_text, table_record
-from mechkin_cli.tables.markdown import markdown_bytes
+from mechkin_cli.tables.markup import markdown_bytes
 
 CONTEXT = Context(prec=1500)
 WORDS = (

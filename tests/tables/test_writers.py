@@ -6,7 +6,7 @@ from mechkin_cli.cli import analyze
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables import writers
 from mechkin_cli.tables.csv import csv_bytes
-from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.tables.results import Results
 from mechkin_cli.tables.table import evaluate
 

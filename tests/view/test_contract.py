@@ -14,7 +14,7 @@ from view.seen import array, data
 
 import mechkin_cli as mk
 from mechkin_cli.tables.csv import csv_bytes
-from mechkin_cli.tables.markdown import rows_table
+from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.view.page import script_json
 
 FILES = list(FILE_OF.values())
