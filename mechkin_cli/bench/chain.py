@@ -1,9 +1,9 @@
 """A mechanism as plain data for solvers that are not mechkin's: bodies, closings, coordinates.
 
-The tree and the closing joints are those of the solver graph, so that every solver is given the
+The tree and the cut joints are those of the solver graph, so that every solver is given the
 smallest systems that mechkin has found; formulas are its own. SI, ground axes of the drawing.
 A body is placed by D = D_parent B E(q) A with constant frames B and A and an elementary
-displacement E; a closing joint is a common point, a distance of two points (rods), or two frames
+displacement E; a cut joint is a common point, a distance of two points (rods), or two frames
 that its own chain of displacements brings together.
 """
 
@@ -91,7 +91,7 @@ class BodyTree:
 
     `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states` says for
     each coordinate where it stands in the kernel's states, a ball's first one with its quaternion;
-    None for coordinates of closing joints. `points` are (name, body, place).
+    None for coordinates of cut joints. `points` are (name, body, place).
     """
 
     bodies: tuple[TreeBody | None, ...]

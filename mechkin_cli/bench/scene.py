@@ -203,7 +203,7 @@ class BenchScene:
 
     @cached_property
     def closing_values(self) -> Values:
-        """Named coordinates of closing joints (1, rows) in the closed rows."""
+        """Named coordinates of cut joints (1, rows) in the closed rows."""
         names = [
             c.name
             for c, at in zip(self.chain.coordinates, self.chain.states, strict=True)

@@ -67,7 +67,7 @@ class RowStates(Protocol):
 
     @property
     def turns(self) -> Floats:
-        """Turns of closing joints (turn slots, rows)."""
+        """Turns of cut joints (turn slots, rows)."""
         ...
 
 

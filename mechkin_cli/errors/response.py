@@ -51,7 +51,7 @@ if TYPE_CHECKING:
 
 
 DENSE = 16
-"""Moments to a step of the run in doubles at which the turns of closing joints are looked up: they
+"""Moments to a step of the run in doubles at which the turns of cut joints are looked up: they
 move by much less than half a turn in between."""
 
 

@@ -115,7 +115,7 @@ def enclose(
     unique ones, the reactions. Angles are those next to the kernel's, up to whole turns.
 
     Args:
-        turned: the closing joints' angles as following has them (turn slots, rows).
+        turned: the cut joints' angles as following has them (turn slots, rows).
     """
     wanted = tuple(wanted)
     demand = demand_of(session.problem.mechanism, wanted)

@@ -241,7 +241,7 @@ def enclosures(
 
     Args:
         states: of the rows in doubles (states, rows).
-        turned: the closing joints' angles as following has them (turn slots, rows).
+        turned: the cut joints' angles as following has them (turn slots, rows).
     """
     enclosed, inputs = _enclosed(session)
     positions = Positions(enclosed.plan, enclosed.constants, states, certificate.boxes.radius)

@@ -121,7 +121,7 @@ class MotionReport(NamedTuple):
 @dataclass(frozen=True)
 class MotionRows:
     """Rows of one motion in kernel units: states (states, rows), the chart about each, turns of
-    closing joints (slots, rows), work put in and lost (2, rows) in kg, length units and s, and the
+    cut joints (slots, rows), work put in and lost (2, rows) in kg, length units and s, and the
     kernel's flags (rows,). Rows that were not reached hold nan."""
 
     report: MotionReport

@@ -116,7 +116,7 @@ def input_rest(session: Session, name: str) -> Floats | None:
 
 def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
     """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
-    whether of a closing joint); of an input -2 - its number."""
+    whether of a cut joint); of an input -2 - its number."""
     known, layout = session.problem.quantities(), session.layout
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     found = []

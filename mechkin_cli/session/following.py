@@ -96,7 +96,7 @@ class Followed(NamedTuple):
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
     hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
-    for (`follow`): the angles and quaternions of closing joints, continuous from the
+    for (`follow`): the angles and quaternions of cut joints, continuous from the
     first row, and the whole turns of the tree's angles, whose states are then within half a turn.
     If the branch could not be followed further, `inputs` and `state` are the last place on it,
     `turn` the turns there, and `direction` the way the inputs were going; where that lies on a
@@ -193,7 +193,7 @@ def follow_way(
     every_row: bool = False,
     straight: bool = False,
 ) -> Followed:
-    """Follows the branch along a way, with the turns of closing joints, and gives its rows alone;
+    """Follows the branch along a way, with the turns of cut joints, and gives its rows alone;
     arguments as those of `follow`."""
     found = follow(
         plan,

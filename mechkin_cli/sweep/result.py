@@ -114,7 +114,7 @@ class Result:
 
     @property
     def graph(self) -> SolverGraph:
-        """Tree, closing joints and blocks."""
+        """Tree, cut joints and blocks."""
         return self.session.graph
 
     @cached_property

@@ -51,7 +51,7 @@ class SweepRows:
         limit: (rows,) the largest correction that a guess may still need.
         nodes: steps with which the rows were followed.
         numbers: (rows,) counts them from 0 as the file does.
-        turns: (turn slots, rows) angles and quaternions of closing joints as following carried
+        turns: (turn slots, rows) angles and quaternions of cut joints as following carried
             them along.
         section: (rows,) differs between rows between which a branch point was passed.
         ends: the dead centres beyond which rows are missing.
@@ -230,7 +230,7 @@ def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) 
 
 @remembered
 def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angles, Angles]:
-    """The angles of inputs, with the inputs' numbers; of the tree; of closing joints."""
+    """The angles of inputs, with the inputs' numbers; of the tree; of cut joints."""
     driven, tree, closing = Angles(), Angles(), Angles()
     layout, slots = session.layout, session.readout(wanted).slots
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
