@@ -25,7 +25,7 @@ from mechkin_cli.assembly.near import (
     is_unclear,
     unclear,
 )
-from mechkin_cli.plan import Demand, PassageEnd, TrackEnd
+from mechkin_cli.plan import Demand, TrackEnd
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.search import pose_number
 from mechkin_cli.session import Ask, Batch, RowInputs, Session
@@ -191,7 +191,7 @@ def _followed_back(session: Session, state: Floats, row: int) -> Floats | None:
     if back.end == TrackEnd.FINISHED:
         return back.guess[:, -1]
     ending = back.ending
-    return ending.state if ending and ending.kind == PassageEnd.DEAD_CENTRE else None
+    return ending.state if ending and ending.is_dead_centre else None
 
 
 def _nearest_of(session: Session, states: list[Floats | None]) -> int | None:

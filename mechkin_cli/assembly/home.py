@@ -77,7 +77,7 @@ class Probe:
         batch = self.session.run(RowInputs(values, states), Ask(readout=self.readout))
         assert batch.outputs is not None
         out = batch.outputs
-        coordinates = {name: out[self.readout.slots[name].first] for name in self.coordinates}
+        coordinates = {name: out[self.readout.slots[name].start] for name in self.coordinates}
         points = np.array([out[slot : slot + 3] for slot in self.readout.points])
         # welds have no point
         return coordinates, points.reshape(len(self.points), 3, states.shape[1])

@@ -40,12 +40,10 @@ from mechkin_cli.search import (
     with_assemblies,
 )
 from mechkin_cli.session import (
-    BranchFold,
     Continued,
     ContinuedFrom,
     Followed,
     Session,
-    find_limit,
     input_numbers,
     input_text,
     step_limits,
@@ -270,7 +268,8 @@ def _ends_before_rows(session: Session, followed: Followed) -> AssemblyStart:
         hint=f"choose another assembly with assembly: {{near: ...}}{rigid}",
         numbers=places,
     )
-    folds = isinstance(find_limit(session, followed), BranchFold)
+    ending = followed.ending
+    folds = ending is not None and ending.is_dead_centre
     status = Status.beyond_dead_centre if folds else Status.branch_lost
     stuck = float(np.max(np.abs(followed.inputs), initial=0.0)) <= tolerances.PASSED
     return AssemblyStart(None, HOME, "", [diagnostic], status, stuck=stuck)

@@ -196,10 +196,7 @@ class BenchScene:
         names = self.names(level)
         slots = self.session.readout(self.wanted(names)).slots
         assert batch.outputs is not None
-        return {
-            name: batch.outputs[slots[name].first : slots[name].first + slots[name].width]
-            for name in names
-        }
+        return {name: batch.outputs[slots[name]] for name in names}
 
     @cached_property
     def closing_values(self) -> Values:

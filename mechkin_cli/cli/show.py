@@ -330,7 +330,7 @@ def _named(columns: list[ColumnErrors]) -> str:
 
 
 def explanation(analysis: Analysis) -> str:
-    """Tree, closing joints, blocks and the demand plan."""
+    """Tree, cut joints, blocks and the demand plan."""
     graph = analysis.result.graph
     of = analysis.model.name if analysis.run == SWEEP else f"the start of {analysis.run}"
     lines = [f"solver graph of {of}", "  tree"]

@@ -333,7 +333,7 @@ class KernelRows:
         assert values is not None
         slots = session.readout(wanted).slots
         return {
-            quantity.name: values[slot.first : slot.first + slot.width].copy()
+            quantity.name: values[slot].copy()
             for quantity, slot in ((q, slots[q.name]) for q in wanted)
         }
 

@@ -248,7 +248,7 @@ class Model(Listed):
             quantities: names to compute besides those that the tables read; None: no others.
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
-            closed_at: closing joints to use (the answers do not depend on them).
+            closed_at: cut joints to use (the answers do not depend on them).
             lanes: rows computed side by side, 2, 4 or 8; 0: the most the machine can.
             threads: how many split the rows; 0: all cores. Answers depend on neither.
             errors: measure the true error of every cell now, not when `errors` is first read.

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Design
     from mechkin_cli.mechanism import MotionInputs, Wanted
-    from mechkin_cli.plan import Slot
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
@@ -89,7 +88,7 @@ class Solver:
         self.columns = [
             (
                 q.name,
-                tuple(readout.slots[q.name].first + place for place in q.places),
+                tuple(readout.slots[q.name].start + place for place in q.places),
                 units.conversion(q.dimension),
             )
             for q in wanted
@@ -215,7 +214,7 @@ def _native(
     session: Session,
     outputs: _kernel.Outputs,
     wanted: list[Wanted],
-    readout_slots: Mapping[str, Slot],
+    readout_slots: Mapping[str, slice],
     solved: NDArray[np.intp],
 ) -> _kernel.Positions | None:
     """The kernel's rows to start from; None where no row has a solution."""

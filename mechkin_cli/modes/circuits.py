@@ -18,7 +18,7 @@ from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.search import pose_number
-from mechkin_cli.session import BranchFold, BranchPoint, Runaway, find_limit
+from mechkin_cli.session import Ending, Runaway, find_limit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +38,7 @@ class End(NamedTuple):
 
     kind: EndKind
     value: float
-    fold: BranchFold | None = None
+    fold: Ending | None = None
 
 
 Passage = tuple[float, "Floats"]
@@ -141,13 +141,14 @@ class Walker:
             if followed.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, followed)
                 last = float(followed.inputs[self.number])
-                if isinstance(limit, BranchFold):
-                    return End("dead-centre", float(limit.inputs[self.number]), limit), places
+                if limit is None:
+                    return End("branch-lost", last), places
                 if isinstance(limit, Runaway):
                     return End("unbounded", last), places
-                if isinstance(limit, BranchPoint):
-                    return End("branch-point", float(limit.inputs[self.number])), places
-                return End("branch-lost", last), places
+                at = float(limit.inputs[self.number])
+                if limit.is_dead_centre:
+                    return End("dead-centre", at, limit), places
+                return End("branch-point", at), places
             value, state = target, followed.state
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places

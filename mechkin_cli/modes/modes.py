@@ -546,7 +546,7 @@ class _Stationary:
         self.session, known = survey.session, survey.problem.quantities()
         orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
         self.readout = self.session.readout(orders)
-        self.slots = [self.readout.slots[quantity.name].first for quantity in orders]
+        self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
 
     def places(self) -> list[tuple[float, float]]:
         """(input, output) in kernel units and SI."""

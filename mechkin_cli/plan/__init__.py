@@ -20,7 +20,6 @@ if TYPE_CHECKING:
         WRENCH_KINDS as WRENCH_KINDS,
         OutputPlan as OutputPlan,
         Readout as Readout,
-        Slot as Slot,
         demand_of as demand_of,
         forces_demand as forces_demand,
         needs_all_links as needs_all_links,
@@ -41,7 +40,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "layout": "Carrier Layout home_inputs home_state",
-        "outputs": "FORCE_KINDS OutputPlan Readout Slot WRENCH_KINDS demand_of forces_demand "
+        "outputs": "FORCE_KINDS OutputPlan Readout WRENCH_KINDS demand_of forces_demand "
         "needs_all_links",
         "plan": "build_plan plan_records",
         "programs": "kink_laws",

@@ -99,18 +99,12 @@ def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:
     return energies or bool(demand_of(mechanism, wanted) & Demand.FORCES)
 
 
-class Slot(NamedTuple):
-    """The columns of a quantity in the kernel's output array: the first, and how many."""
-
-    first: int
-    width: int
-
-
 class Readout(NamedTuple):
-    """Outputs of a plan: the slot of each requested quantity, and the first columns of points."""
+    """Outputs of a plan: the columns of each requested quantity in the kernel's output array, its
+    slot, and the first columns of points."""
 
     outputs: Outputs
-    slots: Mapping[str, Slot]
+    slots: Mapping[str, slice]
     points: Sequence[int]
     wanted: tuple[Wanted, ...] = ()
 
@@ -126,7 +120,7 @@ class OutputPlan:
         self, layout: Layout, plan: Plan | None, inputs: Sequence[tuple[str, str]]
     ) -> None:
         self.layout, self.plan, self.inputs = layout, plan, inputs
-        self.slots: dict[str, Slot] = {}
+        self.slots: dict[str, slice] = {}
         self.records: list[Output] = []
         self._width = 0
         self._outputs: Outputs | None = None
@@ -144,7 +138,8 @@ class OutputPlan:
         if wanted.name in self.slots or wanted.owner == "row" or wanted.kind in DERIVED_KINDS:
             return
         add = self._add_coordinate if wanted.kind == "coordinate" else self._add_other
-        self.slots[wanted.name] = Slot(add(wanted), 3 if wanted.vector else 1)
+        first = add(wanted)
+        self.slots[wanted.name] = slice(first, first + (3 if wanted.vector else 1))
 
     def _output(
         self,

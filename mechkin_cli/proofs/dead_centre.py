@@ -34,7 +34,6 @@ from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import (
     Ask,
     Ending,
-    EndOfRows,
     Exchanged,
     Followed,
     RowInputs,
@@ -329,7 +328,7 @@ Lead = tuple[int, Turned]
 
 
 def prove_dead_centre(
-    enclosed: Enclosed, row: Nodes, box: Boxes, end: EndOfRows
+    enclosed: Enclosed, row: Nodes, box: Boxes, behind: int, ending: Ending
 ) -> DeadCentreProof:
     """What is proven of a dead centre.
 
@@ -337,9 +336,10 @@ def prove_dead_centre(
         enclosed: the mechanism as it is driven.
         row: the last row before the dead centre.
         box: of that row.
-        end: where following ended.
+        behind: the number of that row.
+        ending: where following ended.
     """
-    session, ending = enclosed.session, end.ending
+    session = enclosed.session
     gap = ending.inputs - row.values[:, 0]
     moved = np.flatnonzero(np.abs(gap) > row.off[:, 0])
     number = int(np.abs(gap).argmax())
@@ -348,7 +348,7 @@ def prove_dead_centre(
         why: WhyNot | None, fold: Fold | None = None, lead: Lead | None = None
     ) -> DeadCentreProof:
         tubes, turned = lead or (0, None)
-        return DeadCentreProof(end.row, number, ending.inputs, fold, tubes, turned, why)
+        return DeadCentreProof(behind, number, ending.inputs, fold, tubes, turned, why)
 
     if moved.size > 1:
         return proof("inputs")

@@ -115,7 +115,7 @@ def enclose(
     unique ones, the reactions. Angles are those next to the kernel's, up to whole turns.
 
     Args:
-        turned: the closing joints' angles as following has them (turn slots, rows).
+        turned: the cut joints' angles as following has them (turn slots, rows).
     """
     wanted = tuple(wanted)
     demand = demand_of(session.problem.mechanism, wanted)
@@ -152,7 +152,7 @@ def enclose(
     enclosures = {}
     for quantity in wanted:
         slot = readout.slots[quantity.name]
-        parts = values.reshape(-1, 3, rows)[slot.first : slot.first + slot.width]
+        parts = values.reshape(-1, 3, rows)[slot]
         known = np.isfinite(parts).all(axis=1)
         radius = np.where(known, parts[:, 2], np.inf)
         enclosures[quantity.name] = Enclosure(parts[:, 0], parts[:, 1], radius)

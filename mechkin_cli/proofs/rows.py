@@ -32,7 +32,7 @@ from mechkin_cli.verdict import Proof
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from mechkin_cli.session import EndOfRows
+    from mechkin_cli.session import Ending
     from mechkin_cli.show import Bools, Floats
 
 
@@ -106,7 +106,7 @@ class SweepProofs:
 
 
 def certify(
-    session: Session, states: Floats, solved: Bools, ends: Sequence[EndOfRows] = ()
+    session: Session, states: Floats, solved: Bools, ends: Sequence[tuple[int, Ending]] = ()
 ) -> SweepProofs:
     """Proofs of all rows of a sweep.
 
@@ -114,7 +114,7 @@ def certify(
         session: the mechanism, driven along the rows.
         states: of the rows in doubles (states, rows).
         solved: which rows have a position (rows,).
-        ends: the dead centres at which paths along the rows end.
+        ends: the dead centres at which paths along the rows end, behind the last row before each.
     """
     inputs = session.inputs
     nodes = Nodes.of(session, inputs.values, inputs.reduced, states)
@@ -134,18 +134,20 @@ def certify(
         count += tubes
     anchor = int(proven.argmax()) if proven.any() else 0
     certificate = SweepProofs(boxes, solved, joined, count, anchor, enclosed.of_text)
-    dead_centres = tuple(_ended(enclosed, nodes, certificate, end) for end in ends)
+    dead_centres = tuple(_ended(enclosed, nodes, certificate, *end) for end in ends)
     return replace(certificate, dead_centres=dead_centres)
 
 
 def _ended(
-    enclosed: Enclosed, nodes: Nodes, certificate: SweepProofs, end: EndOfRows
+    enclosed: Enclosed, nodes: Nodes, certificate: SweepProofs, number: int, ending: Ending
 ) -> DeadCentreProof:
     """What is proven of a dead centre behind a row, which the branch leads to if it leads to the
     row."""
-    row = slice(end.row, end.row + 1)
-    proof = prove_dead_centre(enclosed, nodes.part(row), certificate.boxes.part(row), end)
-    lost = proof.why is None and not certificate.on_branch[end.row]
+    row = slice(number, number + 1)
+    proof = prove_dead_centre(
+        enclosed, nodes.part(row), certificate.boxes.part(row), number, ending
+    )
+    lost = proof.why is None and not certificate.on_branch[number]
     return replace(proof, why="branch") if lost else proof
 
 
@@ -241,7 +243,7 @@ def enclosures(
 
     Args:
         states: of the rows in doubles (states, rows).
-        turned: the closing joints' angles as following has them (turn slots, rows).
+        turned: the cut joints' angles as following has them (turn slots, rows).
     """
     enclosed, inputs = _enclosed(session)
     positions = Positions(enclosed.plan, enclosed.constants, states, certificate.boxes.radius)

@@ -455,7 +455,7 @@ def weakest_coordinates(session: Session, response: ResponseProblem, state: Floa
     rows = RowInputs(state[places][:, None][:, cases], state[:, None][:, cases], rates)
     batch = session.run(rows, Ask(Demand.VELOCITY, readout))
     assert batch.outputs is not None
-    energies = batch.outputs[readout.slots[wanted.name].first]
+    energies = batch.outputs[readout.slots[wanted.name].start]
     inertia = np.diag(2.0 * energies[:free])
     for energy, (i, j) in zip(energies[free:], pairs, strict=True):
         inertia[i, j] = inertia[j, i] = energy - energies[i] - energies[j]

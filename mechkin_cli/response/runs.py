@@ -140,7 +140,7 @@ def solve_rates(
     rows = RowInputs(reduced, state[:, None][:, repeated], np.eye(count))
     batch = session.run(rows, Ask(Demand.VELOCITY, readout))
     assert batch.outputs is not None
-    by_rate = np.array([batch.outputs[readout.slots[quantity.name].first] for quantity in wanted])
+    by_rate = np.array([batch.outputs[readout.slots[quantity.name].start] for quantity in wanted])
     right = np.array([one.rate or 0.0 for one in with_rate])
     for number in range(free, count):
         right = right - by_rate[:, number] * rates[number]

@@ -23,12 +23,6 @@ if TYPE_CHECKING:
         ShiftingPrecise as ShiftingPrecise,
         precise_inputs as precise_inputs,
     )
-    from mechkin_cli.session.exchanged import (
-        Exchanged as Exchanged,
-        exchange as exchange,
-        find_limit as find_limit,
-        moves_freely as moves_freely,
-    )
     from mechkin_cli.session.followers import (
         InputPath as InputPath,
         angle_slots as angle_slots,
@@ -37,10 +31,7 @@ if TYPE_CHECKING:
         input_rest as input_rest,
     )
     from mechkin_cli.session.following import (
-        BranchFold as BranchFold,
-        BranchPoint as BranchPoint,
         Ending as Ending,
-        EndOfRows as EndOfRows,
         Followed as Followed,
         Runaway as Runaway,
         follow as follow,
@@ -78,8 +69,12 @@ if TYPE_CHECKING:
     from mechkin_cli.session.session import (
         Continued as Continued,
         ContinuedFrom as ContinuedFrom,
+        Exchanged as Exchanged,
         Packing as Packing,
         Session as Session,
+        exchange as exchange,
+        find_limit as find_limit,
+        moves_freely as moves_freely,
     )
 
 __getattr__, __dir__ = lazy_names(
@@ -88,9 +83,8 @@ __getattr__, __dir__ = lazy_names(
         "assembled_places": "Coordinate Structure left_free solver_graph",
         "cells": "Formula cells_of",
         "double_double": "Precise PreciseInputs ShiftingPrecise precise_inputs",
-        "exchanged": "Exchanged exchange find_limit moves_freely",
         "followers": "InputPath angle_slots followers_of input_path input_rest",
-        "following": "BranchFold BranchPoint EndOfRows Ending Followed Runaway follow step_limits",
+        "following": "Ending Followed Runaway follow step_limits",
         "inputs": "KernelInputs ORIENTATION continuous_angle continuous_signs drawn_quaternion "
         "held_values input_number input_numbers input_text input_unit kernel_inputs reduce_angle "
         "turn_count turn_of",
@@ -98,6 +92,7 @@ __getattr__, __dir__ = lazy_names(
         "assembly_size run",
         "path": "places_at places_of",
         "redundancy": "equations_that_follow",
-        "session": "Continued ContinuedFrom Packing Session",
+        "session": "Continued ContinuedFrom Exchanged Packing Session exchange find_limit "
+        "moves_freely",
     },
 )

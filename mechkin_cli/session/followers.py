@@ -19,7 +19,6 @@ from mechkin_cli.tape import replay
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from mechkin_cli.plan import Slot
     from mechkin_cli.session.session import Session
     from mechkin_cli.tape import Tape
 
@@ -114,9 +113,9 @@ def input_rest(session: Session, name: str) -> Floats | None:
     return None
 
 
-def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, int, bool]]:
+def angle_slots(session: Session, names: Mapping[str, slice]) -> list[tuple[int, int, bool]]:
     """Outputs that are angles, as native runs take them: (output slot, row of `Followed.turns`,
-    whether of a closing joint); of an input -2 - its number."""
+    whether of a cut joint); of an input -2 - its number."""
     known, layout = session.problem.quantities(), session.layout
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     found = []
@@ -130,5 +129,5 @@ def angle_slots(session: Session, names: Mapping[str, Slot]) -> list[tuple[int, 
         else:
             turn = session.turn_slots.of_angle(layout, quantity)
         if turn is not None:
-            found.append((slot.first, turn, of_closing))
+            found.append((slot.start, turn, of_closing))
     return found

@@ -70,7 +70,7 @@ class Ending(NamedTuple):
     `block` is the one that is singular there, `inputs` (inputs,) and `state` (states,) the place;
     `first` and `second` are derivatives of the columns by the arclength of the block's branch,
     `bend` the second one of the path's parameter, whose first is zero at a dead centre. `beyond`
-    are inputs and states of a place on a dead centre's other side.
+    are inputs and states of a place on a dead centre's other side, where the path goes back.
     """
 
     kind: PassageEnd
@@ -83,12 +83,10 @@ class Ending(NamedTuple):
     inputs_beyond: Floats
     beyond: Floats
 
-
-class BranchCrossing(NamedTuple):
-    """A branch point that was passed straight on: the first row behind it, and its inputs."""
-
-    row: int
-    inputs: Floats
+    @property
+    def is_dead_centre(self) -> bool:
+        """Whether the path stops while the mechanism could go on; else two branches cross."""
+        return self.kind == PassageEnd.DEAD_CENTRE
 
 
 class Followed(NamedTuple):
@@ -96,11 +94,12 @@ class Followed(NamedTuple):
 
     `guess` (states, rows) and `limit` (rows: largest correction that a fill-in row may still need)
     hold for the first `reached` rows, and so do `turns` (turn slots, rows) where they were asked
-    for (`follow`): the angles and quaternions of closing joints, continuous from the
+    for (`follow`): the angles and quaternions of cut joints, continuous from the
     first row, and the whole turns of the tree's angles, whose states are then within half a turn.
     If the branch could not be followed further, `inputs` and `state` are the last place on it,
     `turn` the turns there, and `direction` the way the inputs were going; where that lies on a
     piece of their course, `parameter` is the course's, at the ending where it is known.
+    `crossings` are branch points that were passed straight on: the first row behind, the inputs.
     """
 
     guess: Floats
@@ -114,7 +113,7 @@ class Followed(NamedTuple):
     turns: Floats | None = None
     turn: Floats | None = None
     ending: Ending | None = None
-    crossings: tuple[BranchCrossing, ...] = ()
+    crossings: tuple[tuple[int, Floats], ...] = ()
     parameter: float | None = None
 
 
@@ -167,7 +166,6 @@ def follow(
     end, reached, steps, _, place, state, last_turn, direction = found[:8]
     ends, crossings, piece, parameter = found[8:]
     ending = None if ends is None else Ending(PassageEnd(ends[0]), *ends[1:])
-    crossed = tuple(BranchCrossing(*each) for each in crossings)
     return Followed(
         guess,
         limit,
@@ -180,7 +178,7 @@ def follow(
         along,
         last_turn,
         ending,
-        crossed,
+        tuple(crossings),
         parameter if piece >= 0 else None,
     )
 
@@ -193,7 +191,7 @@ def follow_way(
     every_row: bool = False,
     straight: bool = False,
 ) -> Followed:
-    """Follows the branch along a way, with the turns of closing joints, and gives its rows alone;
+    """Follows the branch along a way, with the turns of cut joints, and gives its rows alone;
     arguments as those of `follow`."""
     found = follow(
         plan,
@@ -217,8 +215,7 @@ def follow_way(
         reached=int(np.count_nonzero(real < found.reached)),
         turns=np.ascontiguousarray(found.turns[:, real]),
         crossings=tuple(
-            BranchCrossing(int(np.count_nonzero(real < crossing.row)), crossing.inputs)
-            for crossing in found.crossings
+            (int(np.count_nonzero(real < row)), inputs) for row, inputs in found.crossings
         ),
     )
 
@@ -246,38 +243,3 @@ def find_runaway(layout: Layout, state: Floats) -> Runaway | None:
             if slide and number not in driven and abs(length) > abs(longest.slide):
                 longest = Runaway(layout.graph.edges[carrier.edge].joint.name, length)
     return longest if abs(longest.slide) >= tolerances.RUNAWAY_SLIDE else None
-
-
-# Why a branch cannot be followed further: a dead centre, a branch point, a slide that grows out of
-# bounds, or no clear reason.
-#
-# Dead centres and branch points are located while the branch is followed, by arclength
-# (kernel/core/stepping/passage.cpp); never as minima of a determinant.
-
-
-class BranchFold(NamedTuple):
-    """A fold: inputs (inputs,) and states (states,) where the path stops while the mechanism could
-    go on; and a place of the branch on its other side, where the path goes back."""
-
-    inputs: Floats
-    state: Floats
-    inputs_beyond: Floats
-    beyond: Floats
-
-
-class EndOfRows(NamedTuple):
-    """A dead centre at which a way along rows ends: the last row before it, counted from 0, and
-    what following found."""
-
-    row: int
-    ending: Ending
-
-
-class BranchPoint(NamedTuple):
-    """A place where two branches cross: inputs (inputs,) and states (states,)."""
-
-    inputs: Floats
-    state: Floats
-
-
-# Whether each input can move: what follows from its rate closes the loops.

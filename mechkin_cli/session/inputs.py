@@ -260,9 +260,9 @@ def input_text(number: Number) -> str:
     return f"{number.name} = {number.value:.12g} {number.unit}"
 
 
-# Turns: continuous angles and orientations of closing joints, whole turns of the tree's angles.
+# Turns: continuous angles and orientations of cut joints, whole turns of the tree's angles.
 #
-# The kernel has the angle of a closing joint from an arctangent and its orientation from a rotation
+# The kernel has the angle of a cut joint from an arctangent and its orientation from a rotation
 # matrix: whole turns and the quaternion's sign are lost. Following carries both along from node to
 # node by the integral of their rates (`follow(..., turns=True)`), so each row only has to take the
 # value that is nearest to what following says. The states of the tree's angles are kept within half
@@ -278,7 +278,7 @@ class TurnSlots(NamedTuple):
     """Rows of `Followed.turns`.
 
     Attributes:
-        closing: the first row of each (closing joint, freedom); freedom `ORIENTATION` of a joint
+        closing: the first row of each (cut joint, freedom); freedom `ORIENTATION` of a joint
             that has no angles.
         tree: the row with the whole turns of each state that is an angle of the tree.
     """

@@ -1,7 +1,7 @@
 """Closing equations that follow from the others of their joint, because its loop moves in a
 subgroup (docs/numerics.md, Proofs).
 
-In an assembly of the drawing the frames A and B of the closing joint coincide, and elsewhere B is
+In an assembly of the drawing the frames A and B of the cut joint coincide, and elsewhere B is
 moved against A by a displacement D of the subgroup, whatever the coordinates are. So of the joint's
 elementary conditions (kernel/core/joints/pairs.hpp), with d = B.o - A.o, n the normal of a plane
 loop and O the centre of a spherical one,
@@ -122,7 +122,7 @@ class Tests:
 
 
 def subgroup_of(parts: Sequence[Part], tests: Tests) -> Subgroup | None:
-    """The subgroup in which the joints of a loop move, closing joint left out; None where none of
+    """The subgroup in which the joints of a loop move, cut joint left out; None where none of
     the three is found."""
     if not parts or not all(_is_drawn_once(part, tests) for part in parts):
         return None
@@ -213,7 +213,7 @@ def _size(vector: Vector) -> float:
 
 
 class _Loop(NamedTuple):
-    """A loop's closing joint in the drawing, its subgroup, and the test of numbers."""
+    """A loop's cut joint in the drawing, its subgroup, and the test of numbers."""
 
     joint: Joint
     group: Subgroup
@@ -292,7 +292,7 @@ class _Loop(NamedTuple):
 
 
 def _follow(closing: CutJoint, layout: Layout, tests: Tests) -> list[bool]:
-    """Which equations of a closing joint follow from the others."""
+    """Which equations of a cut joint follow from the others."""
     joint = closing.joint
     nothing = [False] * closing.equations
     conditions = closing.constraint.conditions
@@ -311,7 +311,7 @@ def _follow(closing: CutJoint, layout: Layout, tests: Tests) -> list[bool]:
 
 
 def _is_closed(joint: Joint, kinds: Iterable[str], tests: Tests) -> bool:
-    """Whether the frames of a closing joint coincide in the drawing, as far as it looks at them; an
+    """Whether the frames of a cut joint coincide in the drawing, as far as it looks at them; an
     angle that it keeps is tested where that counts."""
     first, second = joint.on_first, joint.on_second
     if "orientation" in kinds:
@@ -322,7 +322,7 @@ def _is_closed(joint: Joint, kinds: Iterable[str], tests: Tests) -> bool:
 def equations_that_follow(session: Session) -> list[bool]:
     """Which closing equations of a session's plan hold where the others of their joint do, in the
     kernel's order: by the numbers of the text, whatever the coordinates are, where the side
-    conditions of the closing joints hold.
+    conditions of the cut joints hold.
 
     Raises:
         LookupError: the session is of no file.

@@ -43,9 +43,9 @@ AssembledPlaces = Callable[[Mechanism, Callable[[], SolverGraph]], Iterator[Call
 
 
 class NothingSolved(Exception):
-    """Some connections without unknowns beside those of their closing joints.
+    """Some connections without unknowns beside those of their cut joints.
 
-    `loops` are the names of the joints in their loops, the closing joint first, without those that
+    `loops` are the names of the joints in their loops, the cut joint first, without those that
     constraints beside the joints close.
     """
 
@@ -316,7 +316,7 @@ def _exchanged(
     chosen: list[Connection],
     depth: Mapping[str, int],
 ) -> list[Connection]:
-    """Exchanges a closing joint for another of its loop with as many freedoms where it helps."""
+    """Exchanges a cut joint for another of its loop with as many freedoms where it helps."""
     least = _unevenness(joints, others, chosen, depth)
     equals = {c.name: some for some in classes for c in some}
     for k, old in enumerate(chosen):
@@ -441,7 +441,7 @@ def _groups(
 
 
 def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
-    """The closing joints of all groups: fewest equations first, then as written."""
+    """The cut joints of all groups: fewest equations first, then as written."""
     depth = {GROUND_NAME: 0}
     chosen: dict[str, int] = {}
     for group in groups:
@@ -454,10 +454,10 @@ def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
 
 
 def _carried_loop(block: NothingSolved, connections: Sequence[Connection]) -> list[Connection]:
-    """A loop that its closing joint alone would have to follow, with that joint as an unknown.
+    """A loop that its cut joint alone would have to follow, with that joint as an unknown.
 
     Raises:
-        UnsolvableGraph: a closing joint does not follow the inputs as they are drawn, or there is
+        UnsolvableGraph: a cut joint does not follow the inputs as they are drawn, or there is
             none.
     """
     named = {c.name: c for c in connections}
@@ -486,7 +486,7 @@ def _cut(
     ends = [link for c in loop for link in (c.first, c.second)]
     inside = [link for link in whole.links if ends.count(link) == 2]
     if not inside:
-        raise errors.no_closing_joint(mechanism.name, names)
+        raise errors.no_cut_joint(mechanism.name, names)
     away = depths(connections, {GROUND_NAME: 0})
     return cut_link(whole, max(inside, key=away.__getitem__), names)
 
@@ -498,11 +498,11 @@ def _laid(
     names: Sequence[str],
     inputs: Sequence[tuple[str, str]],
 ) -> SolverGraph:
-    """Tree, closings and blocks for chosen closing joints."""
+    """Tree, closings and blocks for chosen cut joints."""
     names = [name for name in names if name in whole.joints]
     edges = spanning_tree(whole, names)
     if edges is None:
-        raise errors.no_closing_joint(mechanism.name, tuple(mechanism.joints))
+        raise errors.no_cut_joint(mechanism.name, tuple(mechanism.joints))
     paths = TreePaths(edges)
     driven = []
     for name, coordinate in inputs:

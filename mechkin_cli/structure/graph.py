@@ -85,7 +85,7 @@ class CutJoint(NamedTuple):
 
 
 class Block(NamedTuple):
-    """Closing joints (by index) that are solved together for unknown coordinates (edge,
+    """Cut joints (by index) that are solved together for unknown coordinates (edge,
     freedom); the last `charts` of its equations are those of a chart (`charted`)."""
 
     closings: tuple[int, ...]
@@ -123,7 +123,7 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(names[:MOST_NAMES])}, ... ({len(names)} in all)"
 
 
-def no_closing_joint(name: str, joints: Sequence[str]) -> UnsolvableGraph:
+def no_cut_joint(name: str, joints: Sequence[str]) -> UnsolvableGraph:
     """A loop has no joint that may close it."""
     text = f"the loops of {name} cannot be closed: every loop needs a joint "
     text += "other than H that is not an input and has no spring on its angle"
@@ -197,7 +197,7 @@ def structure_of(graph: SolverGraph) -> object:
 
 
 def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph:
-    """The same tree and closing joints with the inputs `free` (joint, coordinate) undriven."""
+    """The same tree and cut joints with the inputs `free` (joint, coordinate) undriven."""
     pairs = list(zip(graph.inputs, graph.driven, strict=True))
     freed = [at for at, name in pairs if name in free]
     driven = [(at, name) for at, name in pairs if name not in free]
@@ -212,7 +212,7 @@ def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph
 def exchanged(
     graph: SolverGraph, number: int, unknown: tuple[int, int], name: tuple[str, str]
 ) -> SolverGraph:
-    """The same tree and closing joints, driven at an unknown (edge, freedom) in place of input
+    """The same tree and cut joints, driven at an unknown (edge, freedom) in place of input
     `number`, which is solved for.
 
     Blocks that hang on each other by the exchange become one: those from the first whose loops the

@@ -51,7 +51,7 @@ from mechkin_cli.tolerances import LOOP_RANK
 # What the spanning tree is laid through: a mechanism of joints alone, every body within reach.
 #
 # The joints and links of a constraint leave it. A body that only constraints hold hangs from ground
-# by a free pair of six unknowns. A loop without a joint to close it at, or whose closing joint has
+# by a free pair of six unknowns. A loop without a joint to close it at, or whose cut joint has
 # all its unknowns, is closed through a link: the link is cut in two halves that a weld joins
 # (docs/numerics.md, Closing joints).
 
@@ -60,7 +60,7 @@ HALF = " (cut)"
 
 
 class Reduction(NamedTuple):
-    """Joints by name and moving links of the tree and its closing joints, and the constraints
+    """Joints by name and moving links of the tree and its cut joints, and the constraints
     beside them; joints in loops that are `cut` close none."""
 
     joints: Mapping[str, Joint]
@@ -210,7 +210,7 @@ def connections_of(
 ) -> list[Connection]:
     """The joints in the order written, then the other constraints.
 
-    Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a closing joint
+    Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a cut joint
     does not count; so do H and free pairs, which close no loop, and joints of loops that are cut.
     """
     driven = Counter(joint for joint, _ in inputs)

@@ -13,9 +13,7 @@ from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.session import (
-    BranchFold,
-    BranchPoint,
-    EndOfRows,
+    Ending,
     Followed,
     Runaway,
     find_limit,
@@ -52,17 +50,17 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
         rows.diagnostics.append(_exhausted_note(session, followed, rows))
         return
     limit = find_limit(session, followed) if len(path) else None
-    if isinstance(limit, BranchFold):
+    dead_centre = limit if isinstance(limit, Ending) and limit.is_dead_centre else None
+    if dead_centre is not None:
         rows.status[missing] = Status.beyond_dead_centre
     if session.problem.held and (held := _lost_hold_note(session, followed, limit, rows)):
         rows.diagnostics.append(held)
-    elif isinstance(limit, BranchFold):
-        assert followed.ending is not None
-        rows.ends.append(EndOfRows(int(rows.numbers[rows.reached][-1]), followed.ending))
-        rows.diagnostics.append(_dead_centre_note(session, followed, limit, path, rows))
+    elif dead_centre is not None:
+        rows.ends.append((int(rows.numbers[rows.reached][-1]), dead_centre))
+        rows.diagnostics.append(_dead_centre_note(session, followed, dead_centre, path, rows))
     elif isinstance(limit, Runaway):
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
-    elif isinstance(limit, BranchPoint):
+    elif limit is not None:
         rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
     else:
         rows.diagnostics.append(_lost_note(session, followed, path, rows))
@@ -71,8 +69,7 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
 def crossing_note(session: Session, followed: Followed) -> Diagnostic:
     """The branch points that the rows passed straight on."""
     places = [
-        input_numbers(session.problem, session.layout, crossing.inputs)
-        for crossing in followed.crossings
+        input_numbers(session.problem, session.layout, inputs) for _, inputs in followed.crossings
     ]
     return passed_straight_on("branch", places)
 
@@ -165,7 +162,7 @@ def _place(
 
 
 def _dead_centre_note(
-    session: Session, followed: Followed, limit: BranchFold, path: Floats, rows: SweepRows
+    session: Session, followed: Followed, limit: Ending, path: Floats, rows: SweepRows
 ) -> Diagnostic:
     moving = np.flatnonzero(limit.inputs_beyond != limit.inputs)
     shown = _place(session, followed, limit.inputs, moving if moving.size else None)
@@ -195,7 +192,7 @@ def _chords(session: Session, path: Floats) -> str:
 
 
 def _assembled_again(
-    session: Session, followed: Followed, limit: BranchFold, path: Floats, rows: SweepRows
+    session: Session, followed: Followed, limit: Ending, path: Floats, rows: SweepRows
 ) -> Number | None:
     """Where a sweep of one turning input comes to the branch's other end, a whole turn on, before
     its last row."""
@@ -216,7 +213,7 @@ def _assembled_again(
     return input_number(session.problem, session.layout, number, value)
 
 
-def _all_beyond(limit: BranchFold, path: Floats, rows: SweepRows) -> bool:
+def _all_beyond(limit: Ending, path: Floats, rows: SweepRows) -> bool:
     """Whether the missing rows lie where the branch does not come at all."""
     back = limit.inputs_beyond - limit.inputs
     off = path[:, ~rows.reached] - limit.inputs[:, None]
@@ -249,7 +246,7 @@ def _runaway_note(
 
 
 def _branch_point_note(
-    session: Session, followed: Followed, point: BranchPoint, rows: SweepRows
+    session: Session, followed: Followed, point: Ending, rows: SweepRows
 ) -> Diagnostic:
     places = _place(session, followed, point.inputs)
     return _error(
@@ -267,11 +264,11 @@ def _branch_point_note(
 def _lost_hold_note(
     session: Session,
     followed: Followed,
-    limit: BranchFold | Runaway | BranchPoint | None,
+    limit: Ending | Runaway | None,
     rows: SweepRows,
 ) -> Diagnostic | None:
     """Says where the hold of an idle freedom ends the branch, and not the mechanism."""
-    at = limit if isinstance(limit, BranchFold | BranchPoint) else followed
+    at = limit if isinstance(limit, Ending) else followed
     held = mobility.lost_holds(session, at.inputs, at.state)
     if not held:
         return None

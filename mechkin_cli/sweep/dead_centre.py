@@ -28,7 +28,7 @@ import numpy as np
 from mechkin_cli import assembly
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.plan import Demand, Slot, demand_of
+from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
@@ -246,8 +246,9 @@ def _comes_to_rest(rates: Floats | None, row: int) -> bool:
     return bool((np.abs(rates[:, row]) <= RESTS * largest).all())
 
 
-def _slots(slots: Mapping[str, Slot], quantities: Sequence[Wanted]) -> list[int]:
-    return [slots[q.name].first + part for q in quantities for part in range(slots[q.name].width)]
+def _slots(slots: Mapping[str, slice], quantities: Sequence[Wanted]) -> list[int]:
+    own = [slots[quantity.name] for quantity in quantities]
+    return [column for slot in own for column in range(slot.start, slot.stop)]
 
 
 def _note(rows: SweepRows) -> Diagnostic:

@@ -188,7 +188,7 @@ def _links_of(mechanism: Mechanism, quantity: Wanted) -> tuple[str, ...]:
 
 
 def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) -> Mechanism:
-    """The mechanism without some blocks' closing joints and what their unknowns carry."""
+    """The mechanism without some blocks' cut joints and what their unknowns carry."""
     unknown = {k for b in left_out for k, _ in graph.blocks[b].unknowns}
     gone_joints = {graph.closings[c].name for b in left_out for c in graph.blocks[b].closings}
     gone_links: set[str] = set()

@@ -60,7 +60,7 @@ def columns_of(rows: SweepRows, mechanism: Mechanism, readout: Readout, batch: B
     columns = {}
     for quantity in readout.wanted:
         slot = readout.slots[quantity.name]
-        column = values[slot.first : slot.first + slot.width]
+        column = values[slot]
         if some_unclear and demand_of(mechanism, [quantity]):
             column[:, unclear] = np.nan
         columns[quantity.name] = column
@@ -114,7 +114,7 @@ class Result:
 
     @property
     def graph(self) -> SolverGraph:
-        """Tree, closing joints and blocks."""
+        """Tree, cut joints and blocks."""
         return self.session.graph
 
     @cached_property

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import PlacesBefore
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.session import EndOfRows, Followed, Session
+    from mechkin_cli.session import Ending, Followed, Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.structure import RandomStarts
 
@@ -38,7 +38,7 @@ def sections(followed: Followed, rows: int) -> NDArray[np.int64]:
     """The number of branch points that a way passed before each row (rows,)."""
     if not followed.crossings:
         return np.zeros(rows, dtype=np.int64)
-    passed = [crossing.row for crossing in followed.crossings]
+    passed = [row for row, _ in followed.crossings]
     return np.searchsorted(np.sort(np.array(passed)), np.arange(rows), side="right")
 
 
@@ -51,10 +51,10 @@ class SweepRows:
         limit: (rows,) the largest correction that a guess may still need.
         nodes: steps with which the rows were followed.
         numbers: (rows,) counts them from 0 as the file does.
-        turns: (turn slots, rows) angles and quaternions of closing joints as following carried
+        turns: (turn slots, rows) angles and quaternions of cut joints as following carried
             them along.
         section: (rows,) differs between rows between which a branch point was passed.
-        ends: the dead centres beyond which rows are missing.
+        ends: the dead centres beyond which rows are missing, each behind the last row before it.
         dead_centres: rows that stand at one, twice where either of two branches may be meant.
     """
 
@@ -67,7 +67,7 @@ class SweepRows:
     numbers: NDArray[np.int64]
     turns: Floats
     section: NDArray[np.int64]
-    ends: list[EndOfRows]
+    ends: list[tuple[int, Ending]]
     dead_centres: list[PlacesBefore] = field(default_factory=list)
 
     @classmethod
@@ -230,12 +230,12 @@ def make_continuous(result: RunRows, wanted: Sequence[Wanted], outputs: Floats) 
 
 @remembered
 def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angles, Angles]:
-    """The angles of inputs, with the inputs' numbers; of the tree; of closing joints."""
+    """The angles of inputs, with the inputs' numbers; of the tree; of cut joints."""
     driven, tree, closing = Angles(), Angles(), Angles()
     layout, slots = session.layout, session.readout(wanted).slots
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
-        name, output = quantity.name, slots[quantity.name].first
+        name, output = quantity.name, slots[quantity.name].start
         turn = session.turn_slots.of_angle(layout, quantity)
         if name in inputs:
             driven.append((name, output, inputs[name]))

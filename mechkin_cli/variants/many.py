@@ -188,7 +188,7 @@ class _SweepRun:
             threads = threads_for(count * self.rows, self.packing.threads)
             runs = run_variants(kernel, values, self.packing.lanes, threads)
             frictions = friction_states(self.problem.mechanism)
-            states = [reading.slots[q.name].first for q in frictions if q.name in reading.slots]
+            states = [reading.slots[q.name].start for q in frictions if q.name in reading.slots]
             codes[begin : begin + count] = _verdicts(runs, states)
             found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
             # what may stand at a dead centre is judged as in a run of its own
@@ -310,11 +310,11 @@ class _Resolver:
                 rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
             return Quantity(self._over_rows(name), wanted.dimension, rest)
         slot = self.reading.slots[name]
-        columns = [self._column(wanted, slot.first + k) for k in range(slot.width)]
+        columns = [self._column(wanted, k) for k in range(slot.start, slot.stop)]
         if wanted.vector:
             return Quantity(wanted.value(columns), wanted.dimension)
         place = self.reading.slots.get(name + REST)
-        within = None if place is None else self._column(wanted, place.first)
+        within = None if place is None else self._column(wanted, place.start)
         return Quantity(columns[0], wanted.dimension, within)
 
     def _over_rows(self, name: str) -> Floats:

@@ -19,7 +19,7 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.functions import width
 from mechkin_cli.mechanism import Problem
-from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, Slot, flatten, plan_records
+from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, flatten, plan_records
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import (
     Continued,
@@ -76,7 +76,7 @@ class VariantReadout:
         self.last = len(constants)
 
     @property
-    def slots(self) -> Mapping[str, Slot]:
+    def slots(self) -> Mapping[str, slice]:
         """Where each quantity stands among the outputs."""
         return self.readout.slots
 

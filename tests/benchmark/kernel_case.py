@@ -70,8 +70,8 @@ class PlannedRun:
         found = {}
         for name in self.names:
             slot = self.outputs.slots[name]
-            columns = batch.outputs[slot.first : slot.first + slot.width]
-            found[name] = columns[0] if slot.width == 1 else columns.T
+            columns = batch.outputs[slot]
+            found[name] = columns[0] if len(columns) == 1 else columns.T
         return found
 
 

@@ -30,7 +30,7 @@ from mechkin_cli.analysis.certificate import SweepDeadCentre
 from mechkin_cli.plan.records import PassageEnd
 from mechkin_cli.proofs.boxes import Enclosed, Nodes, prove_boxes
 from mechkin_cli.proofs.dead_centre import are_one, prove_dead_centre, prove_fold
-from mechkin_cli.session.following import Ending, EndOfRows
+from mechkin_cli.session.following import Ending
 
 SWEEP = "from: 150, to: 202, step: 2"
 
@@ -338,7 +338,7 @@ def test_a_branch_point_is_no_dead_centre(bars: tuple[str, str, str]) -> None:
             ending = Ending(
                 PassageEnd.DEAD_CENTRE, 0, place, state, first, first, 1.0, place, state
             )
-            found = prove_dead_centre(enclosed, row.part(slice(0, 1)), box, EndOfRows(0, ending))
+            found = prove_dead_centre(enclosed, row.part(slice(0, 1)), box, 0, ending)
             assert found.why is not None
             assert found.fold is None
 

@@ -64,7 +64,7 @@ def repeated(
         constants,
     )
     slots = readout.slots.items()
-    return batch, {name: slice(at.first, at.first + at.width) for name, at in slots}
+    return batch, dict(slots)
 
 
 def numbers(batch: Batch, place: slice, row: int = 0) -> list[Any]:
