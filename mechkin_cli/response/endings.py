@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +18,7 @@ from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import LoadLaw, ResponseProblem
+    from mechkin_cli.mechanism import LoadLaw, ResponseProblem, Stop
     from mechkin_cli.show import Floats
 
 
@@ -244,6 +245,10 @@ def ending(
         text = f"from {_time(units, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
+    for number, stop in enumerate(response.stops):
+        times = [time for touched, time in report.touches if touched == number]
+        if times:
+            notes.append(_touched(stop, [_time(units, time) for time in times]))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _time(units, report.time)
@@ -268,6 +273,13 @@ def ending(
         )
     )
     return why.status, notes
+
+
+def _touched(stop: Stop, times: Sequence[str]) -> Diagnostic:
+    more = f" and {len(times) - 1} more times" if len(times) > 1 else ""
+    text = f"{stop.words} is touched at {times[0]}{more}, but not passed"
+    hint = "the response goes on; move the value of at: if it is to end there"
+    return Diagnostic("stop-touched", "note", text, stop.place, hint=hint)
 
 
 def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:

@@ -90,6 +90,7 @@ class MotionReport(NamedTuple):
         rows, evaluations, steps, rejections: their counts.
         last: the last states.
         crossings: the branch points that were passed (time in s, states).
+        touches: stops (numbers) whose value came to `at` and went back, and when (s).
         branch_point: the states at the one that it has ended next to; empty: none.
         singular: whether short steps were refused there as off the branch.
     """
@@ -114,6 +115,7 @@ class MotionReport(NamedTuple):
     rejections: int
     last: list[float]
     crossings: list[tuple[float, list[float]]]
+    touches: list[tuple[int, float]]
     branch_point: list[float]
     singular: bool
 
@@ -138,9 +140,10 @@ class MotionRows:
 
 
 class WatchedStop(NamedTuple):
-    """What ends a motion, by a value that is watched. `kind` 0: it crosses `at`, upwards (1),
-    downwards (-1) or in either direction (0); 1: it changes its sign for the `times`th time; 2: it
-    lies `times` turns from where it began. `lengths` and `rates` are the powers of length and
+    """What ends a motion, by a value that is watched. `kind` 0: it crosses `at` for the `times`th
+    time, upwards (1), downwards (-1) or in either direction (0); 1: it changes its sign for the
+    `times`th time; 2: it lies `times` turns from where it began; 3: a condition holds for the
+    `times`th time. `lengths` and `rates` are the powers of length and
     1/time in the value's dimension, by which its rounding is estimated; `rates` -1: not known."""
 
     kind: int

@@ -150,6 +150,8 @@ void March::search(Method& method, const Flags& crossed, const Flags& suspected,
     if (!crossed[i] && !suspected[i]) continue;
     if (found[i].kind == Crossing::NONE) {
       c.landing = -1;
+      const double at = states_.time[i] + found[i].touched_part * states_.step[i];
+      if (found[i].touched >= 0) states_.motion.touch(i, found[i].touched, at);
       continue;
     }
     (*mask)[i] = 0;
@@ -204,6 +206,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     anew = asked;
     evaluate(&anew);
   }
+  meet_events(anew);
   states_.error_scales(states_.y.data(), states_.y.data(), scale_.data());
   for (int i = 0; i < lanes; ++i) {
     if (asked[i] && !anew[i]) finish(i, LaneEnd::STUCK);
@@ -212,6 +215,47 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     renew(i);
     states_.speed[i] = std::max(states_.speed[i], states_.speed_in(states_.y.data(), i));
   }
+}
+
+// Events of lanes that stand at kinks: their values may have jumped over their zero there, or have come to it, which is a
+// passage unless they go back. `other_slope_` and `values_` are those behind the kinks.
+void March::meet_events(const Flags& mask) {
+  const int lanes = states_.lanes, switches = (int)states_.kinds.size();
+  Flags at_zero(lanes, 0);
+  std::vector<double> rounding;
+  for (int s = 0; s < switches; ++s)
+    for (int i = 0; i < lanes; ++i) {
+      const std::size_t k = (std::size_t)s * lanes + i;
+      if (!mask[i] || !states_.kinds[s].is_event()) continue;
+      if (rounding.empty()) rounding = roundings(mask, values_);
+      const double value = states_.side[k] * values_[k];
+      if (value < -rounding[k]) {
+        jump(i, s);
+      } else if (value <= rounding[k]) {
+        // an event that has rested at its zero is none
+        const double before = std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k]));
+        at_zero[i] |= before > rounding[k];
+      }
+    }
+  if (!any(at_zero)) return;
+  const std::vector<std::int8_t> ahead = sides_ahead(at_zero, other_slope_, values_, rounding);
+  for (int s = 0; s < switches; ++s)
+    for (int i = 0; i < lanes; ++i) {
+      const std::size_t k = (std::size_t)s * lanes + i;
+      if (!at_zero[i] || !states_.kinds[s].is_event() || std::fabs(values_[k]) > rounding[k]) continue;
+      if (std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k])) <= rounding[k]) continue;
+      if (ahead[k] * states_.side[k] > 0)
+        states_.motion.touch(i, s, states_.time[i]);
+      else
+        jump(i, s);
+    }
+}
+
+void March::jump(int lane, int which) {
+  const std::size_t k = (std::size_t)which * states_.lanes + lane;
+  states_.side[k] = (std::int8_t)-states_.side[k];
+  ++control_[lane].met[which];
+  control_[lane].jumped.push_back(which);
 }
 
 // A kink that the motion comes back to holds it, if the rates jump there: `other_slope_` and `slope` are those of both sides.
@@ -232,9 +276,14 @@ void March::pass_landed(const Flags& mask) {
   pass(landed, which);
 }
 
-// Tells the motion of a switch that was passed; it may end the lane.
+// Tells the motion of a switch that was passed, and of events that were passed with it; they may end the lane.
 void March::tell(int lane, int which) {
-  if (states_.kinds[which].moves) return;
-  const bool rising = states_.side[(std::size_t)which * states_.lanes + lane] > 0;
-  if (states_.motion.event(lane, which, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, which);
+  std::vector<int> passed;
+  passed.swap(control_[lane].jumped);
+  passed.insert(passed.begin(), which);
+  for (int s : passed) {
+    if (states_.kinds[s].moves || !control_[lane].running) continue;
+    const bool rising = states_.side[(std::size_t)s * states_.lanes + lane] > 0;
+    if (states_.motion.event(lane, s, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, s);
+  }
 }

@@ -10,6 +10,7 @@ namespace {
 // What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
 constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
 constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
+constexpr double NOISE = 16.0;  // times the rounding of a kink's value: what may be a sign of rounding alone
 
 }  // namespace
 
@@ -74,6 +75,9 @@ void March::compare_sides(int which, const double* time, const double* place, co
   const int lanes = states_.lanes;
   const double* const value = values + (std::size_t)which * lanes;
   Flags told(lanes, 0);
+  // an event sees its kinks whatever the rates do
+  std::vector<double> rounding(states_.side.size(), 0.0);
+  if (states_.kinds[which].bends_event) rounding = roundings(*mask, states_.switch_value);
   turn_with_outer(which, time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
@@ -81,6 +85,8 @@ void March::compare_sides(int which, const double* time, const double* place, co
     const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
     const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
     (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
+    if (states_.kinds[which].bends_event)
+      (*mask)[i] &= std::max(deepest, here) <= NOISE * rounding[(std::size_t)which * lanes + i];
     states_.fault[i] = 0;
   }
 }
