@@ -91,7 +91,7 @@ std::vector<double> CrossingSearch::values(const std::vector<double>& switches, 
   std::vector<double> own(states_.kinds.size());
   for (std::size_t s = 0; s < own.size(); ++s) {
     const std::size_t k = s * states_.lanes + lane;
-    own[s] = ignored_[k] ? 0.0 : states_.side[k] * switches[k];
+    own[s] = ignored_[k] ? 0.0 : states_.good(k, switches[k]);
   }
   return own;
 }
@@ -119,7 +119,7 @@ void CrossingSearch::look() {
 void CrossingSearch::forget_kinks(int lane) {
   for (std::size_t s = 0; s < states_.kinds.size(); ++s) {
     const std::size_t k = s * states_.lanes + lane;
-    const double bad = -states_.side[k] * switches_[k];
+    const double bad = -states_.good(k, switches_[k]);
     if (!states_.kinds[s].may_be_nothing() || ignored_[k] || !(bad > compared_[k])) continue;
     compared_[k] = MUCH * bad;
     ignored_[k] = is_same_(lane, (int)s, at_.data(), place_.data(), slope_.data(), switches_.data());

@@ -52,7 +52,7 @@ bool March::is_ignored(int lane, int which) const {
 
 bool March::is_crossed_by(int lane, int which) const {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
-  return states_.side[k] * states_.switch_end[k] < 0.0;
+  return states_.good(k, states_.switch_end[k]) < 0.0;
 }
 
 bool March::is_crossed(int lane, int but) const {
@@ -64,10 +64,9 @@ bool March::is_crossed(int lane, int but) const {
 // The least value of a switch within the step, as far as its stages and, where asked, what lies between them tell.
 double March::least_inside(int lane, int which, bool stages_alone) const {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
-  const double side = states_.side[k];
   const double x[4] = {0.0, states_.inner[0], states_.inner[1], 1.0};
-  const double y[4] = {side * states_.switch_value[k], side * states_.switch_inner[0][k],
-                       side * states_.switch_inner[1][k], side * states_.switch_end[k]};
+  const double y[4] = {states_.good(k, states_.switch_value[k]), states_.good(k, states_.switch_inner[0][k]),
+                       states_.good(k, states_.switch_inner[1][k]), states_.good(k, states_.switch_end[k])};
   double least = states_.switch_least[k];
   if (!stages_alone) least = std::min(least, least_between(x, y));
   return least < -SMALL * std::max(std::fabs(y[0]), std::fabs(y[3])) ? least : 0.0;
@@ -109,7 +108,7 @@ void March::look_for_crossings(Method& method, Flags* mask) {
 void March::land(int lane, Flags* mask) {
   LaneControl& c = control_[lane];
   const std::size_t at = (std::size_t)c.landing * states_.lanes + lane;
-  const double value = states_.side[at] * states_.switch_end[at], step = states_.step[lane];
+  const double value = states_.good(at, states_.switch_end[at]), step = states_.step[lane];
   const double change = step - c.landing_before;
   if (c.landing_tries > 0 && std::fabs(change) > 1e-9 * step) {
     const double slope = (value - c.landing_value) / change;
@@ -186,7 +185,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     if (moves)
       states_.motion.move(i, which[i], states_.time[i], states_.y.data());
     else
-      states_.side[k] = (std::int8_t)-states_.side[k];
+      states_.turn(k, states_.switch_end[k]);
     ++control_[i].passed[which[i]];
     ++control_[i].met[which[i]];
     anew[i] = is_kink;

@@ -18,7 +18,7 @@ struct Places {
   const double* time;           // lanes
   const double* y;
   const unsigned char* active;  // lanes: those that are asked for; nothing is read of the others
-  const signed char* side;      // switches x lanes: +1 or -1
+  const signed char* side;      // switches x lanes: +1 or -1; 0 of one that rests at its zero
   bool is_end;                  // the end of a step: if the step is taken, `accept` comes with it, see there
 };
 
@@ -38,6 +38,7 @@ struct SwitchKind {
   bool kink;
   bool moves = false;
   signed char first = 1;  // side on which the first rates are taken; where it is known before, they do not reach beyond
+  bool may_rest = false;  // a kink that takes the side 0: its value stays zero until another kink is passed
   bool bends_event = false;  // a kink at which the value of an event bends or jumps, whatever the rates do
   bool is_event() const { return !kink && !moves; }
   // A kink that stays where it is: where both its sides give the same rates it is passed without a word.

@@ -43,8 +43,8 @@ void March::turn_with_outer(int which, const double* time, const double* place, 
   const int lanes = states_.lanes, switches = (int)states_.kinds.size();
   const std::vector<std::int8_t> kept = states_.side;
   const auto turn = [&](int s, int i) {
-    std::int8_t& side = states_.side[(std::size_t)s * lanes + i];
-    side = (std::int8_t)-side;
+    const std::size_t at = (std::size_t)s * lanes + i;
+    states_.turn(at, s == which ? values[at] : values_[at]);
   };
   Flags open = mask;
   for (int i = 0; i < lanes; ++i)
@@ -59,7 +59,7 @@ void March::turn_with_outer(int which, const double* time, const double* place, 
       for (int s = which + 1; s < switches && !open[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
-        open[i] = states_.side[at] * values_[at] < 0.0;
+        open[i] = states_.good(at, values_[at]) < 0.0;
         if (open[i]) turn(s, i);
       }
     }
@@ -81,7 +81,8 @@ void March::compare_sides(int which, const double* time, const double* place, co
   turn_with_outer(which, time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
-    const double at_end = -states_.side[(std::size_t)which * lanes + i] * states_.switch_end[(std::size_t)which * lanes + i];
+    const std::size_t at = (std::size_t)which * lanes + i;
+    const double at_end = -states_.good(at, states_.switch_end[at]);
     const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
     const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
     (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);

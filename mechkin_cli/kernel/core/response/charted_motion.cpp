@@ -127,7 +127,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
   const std::vector<bool> read = kinks_of_stops();
-  for (int k = 0; k < plan_.law.kinks; ++k) kinds[k].bends_event = read[k];
+  for (int k = 0; k < plan_.law.kinks; ++k) kinds[k].may_rest = true, kinds[k].bends_event = read[k];
   // all motions begin at one time
   for (int e = 0; e < edges(); ++e)
     kinds.push_back({true, false, (signed char)(starts_[0].time < driven_->edges()[e] ? -1 : 1)});
