@@ -87,9 +87,9 @@ class LoadLaws:
         self.laws.append(LoadLaw(tuple(q.name for q in reads), place, expression))
         return Varying(len(self.laws) - 1, any(_is_moving(q) for q in reads))
 
-    def watched(self, path: Path, text: str) -> tuple[LoadLaw, Dimension] | None:
-        """The law of an expression of any dimension, which is not a load; None where an error was
-        noted."""
+    def watched(self, path: Path, text: str) -> tuple[LoadLaw, Quantity] | None:
+        """The law of an expression of any dimension, which is not a load, and what it is; None
+        where an error was noted."""
         try:
             expression = self.fields.definitions.parse(text)
             if expression.names <= self.fields.parameters.keys():
@@ -103,7 +103,7 @@ class LoadLaws:
             self.fields.expression_error(path, error)
             return None
         names = tuple(self._read(expression.names))
-        return LoadLaw(names, self.fields.document.place(path), expression), quantity.dimension
+        return LoadLaw(names, self.fields.document.place(path), expression), quantity
 
     def by_table(self, path: Path, value: TableValue, over: str, dimension: Dimension) -> Varying:
         """The value of a dimension in a table, which runs over the quantity `over` unless it names

@@ -168,11 +168,15 @@ class StopBuilder:
         watched = self.laws.watched((*path, "value"), section.value)
         if watched is None:
             return None
-        law, dimension = watched
-        at = self.fields.number((*path, "at"), section.at, dimension)
-        amount = self.fields.units.text(at + 0.0, dimension)  # no -0
-        words = f"{section.value.strip()} = {amount}{_DIRECTIONS[section.direction]}"
-        return CrossingEnd(words, law.place, law, dimension, at, section.direction)
+        law, quantity = watched
+        words, at, dimension = section.value.strip(), None, quantity.dimension
+        if section.at is not None or not quantity.truth:
+            at = self.fields.number((*path, "at"), section.at or "0", dimension)
+            amount = self.fields.units.text(at + 0.0, dimension)  # no -0
+            words += f" = {amount}{_DIRECTIONS[section.direction]}"
+        if section.count > 1:
+            words += f", time {section.count}"
+        return CrossingEnd(words, law.place, law, dimension, at, section.direction, section.count)
 
 
 def build_responses(

@@ -61,7 +61,8 @@ class Effort(NamedTuple):
 
 @dataclass(frozen=True)
 class CrossingEnd:
-    """Ends a response where the value of `law` passes `at` (SI), rising (`up`), falling or either.
+    """Ends a response where the value of `law` passes `at` (SI) the `count`th time, rising (`up`),
+    falling or either; without `at`, where the condition `law` holds the `count`th time.
 
     `words` are what a row says of it: `O1.theta = 45 deg`.
     """
@@ -70,8 +71,9 @@ class CrossingEnd:
     place: Place
     law: LoadLaw
     dimension: Dimension
-    at: float
+    at: float | None
     direction: Direction
+    count: int
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
-    from mechkin_cli.mechanism import LoadLaw, Problem, ResponseProblem
+    from mechkin_cli.mechanism import LoadLaw, Problem, ResponseProblem, Stop
     from mechkin_cli.show import Floats
 
 
@@ -98,6 +98,7 @@ class MotionReport(NamedTuple):
         rows, evaluations, steps, rejections: their counts.
         last: the last states.
         crossings: the branch points that were passed (time in s, states).
+        touches: stops (numbers) whose value came to `at` and went back, and when (s).
         branch_point: the states at the one that it has ended next to; empty: none.
         singular: whether short steps were refused there as off the branch.
     """
@@ -122,6 +123,7 @@ class MotionReport(NamedTuple):
     rejections: int
     last: list[float]
     crossings: list[tuple[float, list[float]]]
+    touches: list[tuple[int, float]]
     branch_point: list[float]
     singular: bool
 
@@ -148,10 +150,10 @@ class MotionRows:
 WatchedStop = tuple[int, int, int, float, int, int]
 """What ends a motion, by a value that is watched: kind, direction, times, at, lengths, rates.
 
-Kind 0: the value crosses `at`, upwards (1), downwards (-1) or in either direction (0); 1: it
-changes its sign for the `times`th time; 2: it lies `times` turns from where it began. `lengths` and
-`rates` are the powers of length and 1/time in its dimension, by which its rounding is estimated;
-`rates` -1: not known."""
+Kind 0: the value crosses `at` for the `times`th time, upwards (1), downwards (-1) or in either
+direction (0); 1: it changes its sign for the `times`th time; 2: it lies `times` turns from where it
+began; 3: it is a condition that holds for the `times`th time. `lengths` and `rates` are the powers
+of length and 1/time in its dimension, by which its rounding is estimated; `rates` -1: not known."""
 
 
 def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
@@ -482,6 +484,10 @@ def ending(
         text = f"from {_time(units, report.stiff_from)} on the motion is stiff"
         hint = "an implicit method of order 5 (Radau IIA) has taken over; nothing is to be done"
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
+    for number, stop in enumerate(response.stops):
+        times = [time for touched, time in report.touches if touched == number]
+        if times:
+            notes.append(_touched(stop, [_time(units, time) for time in times]))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes
     at = _time(units, report.time)
@@ -502,6 +508,13 @@ def ending(
         )
     )
     return status, notes
+
+
+def _touched(stop: Stop, times: Sequence[str]) -> Diagnostic:
+    more = f" and {len(times) - 1} more times" if len(times) > 1 else ""
+    text = f"{stop.words} is touched at {times[0]}{more}, but not passed"
+    hint = "the response goes on; move the value of at: if it is to end there"
+    return Diagnostic("stop-touched", "note", text, stop.place, hint=hint)
 
 
 def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:

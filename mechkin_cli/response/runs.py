@@ -191,7 +191,10 @@ _DIRECTIONS = {"up": 1, "down": -1, "any": 0}
 def watched_stop(stop: Stop) -> WatchedStop:
     """A stop as the kernel takes it."""
     if isinstance(stop, CrossingEnd):
-        return 0, _DIRECTIONS[stop.direction], 1, stop.at, *_powers(stop.dimension)
+        if stop.at is None:
+            return 3, 1, stop.count, 0.0, 0, -1
+        direction = _DIRECTIONS[stop.direction]
+        return 0, direction, stop.count, stop.at, *_powers(stop.dimension)
     if isinstance(stop, DeadCentreEnd):
         rate = dimension_of(stop.coordinate) / TIME
         return 1, 0, stop.count, 0.0, *_powers(rate)

@@ -89,10 +89,13 @@ class Crossing(Section):
 
     value: AnyDimension
     """An expression of coordinates, rates, positions, velocities, parameters and time."""
-    at: AnyDimension = "0"
-    """The value at which the response ends; a bare number is in the file's units."""
+    at: AnyDimension | None = None
+    """The value at which the response ends, 0 unless given; a bare number is in the file's units. A
+    condition such as A.s > 1 m needs none: the response ends where it holds."""
     direction: Literal["up", "down", "any"] = "any"
     """Whether it ends only where the value rises or falls."""
+    count: Annotated[WholeNumber, Limits(ge=1, le=1_000_000)] = 1
+    """Number of the passage that ends it, counted from 1."""
 
 
 class DeadCentre(Section):

@@ -36,6 +36,9 @@ nb::dict report_of(const ResponseReport& report) {
   d["stop"] = report.stop, d["joints"] = report.joints;
   nb::list crossings;
   for (const PassedBranchPoint& p : report.crossings) crossings.append(nb::make_tuple(p.time, p.state));
+  nb::list touches;
+  for (const TouchedStop& t : report.touches) touches.append(nb::make_tuple(t.stop, t.time));
+  d["touches"] = touches;
   d["last"] = report.last, d["crossings"] = crossings, d["branch_point"] = report.branch_point;
   d["singular"] = report.singular;
   d["energy"] = report.energy;
@@ -82,7 +85,7 @@ MotionLimits limits_of(const std::vector<double>& tests, int iterations, double 
 std::vector<MotionStop> stops_of(const Stops& stops) {
   std::vector<MotionStop> made;
   for (const auto& [kind, direction, count, at, lengths, rates] : stops) {
-    need(kind >= STOP_CROSSING && kind <= STOP_TURNS, "stops: unknown kind");
+    need(kind >= STOP_CROSSING && kind <= STOP_CONDITION, "stops: unknown kind");
     need(direction >= -1 && direction <= 1, "stops: a direction is -1, 0 or 1");
     need(all_finite(&at, 1), "stops: not finite");
     need(std::abs(lengths) <= MOST_POWER && rates <= MOST_POWER, "stops: a power is too large");

@@ -50,7 +50,7 @@ inline Pack value_on_side(const ProgramOf<Number>& program, int k, Pack side, co
   }
 }
 
-// As run_program, with every kink's result taken on a side of it (kinks).
+// As run_program, with every kink's result taken on a side of it (kinks), or where that is 0 as it is: at its zero.
 template <class Number, class RowValue>
 inline void run_on_sides(const Plan& p, const Workspace& w, const ProgramOf<Number>& program, const RowValue& row_value,
                          const Pack* side, Pack* r) {
@@ -65,7 +65,8 @@ inline void run_on_sides(const Plan& p, const Workspace& w, const ProgramOf<Numb
   };
   for (int k = 0; k < program.kinks; ++k) {
     replay_to(program.kink[k] + 1);
-    r[program.inputs + program.constants + program.kink[k]] = value_on_side(program, k, side[k], r);
+    Pack& result = r[program.inputs + program.constants + program.kink[k]];
+    result = select(side[k] == Pack(0.0), result, value_on_side(program, k, side[k], r));
   }
   replay_to(program.instructions);
 }

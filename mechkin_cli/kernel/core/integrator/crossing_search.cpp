@@ -16,12 +16,7 @@ constexpr double MUCH = 4.0;                    // times as bad as where a kink 
 constexpr int MOST_TRIES = 80;
 constexpr double FOUND = 1e-10;                 // of the step; what is left is done by steps
 constexpr int BISECT_EVERY = 3;
-
-bool is_bad(const std::vector<double>& values) {
-  for (double v : values)
-    if (v < 0.0) return true;
-  return false;
-}
+constexpr double TOUCH = 1e-12;                 // of an event's values at the ends: a dip that is none
 
 }  // namespace
 
@@ -57,25 +52,46 @@ bool CrossingSearch::Samples::deepest(double* at) const {
   return least < __builtin_inf() && !std::binary_search(part.begin(), part.end(), *at);
 }
 
-// The bad switch whose zero is the first by the secant, and where that is.
-int CrossingSearch::Bracket::first(double* where) const {
+// The bad switch whose zero is the first by the secant, and where that is. A kink at which an event's value bends comes before
+// an event at the same place, whose value beyond is that of the other side.
+int CrossingSearch::Bracket::first(const std::vector<SwitchKind>& kinds, double* where) const {
   int which = -1;
   for (std::size_t s = 0; s < at_high.size(); ++s) {
     if (!(at_high[s] < 0.0)) continue;
     const double a = std::max(at_low[s], 0.0) * low_weight, b = at_high[s] * high_weight;
     const double x = low + (high - low) * (a / (a - b));
-    if (which >= 0 && !(x < *where)) continue;
+    const bool is_kink = kinds[s].bends_event, after_kink = which >= 0 && kinds[which].bends_event;
+    const double margin = is_kink && !after_kink ? FOUND : after_kink && !is_kink ? -FOUND : 0.0;
+    if (which >= 0 && !(x < *where + margin)) continue;
     *where = x;
     which = (int)s;
   }
   return which;
 }
 
+// Whether a switch is bad at the place that a lane was looked at.
+bool CrossingSearch::is_bad(int lane) const {
+  for (double v : seen_[lane])
+    if (v < 0.0) return true;
+  return false;
+}
+
+// The event that comes nearest to its zero among the places of a step that were looked at, if that is rounding.
+void CrossingSearch::find_touch(int lane, const Samples& samples) {
+  for (std::size_t s = 0; s < states_.kinds.size(); ++s) {
+    if (!states_.kinds[s].is_event()) continue;
+    const double ends = std::max(samples.values.front()[s], samples.values.back()[s]);
+    for (std::size_t k = 1; k + 1 < samples.part.size(); ++k)
+      if (samples.values[k][s] <= TOUCH * ends && ends > 0.0)
+        found_[lane].touched = (int)s, found_[lane].touched_part = samples.part[k];
+  }
+}
+
 std::vector<double> CrossingSearch::values(const std::vector<double>& switches, int lane) const {
   std::vector<double> own(states_.kinds.size());
   for (std::size_t s = 0; s < own.size(); ++s) {
     const std::size_t k = s * states_.lanes + lane;
-    own[s] = ignored_[k] ? 0.0 : states_.side[k] * switches[k];
+    own[s] = ignored_[k] ? 0.0 : states_.good(k, switches[k]);
   }
   return own;
 }
@@ -103,7 +119,7 @@ void CrossingSearch::look() {
 void CrossingSearch::forget_kinks(int lane) {
   for (std::size_t s = 0; s < states_.kinds.size(); ++s) {
     const std::size_t k = s * states_.lanes + lane;
-    const double bad = -states_.side[k] * switches_[k];
+    const double bad = -states_.good(k, switches_[k]);
     if (!states_.kinds[s].may_be_nothing() || ignored_[k] || !(bad > compared_[k])) continue;
     compared_[k] = MUCH * bad;
     ignored_[k] = is_same_(lane, (int)s, at_.data(), place_.data(), slope_.data(), switches_.data());
@@ -117,7 +133,7 @@ void CrossingSearch::end(int lane, Crossing::Kind kind) {
   open_[lane] = 0;
   c.kind = kind;
   if (kind == Crossing::NONE) return;
-  c.which = b.first(&c.part);
+  c.which = b.first(states_.kinds, &c.part);
   // all that was bad is ignored
   if (c.which < 0) return (void)(c.kind = Crossing::NONE);
   if (c.part < EARLY[2]) c.kind = Crossing::AT_ONCE;
@@ -167,7 +183,13 @@ void CrossingSearch::scan(const Flags& suspected) {
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
       const std::size_t at = samples[i].insert(part_[i], seen_[i]);
-      if (!is_bad(seen_[i])) continue;
+      // what an event has below its zero by rounding
+      for (std::size_t e = 0; e < seen_[i].size(); ++e) {
+        const double ends = std::max(samples[i].values.front()[e], samples[i].values.back()[e]);
+        if (states_.kinds[e].is_event() && seen_[i][e] < 0.0 && seen_[i][e] >= -TOUCH * ends)
+          seen_[i][e] = samples[i].values[at][e] = 0.0;
+      }
+      if (!is_bad(i)) continue;
       Bracket& b = bracket_[i];
       b.low = samples[i].part[at - 1];
       b.at_low = samples[i].values[at - 1];
@@ -179,6 +201,7 @@ void CrossingSearch::scan(const Flags& suspected) {
   }
   for (int i = 0; i < states_.lanes; ++i) {
     if (open_[i]) end(i, Crossing::NONE);
+    if (suspected[i] && !waiting[i]) find_touch(i, samples[i]);
     open_[i] = waiting[i];
   }
 }
@@ -203,7 +226,7 @@ void CrossingSearch::look_early() {
     look();
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
-      const bool bad = is_bad(seen_[i]);
+      const bool bad = is_bad(i);
       move(i, bad);
       if (bad) continue;
       waiting[i] = 1;
@@ -221,7 +244,7 @@ void CrossingSearch::close_in() {
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
       Bracket& b = bracket_[i];
-      if (b.first(&part_[i]) < 0) {
+      if (b.first(states_.kinds, &part_[i]) < 0) {
         end(i, Crossing::NONE);
         continue;
       }
@@ -235,7 +258,7 @@ void CrossingSearch::close_in() {
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
       Bracket& b = bracket_[i];
-      const bool bad = is_bad(seen_[i]);
+      const bool bad = is_bad(i);
       // an end that stays twice weighs half
       (bad ? b.high_weight : b.low_weight) = 1.0;
       (bad ? b.low_weight : b.high_weight) *= 0.5;

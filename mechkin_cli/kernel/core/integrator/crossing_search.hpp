@@ -19,6 +19,8 @@ struct Crossing {
   int which = -1;
   double part = 0.0;   // of the step
   double slope = 0.0;  // of the value by that part, negative
+  int touched = -1;           // NONE: an event that comes to its zero within the step and goes back
+  double touched_part = 0.0;  // of the step: where
 };
 
 class CrossingSearch {
@@ -38,7 +40,7 @@ class CrossingSearch {
     std::vector<double> at_low, at_high;
     double low_weight = 1.0, high_weight = 1.0;  // Illinois' rule: of an end that stays
     double tried = -1.0;
-    int first(double* where) const;
+    int first(const std::vector<SwitchKind>& kinds, double* where) const;
   };
   // Places that were looked at, in order.
   struct Samples {
@@ -52,6 +54,8 @@ class CrossingSearch {
   // Asks the open lanes at part_; lanes with a fault are closed.
   void look();
   void forget_kinks(int lane);
+  bool is_bad(int lane) const;
+  void find_touch(int lane, const Samples& samples);
   void scan(const Flags& suspected);
   void look_early();
   void close_in();

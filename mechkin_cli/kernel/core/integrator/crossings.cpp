@@ -52,7 +52,7 @@ bool March::is_ignored(int lane, int which) const {
 
 bool March::is_crossed_by(int lane, int which) const {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
-  return states_.side[k] * states_.switch_end[k] < 0.0;
+  return states_.good(k, states_.switch_end[k]) < 0.0;
 }
 
 bool March::is_crossed(int lane, int but) const {
@@ -64,10 +64,9 @@ bool March::is_crossed(int lane, int but) const {
 // The least value of a switch within the step, as far as its stages and, where asked, what lies between them tell.
 double March::least_inside(int lane, int which, bool stages_alone) const {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
-  const double side = states_.side[k];
   const double x[4] = {0.0, states_.inner[0], states_.inner[1], 1.0};
-  const double y[4] = {side * states_.switch_value[k], side * states_.switch_inner[0][k],
-                       side * states_.switch_inner[1][k], side * states_.switch_end[k]};
+  const double y[4] = {states_.good(k, states_.switch_value[k]), states_.good(k, states_.switch_inner[0][k]),
+                       states_.good(k, states_.switch_inner[1][k]), states_.good(k, states_.switch_end[k])};
   double least = states_.switch_least[k];
   if (!stages_alone) least = std::min(least, least_between(x, y));
   return least < -SMALL * std::max(std::fabs(y[0]), std::fabs(y[3])) ? least : 0.0;
@@ -109,7 +108,7 @@ void March::look_for_crossings(Method& method, Flags* mask) {
 void March::land(int lane, Flags* mask) {
   LaneControl& c = control_[lane];
   const std::size_t at = (std::size_t)c.landing * states_.lanes + lane;
-  const double value = states_.side[at] * states_.switch_end[at], step = states_.step[lane];
+  const double value = states_.good(at, states_.switch_end[at]), step = states_.step[lane];
   const double change = step - c.landing_before;
   if (c.landing_tries > 0 && std::fabs(change) > 1e-9 * step) {
     const double slope = (value - c.landing_value) / change;
@@ -150,6 +149,8 @@ void March::search(Method& method, const Flags& crossed, const Flags& suspected,
     if (!crossed[i] && !suspected[i]) continue;
     if (found[i].kind == Crossing::NONE) {
       c.landing = -1;
+      const double at = states_.time[i] + found[i].touched_part * states_.step[i];
+      if (found[i].touched >= 0) states_.motion.touch(i, found[i].touched, at);
       continue;
     }
     (*mask)[i] = 0;
@@ -184,7 +185,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     if (moves)
       states_.motion.move(i, which[i], states_.time[i], states_.y.data());
     else
-      states_.side[k] = (std::int8_t)-states_.side[k];
+      states_.turn(k, states_.switch_end[k]);
     ++control_[i].passed[which[i]];
     ++control_[i].met[which[i]];
     anew[i] = is_kink;
@@ -204,6 +205,7 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     anew = asked;
     evaluate(&anew);
   }
+  meet_events(anew);
   states_.error_scales(states_.y.data(), states_.y.data(), scale_.data());
   for (int i = 0; i < lanes; ++i) {
     if (asked[i] && !anew[i]) finish(i, LaneEnd::STUCK);
@@ -212,6 +214,47 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     renew(i);
     states_.speed[i] = std::max(states_.speed[i], states_.speed_in(states_.y.data(), i));
   }
+}
+
+// Events of lanes that stand at kinks: their values may have jumped over their zero there, or have come to it, which is a
+// passage unless they go back. `other_slope_` and `values_` are those behind the kinks.
+void March::meet_events(const Flags& mask) {
+  const int lanes = states_.lanes, switches = (int)states_.kinds.size();
+  Flags at_zero(lanes, 0);
+  std::vector<double> rounding;
+  for (int s = 0; s < switches; ++s)
+    for (int i = 0; i < lanes; ++i) {
+      const std::size_t k = (std::size_t)s * lanes + i;
+      if (!mask[i] || !states_.kinds[s].is_event()) continue;
+      if (rounding.empty()) rounding = roundings(mask, values_);
+      const double value = states_.side[k] * values_[k];
+      if (value < -rounding[k]) {
+        jump(i, s);
+      } else if (value <= rounding[k]) {
+        // an event that has rested at its zero is none
+        const double before = std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k]));
+        at_zero[i] |= before > rounding[k];
+      }
+    }
+  if (!any(at_zero)) return;
+  const std::vector<std::int8_t> ahead = sides_ahead(at_zero, other_slope_, values_, rounding);
+  for (int s = 0; s < switches; ++s)
+    for (int i = 0; i < lanes; ++i) {
+      const std::size_t k = (std::size_t)s * lanes + i;
+      if (!at_zero[i] || !states_.kinds[s].is_event() || std::fabs(values_[k]) > rounding[k]) continue;
+      if (std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k])) <= rounding[k]) continue;
+      if (ahead[k] * states_.side[k] > 0)
+        states_.motion.touch(i, s, states_.time[i]);
+      else
+        jump(i, s);
+    }
+}
+
+void March::jump(int lane, int which) {
+  const std::size_t k = (std::size_t)which * states_.lanes + lane;
+  states_.side[k] = (std::int8_t)-states_.side[k];
+  ++control_[lane].met[which];
+  control_[lane].jumped.push_back(which);
 }
 
 // A kink that the motion comes back to holds it, if the rates jump there: `other_slope_` and `slope` are those of both sides.
@@ -232,9 +275,14 @@ void March::pass_landed(const Flags& mask) {
   pass(landed, which);
 }
 
-// Tells the motion of a switch that was passed; it may end the lane.
+// Tells the motion of a switch that was passed, and of events that were passed with it; they may end the lane.
 void March::tell(int lane, int which) {
-  if (states_.kinds[which].moves) return;
-  const bool rising = states_.side[(std::size_t)which * states_.lanes + lane] > 0;
-  if (states_.motion.event(lane, which, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, which);
+  std::vector<int> passed;
+  passed.swap(control_[lane].jumped);
+  passed.insert(passed.begin(), which);
+  for (int s : passed) {
+    if (states_.kinds[s].moves || !control_[lane].running) continue;
+    const bool rising = states_.side[(std::size_t)s * states_.lanes + lane] > 0;
+    if (states_.motion.event(lane, s, rising, states_.time[lane])) finish(lane, LaneEnd::STOPPED, s);
+  }
 }

@@ -98,7 +98,7 @@ void Dop853::attempt(LaneStates& s, const Flags& asked) {
 
 void Dop853::note_switches(LaneStates& s, int stage) {
   for (std::size_t k = 0; k < switches_.size(); ++k) {
-    const double inward = s.side[k] * switches_[k];
+    const double inward = s.good(k, switches_[k]);
     if (inward < s.switch_least[k]) s.switch_least[k] = inward;
   }
   for (int k = 0; k < 2; ++k)

@@ -18,7 +18,7 @@ struct Places {
   const double* time;           // lanes
   const double* y;
   const unsigned char* active;  // lanes: those that are asked for; nothing is read of the others
-  const signed char* side;      // switches x lanes: +1 or -1
+  const signed char* side;      // switches x lanes: +1 or -1; 0 of one that rests at its zero
   bool is_end;                  // the end of a step: if the step is taken, `accept` comes with it, see there
 };
 
@@ -38,6 +38,9 @@ struct SwitchKind {
   bool kink;
   bool moves = false;
   signed char first = 1;  // side on which the first rates are taken; where it is known before, they do not reach beyond
+  bool may_rest = false;  // a kink that takes the side 0: its value stays zero until another kink is passed
+  bool bends_event = false;  // a kink at which the value of an event bends or jumps, whatever the rates do
+  bool is_event() const { return !kink && !moves; }
   // A kink that stays where it is: where both its sides give the same rates it is passed without a word.
   bool may_be_nothing() const { return kink && !moves; }
 };
@@ -92,6 +95,17 @@ class Motion {
   // A switch was passed to its side +1 (`rising`) or -1, at the chart's origin, after `accept`. True ends the lane. Where it
   // falls together with a row, the row comes first.
   virtual bool event(int lane, int which, bool rising, double time) = 0;
+  // Asked at the start, after a row there: the event that ends the lane at once, -1 without one.
+  virtual int event_at_start(int lane) {
+    (void)lane;
+    return -1;
+  }
+  // An event came to its zero and went back.
+  virtual void touch(int lane, int which, double time) {
+    (void)lane;
+    (void)which;
+    (void)time;
+  }
   // A switch that moves was met at the chart's origin: the lane is in the next piece, whose rates are asked for at once.
   // v and w may be changed there (a rate that comes to rest), of that lane alone.
   virtual void move(int lane, int which, double time, double* y) {

@@ -10,6 +10,7 @@ namespace {
 // What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
 constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
 constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
+constexpr double NOISE = 16.0;  // times the rounding of a kink's value: what may be a sign of rounding alone
 
 }  // namespace
 
@@ -42,8 +43,8 @@ void March::turn_with_outer(int which, const double* time, const double* place, 
   const int lanes = states_.lanes, switches = (int)states_.kinds.size();
   const std::vector<std::int8_t> kept = states_.side;
   const auto turn = [&](int s, int i) {
-    std::int8_t& side = states_.side[(std::size_t)s * lanes + i];
-    side = (std::int8_t)-side;
+    const std::size_t at = (std::size_t)s * lanes + i;
+    states_.turn(at, s == which ? values[at] : values_[at]);
   };
   Flags open = mask;
   for (int i = 0; i < lanes; ++i)
@@ -58,7 +59,7 @@ void March::turn_with_outer(int which, const double* time, const double* place, 
       for (int s = which + 1; s < switches && !open[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
-        open[i] = states_.side[at] * values_[at] < 0.0;
+        open[i] = states_.good(at, values_[at]) < 0.0;
         if (open[i]) turn(s, i);
       }
     }
@@ -74,13 +75,19 @@ void March::compare_sides(int which, const double* time, const double* place, co
   const int lanes = states_.lanes;
   const double* const value = values + (std::size_t)which * lanes;
   Flags told(lanes, 0);
+  // an event sees its kinks whatever the rates do
+  std::vector<double> rounding(states_.side.size(), 0.0);
+  if (states_.kinds[which].bends_event) rounding = roundings(*mask, states_.switch_value);
   turn_with_outer(which, time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
-    const double at_end = -states_.side[(std::size_t)which * lanes + i] * states_.switch_end[(std::size_t)which * lanes + i];
+    const std::size_t at = (std::size_t)which * lanes + i;
+    const double at_end = -states_.good(at, states_.switch_end[at]);
     const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
     const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
     (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
+    if (states_.kinds[which].bends_event)
+      (*mask)[i] &= std::max(deepest, here) <= NOISE * rounding[(std::size_t)which * lanes + i];
     states_.fault[i] = 0;
   }
 }

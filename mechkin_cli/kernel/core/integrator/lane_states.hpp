@@ -3,6 +3,7 @@
 // Arrays over components are [component][lane]: y = (u, v, w), slopes y' = (v, v', w').
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct LaneStates {
   // Asks the motion about places of the lanes in `mask`, which keeps those that stand; the others get their fault.
   // Returns whether any is left. `slope` and `switches` are whole arrays.
   bool evaluate(const double* time, const double* y, bool is_end, Flags* mask, double* slope, double* switches);
+
+  // The value of a switch (k of switches x lanes) times its side, negative where it is bad: one that rests at its zero is
+  // bad where it has left it.
+  double good(std::size_t k, double value) const { return side[k] ? side[k] * value : value == 0.0 ? 0.0 : -std::fabs(value); }
+  // Turns a switch to its other side; from rest to that of a value.
+  void turn(std::size_t k, double value) { side[k] = (std::int8_t)(side[k] ? -side[k] : value < 0.0 ? -1 : 1); }
 
   // Largest |v| of a lane in y.
   double speed_in(const double* y, int lane) const;

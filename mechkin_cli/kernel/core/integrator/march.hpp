@@ -31,6 +31,7 @@ struct LaneControl {
   std::vector<int> passed;               // switches: how often they were passed at this place
   std::vector<long> met;                 // switches: how often they were passed at all
   std::vector<double> largest;           // switches: their largest values at the ends of steps
+  std::vector<int> jumped;               // events that were passed as a kink was
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
   Flags let_alone;
 };
@@ -75,6 +76,8 @@ class March {
   bool may_dip(int lane, int landing) const;
   double least_inside(int lane, int which, bool stages_alone) const;
   void hold(int lane, int which);
+  void meet_events(const Flags& mask);
+  void jump(int lane, int which);
 
   // sides.cpp
   std::vector<double> roundings(const Flags& mask, const std::vector<double>& values);

@@ -27,7 +27,9 @@ void March::start(const double* time, const std::vector<double>& y) {
   for (int i = 0; i < lanes; ++i) mask[i] = control_[i].running;
   rows_here(mask);
   for (int i = 0; i < lanes; ++i) {
-    if (mask[i] && !has_row(control_[i])) finish(i, LaneEnd::DONE);
+    const int event = mask[i] ? states_.motion.event_at_start(i) : -1;
+    if (event >= 0) finish(i, LaneEnd::STOPPED, event);
+    if (mask[i] && control_[i].running && !has_row(control_[i])) finish(i, LaneEnd::DONE);
     mask[i] = control_[i].running;
   }
   if (any(mask) && states_.settings.fixed_step == 0.0) first_steps(mask);

@@ -48,7 +48,7 @@ void Radau::end(LaneStates& s, Flags* mask) {
     if ((*mask)[i]) s.reached[i] = 1.0;
   s.evaluate(s.until.data(), s.y_end.data(), true, mask, s.slope_end.data(), s.switch_end.data());
   for (std::size_t j = 0; j < switches_.size(); ++j)
-    s.switch_least[j] = std::min(s.side[j] * s.switch_inner[0][j], s.side[j] * s.switch_inner[1][j]);
+    s.switch_least[j] = std::min(s.good(j, s.switch_inner[0][j]), s.good(j, s.switch_inner[1][j]));
 }
 
 // (m I - J)^-1 (slope + the increments' weighted sum / step), of all components. (IV.8.19)

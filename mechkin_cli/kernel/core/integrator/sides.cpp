@@ -76,7 +76,8 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
   Flags turned(states_.side.size(), 0);
   const auto is_open = [&](int s, int i) { return s != known[i] && (is_start || states_.kinds[s].may_be_nothing()); };
   const auto turn = [&](int s, int i) {
-    states_.side[(std::size_t)s * lanes + i] = (std::int8_t)-states_.side[(std::size_t)s * lanes + i];
+    const std::size_t at = (std::size_t)s * lanes + i;
+    states_.turn(at, values[at]);
     if (s < known[i]) known[i] = -1;
   };
   for (int k = 0; k < TURNS * switches && any(mask); ++k) {
@@ -91,7 +92,7 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
       for (int s = 0; s < switches && agrees[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!is_open(s, i)) continue;
-        agrees[i] = !(states_.side[at] * values[at] < -rounding[at]);
+        agrees[i] = !(states_.good(at, values[at]) < -rounding[at]);
         if (!agrees[i]) turn(s, i);
         has_zero[i] |= std::fabs(values[at]) <= rounding[at];
       }
@@ -106,9 +107,12 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
       for (int s = 0; s < switches && !mask[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!is_open(s, i) || turned[at] || !(std::fabs(values[at]) <= rounding[at])) continue;
-        if (ahead[at] * states_.side[at] >= 0) continue;
+        const bool rests = states_.kinds[s].may_rest && values[at] == 0.0 && rounding[at] == 0.0 && !ahead[at];
+        const std::int8_t side = rests ? 0 : ahead[at] ? ahead[at] : states_.side[at] ? states_.side[at] : 1;
+        if (side == states_.side[at]) continue;
         turned[at] = mask[i] = 1;
-        turn(s, i);
+        states_.side[at] = side;
+        if (s < known[i]) known[i] = -1;
       }
     }
   }
@@ -147,7 +151,7 @@ void March::check_sides(const Flags& mask) {
 
 bool March::is_wrong(int lane, int which) const {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
-  return states_.side[k] * states_.switch_value[k] < 0.0;
+  return states_.good(k, states_.switch_value[k]) < 0.0;
 }
 
 // The rates and values in `other_slope_` and `values_` are those where a lane stands.

@@ -50,7 +50,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   make(chart_time_, 1), make(placed_, 1), make(placed_state_, plan_.states);
   make(placed_tangent_, (long)(plan_.charts + plan_.inputs) * plan_.columns), make(placed_bend_, plan_.columns);
   make(origin_inputs_, plan_.inputs), make(last_, plan_.states);
-  crossing_.resize(lanes_), crossings_.resize(lanes_);
+  crossing_.resize(lanes_), crossings_.resize(lanes_), touches_.resize(lanes_);
   for (Crossing& c : crossing_) c.offset.assign(plan_.charts, 0.0);
   cell_.assign(lanes_, 0), stopped_.assign(lanes_, -1), next_row_.assign(lanes_, 0);
   for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
@@ -126,12 +126,27 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
 
 std::vector<SwitchKind> ChartedMotion::switches() const {
   std::vector<SwitchKind> kinds(plan_.law.kinks, {true});
+  const std::vector<bool> read = kinks_of_stops();
+  for (int k = 0; k < plan_.law.kinks; ++k) kinds[k].may_rest = true, kinds[k].bends_event = read[k];
   // all motions begin at one time
   for (int e = 0; e < edges(); ++e)
     kinds.push_back({true, false, (signed char)(starts_[0].time < driven_->edges()[e] ? -1 : 1)});
   kinds.insert(kinds.end(), slip_switches(), {false, true});
   kinds.insert(kinds.end(), stops_.size(), {false});
   return kinds;
+}
+
+// Which kinks of the plan's program the values of stops depend on.
+std::vector<bool> ChartedMotion::kinks_of_stops() const {
+  const auto& law = plan_.law;
+  const int leaves = law.inputs + law.constants;
+  std::vector<bool> needed(law.registers(), false), read(law.kinks, false);
+  for (int o = plan_.load_values; o < law.outputs; ++o) needed[law.output[o]] = true;
+  for (int k = law.instructions - 1; k >= 0; --k)
+    if (needed[leaves + k])
+      for (int a = 0; a < 3; ++a) needed[law.operand[3 * k + a]] = true;
+  for (int k = 0; k < law.kinks; ++k) read[k] = needed[leaves + law.kink[k]];
+  return read;
 }
 
 // The driven inputs of a lane at a time, on the piece of their laws that the lane is on.
@@ -213,6 +228,7 @@ double ChartedMotion::stop_value(int stop, int lane, double watched) const {
   const MotionStop& s = stops_[stop];
   if (s.kind == STOP_CROSSING) return watched - s.at;
   if (s.kind == STOP_TURNING) return watched;
+  if (s.kind == STOP_CONDITION) return watched - 0.5;
   return std::fabs(watched - stop_start_[(std::size_t)stop * lanes_ + lane]) - FULL * s.count;
 }
 
@@ -370,11 +386,27 @@ bool ChartedMotion::event(int lane, int which, bool rising, double) {
   const int stop = which - plan_.law.kinks - edges() - slip_switches();
   if (stop < 0) return false;
   const MotionStop& s = stops_[stop];
-  if (s.kind == STOP_CROSSING && s.direction * (rising ? 1 : -1) < 0) return false;
-  if (++passed_[(std::size_t)stop * lanes_ + lane] < (s.kind == STOP_TURNING ? s.count : 1)) return false;
+  const int direction = s.kind == STOP_CONDITION ? 1 : s.kind == STOP_CROSSING ? s.direction : 0;
+  if (direction * (rising ? 1 : -1) < 0) return false;
+  if (++passed_[(std::size_t)stop * lanes_ + lane] < (s.kind == STOP_TURNS ? 1 : s.count)) return false;
   stopped_[lane] = stop;
   write_row(lane, next_row_[lane], end_, nullptr);
   return true;
+}
+
+// A condition that holds from the start on.
+int ChartedMotion::event_at_start(int lane) {
+  for (int s = 0; s < (int)stops_.size(); ++s) {
+    const int which = plan_.law.kinks + edges() + slip_switches() + s;
+    const bool holds = stops_[s].kind == STOP_CONDITION && stop_start_[(std::size_t)s * lanes_ + lane] > 0.5;
+    if (holds && event(lane, which, true, time_[lane])) return which;
+  }
+  return -1;
+}
+
+void ChartedMotion::touch(int lane, int which, double time) {
+  const int stop = which - plan_.law.kinks - edges() - slip_switches();
+  if (stop >= 0 && stops_[stop].kind == STOP_CROSSING) touches_[lane].push_back({stop, time});
 }
 
 void ChartedMotion::stand_still() {

@@ -27,9 +27,10 @@ struct MotionStart {
 };
 
 enum StopKind : int {
-  STOP_CROSSING = 0,  // the value passes `at`, up (+1), down (-1) or either way (0)
+  STOP_CROSSING = 0,  // the value passes `at` the `count`th time, up (+1), down (-1) or either way (0)
   STOP_TURNING = 1,   // the value, a rate, changes its sign the `count`th time
-  STOP_TURNS = 2      // the value lies `count` turns from where it began
+  STOP_TURNS = 2,     // the value lies `count` turns from where it began
+  STOP_CONDITION = 3  // the value, 1 where a condition holds and else 0, is 1 the `count`th time, the start counted
 };
 
 // What ends a motion, by one of the watched values of the plan's program.
@@ -52,6 +53,12 @@ struct MotionLimits {
 struct PassedBranchPoint {
   double time;
   std::vector<double> state;
+};
+
+// A stop whose value came to `at` and went back, and when (s).
+struct TouchedStop {
+  int stop;
+  double time;
 };
 
 // Rows of a lane, column after column; rows that are not reached stay as they are. Without rows nothing is written.
@@ -86,6 +93,8 @@ class ChartedMotion : public Motion {
   bool is_driven() const override { return plan_.inputs > 0; }
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
+  int event_at_start(int lane) override;
+  void touch(int lane, int which, double time) override;
   void move(int lane, int which, double time, double* y) override;
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
@@ -103,6 +112,8 @@ class ChartedMotion : public Motion {
   // The branch points that a lane has passed, and the states at the one that it has ended next to (none: empty).
   const std::vector<PassedBranchPoint>& crossings(int lane) const { return crossings_[lane]; }
   std::vector<double> branch_point_near(int lane) const;
+  // The stops whose value a lane has touched without passing it.
+  const std::vector<TouchedStop>& touches(int lane) const { return touches_[lane]; }
   // Whether steps were refused, however short, where a lane has come to.
   bool is_next_to_singular(int lane) const;
   // The largest kinetic energy of a lane at the ends of its steps so far.
@@ -127,6 +138,7 @@ class ChartedMotion : public Motion {
   void stand_still();
   void weigh(int lane);
   void find_undefined(const Stage& found, int lane);
+  std::vector<bool> kinks_of_stops() const;
 
   // charted_friction.cpp
   SlipStage make_slips() const;
@@ -249,6 +261,7 @@ class ChartedMotion : public Motion {
   Stage found_, end_, trial_;
   std::vector<Crossing> crossing_;  // lanes
   std::vector<std::vector<PassedBranchPoint>> crossings_;
+  std::vector<std::vector<TouchedStop>> touches_;
   Packed chart_time_;               // when the chart was laid
   Packed origin_inputs_, last_;     // inputs at the origin; states at the end of the last step
   Packed placed_, placed_state_, placed_tangent_, placed_bend_, bend_;

@@ -45,7 +45,7 @@ Refusal respond_pack(const ResponseTask& task, const MotionUnit& unit, long firs
   const std::vector<LaneReport>& found = *reached;
   for (int l = 0; l < unit.lanes && first + l < count; ++l)
     (*reports)[first + l] = {found[l], motion.stopped_by(l), motion.undecided_joints(l, found[l]),
-                             motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l),
+                             motion.lightest(l), motion.growth(l), motion.energy(l), motion.last_place(l), motion.crossings(l), motion.touches(l),
                              motion.branch_point_near(l), motion.is_next_to_singular(l)};
   return {};
 }

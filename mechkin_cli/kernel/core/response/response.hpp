@@ -22,6 +22,7 @@ struct ResponseReport {
   double energy;  // the largest kinetic energy at the ends of steps; kg, length units, s
   std::vector<double> last;  // states at the end
   std::vector<PassedBranchPoint> crossings;
+  std::vector<TouchedStop> touches;
   std::vector<double> branch_point;  // states at the one that it has ended next to, empty without one
   bool singular;                     // steps were refused there, however short
 };
