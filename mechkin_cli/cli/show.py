@@ -118,7 +118,7 @@ def _texts(column: TableColumn, chosen: Sequence[int]) -> list[str]:
         texts = column.values.texts(chosen)
     else:
         part = column.part(chosen)
-        texts = part.texts(column_texts(part.numbers, part.decimals))
+        texts = part.texts(column_texts(part.numbers, part.decimals, part.rounding))
     return [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
 
 

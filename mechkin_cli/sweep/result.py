@@ -172,6 +172,11 @@ class Result:
         inputs = {i.name: i.written for i in self.problem.motion.inputs}
         return inputs if time is None else {"time": time.written, **inputs}
 
+    @property
+    def length(self) -> float:
+        """About the size of the mechanism, in m."""
+        return self.session.layout.length
+
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:
         """The inputs' rates of all orders in the file's units as written, nan in rows without a

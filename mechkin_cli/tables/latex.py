@@ -159,7 +159,8 @@ def _cells(column: TableColumn) -> list[str]:
         texts = [latex_text(word) for word in column.values.words]
         return [texts[code] for code in column.values.codes]
     return [
-        latex_number(text) for text in column.texts(column_texts(column.values, column.decimals))
+        latex_number(text)
+        for text in column.texts(column_texts(column.values, column.decimals, column.rounding))
     ]
 
 
