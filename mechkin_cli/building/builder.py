@@ -209,7 +209,8 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     coefficients = build_coefficients(fields, file, problem, tables)
     view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
-    if file.loads or file.responses or coefficients or forces:
+    # the unit of forces that are computed stands above their column
+    if file.loads or any(response.efforts for response in file.responses.values()):
         note_force_unit(fields)
     if forces:
         note_own_motors(fields, file.motion, file.actuators)
