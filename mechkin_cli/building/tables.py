@@ -9,7 +9,7 @@ import numpy as np
 
 from mechkin_cli import mechanism
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
-from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
 from mechkin_cli.mechanism import Drives, Problem, Wanted, hint_in_plane, hint_of, without_effort
 from mechkin_cli.schema import MechanismFile, tables as written
@@ -61,7 +61,6 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
         if run not in read and run not in named:
             tables.append(_default(problem, run))
             _refuse_taken(fields, file, run)
-    _warn_of_missing_print(fields, file)
     return tuple(tables)
 
 
@@ -126,27 +125,6 @@ def _published(section: written.PublishedValues | None) -> PrintedSource | None:
         return None
     remarks = tuple(Remark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
     return PrintedSource(section.file, remarks, section.rows_by)
-
-
-def _warn_of_missing_print(fields: Fields, file: MechanismFile) -> None:
-    """One warning of all missing files of printed values, which tables only need for comparison."""
-    folder = fields.document.folder
-    missing: list[tuple[Path, str]] = []
-    for i, table in enumerate(file.tables):
-        printed = table.published
-        if folder is None or printed is None or (folder / printed.file).is_file():
-            continue
-        path: Path = ("tables", i, "published")
-        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
-        missing.append((at, str(folder / printed.file)))
-    if not missing:
-        return
-    (path, first), *others = missing
-    more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
-    text = f"there are no printed values in {first}{more}"
-    hint = "the path leads from the folder of the mechanism file; put the file there"
-    place = fields.document.place(path)
-    fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
 
 
 def _column(

@@ -378,3 +378,18 @@ def test_printed_values_that_are_not_there_are_warned_of(mechkin, committed) -> 
     line = int(place.split(":")[0])
     text = (committed.parent / "rcsr.yaml").read_text(encoding="utf-8").splitlines()[line - 1]
     assert "table_09.csv" in text
+    assert "printed values" not in mechkin("analyze", "mechanisms/rcsr.yaml", "--quiet").err
+
+
+def test_a_copied_file_leaves_its_printed_values_behind(mechkin, committed, folder) -> None:
+    """Where none is there a check has a note, and nothing else speaks of them."""
+    text = (committed.parent / "rcsr.yaml").read_text(encoding="utf-8")
+    (folder / "copy.yaml").write_text(text, encoding="utf-8")
+    for command in (("analyze", "--quiet"), ("modes",), ("mobility",), ("view",), ("plot",)):
+        run = mechkin(command[0], "copy.yaml", *command[1:])
+        assert run.code == 0
+        assert "printed values" not in run.err
+    run = mechkin("check", "copy.yaml", "--json")
+    (found,) = run.json["files"][0]["diagnostics"]
+    assert (found["code"], found["severity"]) == ("published-missing", "note")
+    assert "there are no printed values in rcsr/published/table_03.csv, nor in 10 others" in run.err
