@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
 from mechkin_cli.building.fields import (
+    AlreadyRefused,
     Fields,
     Path,
     is_link,
@@ -241,6 +242,9 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
     """The problem with the file's named expressions, in which derivatives are known now."""
 
     def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
+        if SWEEP in fields.failed:
+            refused = AlreadyRefused(by.text)
+            raise ExpressionError(refused.message, offset) from refused
         return differentiation(problem)(nodes, by, offset)
 
     fields.definitions = replace(fields.definitions, differentiate=differentiate)
@@ -251,7 +255,7 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
 
 
 def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
-    if not file.balances:
+    if not file.balances or SWEEP in fields.failed:
         return ()
     from mechkin_cli.building.balances import build_balances
 

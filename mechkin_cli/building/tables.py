@@ -11,7 +11,15 @@ from mechkin_cli import mechanism
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
-from mechkin_cli.mechanism import Drives, Problem, Wanted, hint_in_plane, hint_of, without_effort
+from mechkin_cli.mechanism import (
+    Drives,
+    Problem,
+    Wanted,
+    hint_in_plane,
+    hint_of,
+    is_of_motion,
+    without_effort,
+)
 from mechkin_cli.schema import MechanismFile, tables as written
 from mechkin_cli.tables import (
     CoefficientsLayout,
@@ -172,13 +180,15 @@ class ColumnSample:
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
+        if wanted is None and self.run in self.fields.failed and is_of_motion(name):
+            raise AlreadyRefused(name)
         if wanted is None:
             named = self.fields.definitions.named
             known = [*self.parameters, *named, *self.quantities, *self.texts]
             response = self.run != SWEEP
             passive = without_effort(name, self.quantities, self.drives, response=response)
             in_plane = hint_in_plane(name) if self.fields.plane else None
-            raise UnknownName(name, known, passive or in_plane or hint_of(name))
+            raise UnknownName(name, known, passive or in_plane or hint_of(name, self.quantities))
         return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 
@@ -200,7 +210,7 @@ def build_coefficients(
     layouts: list[CoefficientsLayout] = []
     for number, section in enumerate(file.coefficients):
         path: Path = ("coefficients", number)
-        if section.row > problem.motion.rows:
+        if section.row > problem.motion.rows and SWEEP not in fields.failed:
             text = f"the sweep has {problem.motion.rows} rows"
             fields.error("unknown-row", (*path, "row"), text, f"write 1 to {problem.motion.rows}")
         along = _along(fields, (*path, "along"), section, problem)

@@ -213,11 +213,19 @@ def _is_slip(asked: str, name: str) -> bool:
         return True
     if re.sub(r"\D", "", asked) != re.sub(r"\D", "", name) or len(asked) < SHORT_NAME:
         return False
-    start = len(os.path.commonprefix((asked, name)))
-    asked, name = asked[start:], name[start:]
-    end = len(os.path.commonprefix((asked[::-1], name[::-1])))
-    asked, name = asked[: len(asked) - end], name[: len(name) - end]
+    start = _alike(asked, name)
+    asked, name = asked[start:][::-1], name[start:][::-1]
+    end = _alike(asked, name)
+    asked, name = asked[end:], name[end:]
     return max(len(asked), len(name)) == 1 or (len(asked) == 2 and asked == name[::-1])
+
+
+def _alike(one: str, other: str) -> int:
+    """How many letters two texts have in common from their start on."""
+    return next(
+        (k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b),
+        min(len(one), len(other)),
+    )
 
 
 def _not_utf8(content: bytes, error: UnicodeDecodeError, file: str) -> InvalidFile:
