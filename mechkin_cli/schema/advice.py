@@ -14,9 +14,9 @@ from mechkin_cli.schema.base import Section, field_descriptions, fields_of, tagg
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
-    "mechkin has no contact: bodies that stay in touch are a joint (in a plane Ps: a pin in a slot; "
-    "in space Sp: a sphere on a plane, Sg: a sphere in a groove), and a response may end where they "
-    "would meet (stop:)"
+    "mechkin has no contact: bodies that stay in touch are a joint (in a plane Ps, a pin in a "
+    "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
+    "where they would meet (stop:)"
 )
 RATIO = "tie two inputs by their ratio: motion: {inputs: {B.theta: {with: -2*A.theta}, ...}}"
 CAM = (

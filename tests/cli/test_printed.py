@@ -100,6 +100,23 @@ def test_long_tables_are_shortened_in_the_middle(mechkin, write) -> None:
     assert "(40 of 100 rows left out here; all are in out/crank)" in out
 
 
+@pytest.mark.parametrize("columns", [18, 30, 200])
+def test_the_gap_of_a_shortened_table_is_marked(mechkin, write, monkeypatch, columns) -> None:
+    """Between the rows beside it, in every group of columns; a whole table has no mark."""
+    monkeypatch.setenv("COLUMNS", str(columns))
+    more = "decimals: 2}, {label: y, value: tip.position.y, decimals: 2}]"
+    text = CRANK.replace("decimals: 2}]", more).replace("to: 90, step: 45", "to: 99, step: 1")
+    path = write("crank.yaml", text)
+    lines = mechkin("analyze", path, "--table", "tip").out.splitlines()
+    marks = [k for k, line in enumerate(lines) if line.strip() == "..."]
+    heads = [line for line in lines if "O.theta" in line.split()]
+    assert len(marks) == len(heads) == (2 if columns == 18 else 1)
+    for mark in marks:
+        assert (lines[mark - 1].split()[0], lines[mark + 1].split()[0]) == ("29", "70")
+    whole = write("whole.yaml", CRANK)
+    assert "..." not in mechkin("analyze", whole, "--table", "tip").out
+
+
 def test_set_replaces_a_parameter(mechkin, write) -> None:
     path = write("crank.yaml", CRANK)
     run = mechkin("analyze", path, "--set", "r=500 mm", "--table", "tip", "--json")
