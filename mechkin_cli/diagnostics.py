@@ -164,6 +164,10 @@ LONGEST_COMPARED = 100
 """Characters of a name that are compared; the comparison takes the square of them."""
 
 
+LIKE_NAMES, LIKE_WORDS = 0.6, 0.7
+"""Likeness of names, and of the words behind one owner, from which on one may be meant."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """The entry of `known` most similar to `name`, or None where nothing is close.
 
@@ -174,18 +178,30 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def nearest_hint(name: str, known: Iterable[str]) -> str | None:
-    """A hint that names the known names most like `name`, or all of them when they are few."""
+    """A hint that names the known names most like `name`, or all of them when they are few.
+
+    Of a dotted name whose owner is known these are names of that owner.
+
+    >>> nearest_hint("O.forc", ["O.force", "O.theta", "D.force"])
+    'did you mean O.force?'
+    """
     names = sorted(known)
-    close = _closest(name, names, 3)
+    owner, dot, word = name.partition(".")
+    words = [each.removeprefix(owner + dot) for each in names if each.startswith(owner + dot)]
+    if dot and words:
+        close = [f"{owner}.{each}" for each in _closest(word, words, 3, LIKE_WORDS)]
+        names = [f"{owner}.{each}" for each in words]
+    else:
+        close = _closest(name, names, 3)
     if close:
         return f"did you mean {' or '.join(close)}?"
     return f"known are {', '.join(names)}" if 0 < len(names) <= SHORT_LIST else None
 
 
-def _closest(name: str, known: Iterable[str], most: int) -> list[str]:
+def _closest(name: str, known: Iterable[str], most: int, like: float = LIKE_NAMES) -> list[str]:
     """Best first; letters that differ only in case count as the same."""
     from difflib import get_close_matches  # only on the way to a message
 
     by_folded = {candidate.casefold(): candidate for candidate in sorted(known)}
     asked = name[:LONGEST_COMPARED].casefold()
-    return [by_folded[match] for match in get_close_matches(asked, by_folded, most, 0.6)]
+    return [by_folded[match] for match in get_close_matches(asked, by_folded, most, like)]

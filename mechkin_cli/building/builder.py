@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
 from mechkin_cli.building.fields import (
+    AlreadyRefused,
     Fields,
     Path,
     is_link,
@@ -209,7 +210,8 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     coefficients = build_coefficients(fields, file, problem, tables)
     view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
-    if file.loads or file.responses or coefficients or forces:
+    # the unit of forces that are computed stands above their column
+    if file.loads or any(response.efforts for response in file.responses.values()):
         note_force_unit(fields)
     if forces:
         note_own_motors(fields, file.motion, file.actuators)
@@ -240,6 +242,9 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
     """The problem with the file's named expressions, in which derivatives are known now."""
 
     def differentiate(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
+        if SWEEP in fields.failed:
+            refused = AlreadyRefused(by.text)
+            raise ExpressionError(refused.message, offset) from refused
         return differentiation(problem)(nodes, by, offset)
 
     fields.definitions = replace(fields.definitions, differentiate=differentiate)
@@ -250,7 +255,7 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
 
 
 def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
-    if not file.balances:
+    if not file.balances or SWEEP in fields.failed:
         return ()
     from mechkin_cli.building.balances import build_balances
 

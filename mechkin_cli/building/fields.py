@@ -78,7 +78,8 @@ class Fields:
     """Evaluates fields of one document; errors are collected in `diagnostics`, with zeros as
     values.
 
-    `refused` holds names whose definitions have errors: their uses are not reported again. `points`
+    `refused` holds names whose definitions have errors: their uses are not reported again.
+    `failed` holds runs whose motion has an error: what is read of them is not judged. `points`
     are the file's named points as drawn, `definitions` its named expressions. `plane`: of a file in
     a plane, whose z the user never sees.
     """
@@ -88,6 +89,7 @@ class Fields:
     parameters: dict[str, Quantity] = field(default_factory=dict)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     refused: set[str] = field(default_factory=set)
+    failed: set[str] = field(default_factory=set)
     points: dict[str, Attached] = field(default_factory=dict)
     definitions: Definitions = field(default_factory=Definitions)
     plane: bool = False

@@ -29,7 +29,7 @@ from mechkin_cli.expressions import (
     parse,
     scalar,
 )
-from mechkin_cli.mechanism import Curve, Joining, LoadLaw, Varying, Wanted, joined_curve
+from mechkin_cli.mechanism import Curve, Joining, LoadLaw, Varying, Wanted, hint_of, joined_curve
 from mechkin_cli.record import replace
 from mechkin_cli.schema import JoinedTable, TableValue
 from mechkin_cli.tape import is_finite, is_traced, plain
@@ -160,8 +160,8 @@ class LoadLaws:
             raise ExpressionError(f"{self.reader} cannot read {name}: it is a verdict", 0, allowed)
         wanted = self.quantities.get(name)
         if wanted is None:
-            known = [q.name for q in self.quantities.values() if is_known(q)]
-            raise UnknownName(name, [*self.fields.parameters, *known])
+            known = {q.name: q for q in self.quantities.values() if is_known(q)}
+            raise UnknownName(name, [*self.fields.parameters, *known], hint_of(name, known))
         if not is_known(wanted):
             accelerated = wanted.order >= 2 or wanted.kind == "alpha"
             why = "it is an acceleration" if accelerated else "it follows from the loads"

@@ -72,6 +72,7 @@ from mechkin_cli.tables import default_table
 from mechkin_cli.tape import of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
 from mechkin_cli.units import TIME, Dimension
+from mechkin_cli.verdict import SWEEP
 
 _ROW_COLUMNS: Final = 6
 """Columns of rows.csv beside the inputs."""
@@ -204,6 +205,7 @@ def build_motion(
     motion = build_inputs(fields, written, joints, per_row)
     if motion is not None and fields.error_count == errors:
         return motion
+    fields.failed.add(SWEEP)
     fields.refused.add("time")
     refuse_efforts(fields, joints)
     return MotionInputs((), 1)

@@ -201,7 +201,13 @@ def build_responses(
     builder = _ResponseBuilder(fields, problem, loads, per_row)
     if known is not None:
         return {name: builder.recorded(name, sections[name], known[name]) for name in sections}
-    return {name: builder.response(name, section) for name, section in sections.items()}
+    built = {}
+    for name, section in sections.items():
+        errors = fields.error_count
+        built[name] = builder.response(name, section)
+        if fields.error_count > errors:
+            fields.failed.add(name)
+    return built
 
 
 def _numbered(efforts: Iterable[Effort], numbers: Mapping[int, int]) -> tuple[Effort, ...]:

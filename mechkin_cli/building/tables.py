@@ -9,9 +9,17 @@ import numpy as np
 
 from mechkin_cli import mechanism
 from mechkin_cli.building.fields import AlreadyRefused, Fields, Path
-from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector
-from mechkin_cli.mechanism import Drives, Problem, Wanted, hint_in_plane, hint_of, without_effort
+from mechkin_cli.mechanism import (
+    Drives,
+    Problem,
+    Wanted,
+    hint_in_plane,
+    hint_of,
+    is_of_motion,
+    without_effort,
+)
 from mechkin_cli.schema import MechanismFile, tables as written
 from mechkin_cli.tables import (
     CoefficientsLayout,
@@ -61,7 +69,6 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
         if run not in read and run not in named:
             tables.append(_default(problem, run))
             _refuse_taken(fields, file, run)
-    _warn_of_missing_print(fields, file)
     return tuple(tables)
 
 
@@ -128,27 +135,6 @@ def _published(section: written.PublishedValues | None) -> PrintedSource | None:
     return PrintedSource(section.file, remarks, section.rows_by)
 
 
-def _warn_of_missing_print(fields: Fields, file: MechanismFile) -> None:
-    """One warning of all missing files of printed values, which tables only need for comparison."""
-    folder = fields.document.folder
-    missing: list[tuple[Path, str]] = []
-    for i, table in enumerate(file.tables):
-        printed = table.published
-        if folder is None or printed is None or (folder / printed.file).is_file():
-            continue
-        path: Path = ("tables", i, "published")
-        at = path if fields.document.node((*path, "file")) is None else (*path, "file")
-        missing.append((at, str(folder / printed.file)))
-    if not missing:
-        return
-    (path, first), *others = missing
-    more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
-    text = f"there are no printed values in {first}{more}"
-    hint = "the path leads from the folder of the mechanism file; put the file there"
-    place = fields.document.place(path)
-    fields.note(Diagnostic("published-missing", "warning", text, place, hint=hint))
-
-
 def _column(
     fields: Fields, path: Path, column: written.Column, sample: ColumnSample
 ) -> ColumnLayout | None:
@@ -194,13 +180,15 @@ class ColumnSample:
         if self.fields.is_refused(name):
             raise AlreadyRefused(name)
         wanted = self.quantities.get(name)
+        if wanted is None and self.run in self.fields.failed and is_of_motion(name):
+            raise AlreadyRefused(name)
         if wanted is None:
             named = self.fields.definitions.named
             known = [*self.parameters, *named, *self.quantities, *self.texts]
             response = self.run != SWEEP
             passive = without_effort(name, self.quantities, self.drives, response=response)
             in_plane = hint_in_plane(name) if self.fields.plane else None
-            raise UnknownName(name, known, passive or in_plane or hint_of(name))
+            raise UnknownName(name, known, passive or in_plane or hint_of(name, self.quantities))
         return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 
@@ -222,7 +210,7 @@ def build_coefficients(
     layouts: list[CoefficientsLayout] = []
     for number, section in enumerate(file.coefficients):
         path: Path = ("coefficients", number)
-        if section.row > problem.motion.rows:
+        if section.row > problem.motion.rows and SWEEP not in fields.failed:
             text = f"the sweep has {problem.motion.rows} rows"
             fields.error("unknown-row", (*path, "row"), text, f"write 1 to {problem.motion.rows}")
         along = _along(fields, (*path, "along"), section, problem)

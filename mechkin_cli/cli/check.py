@@ -18,7 +18,7 @@ from mechkin_cli.cli.messages import (
     shown,
     tell_as,
 )
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Severity, UsageError
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def _one(path: Path, settings: dict[str, str], silent: bool) -> tuple[ExitCode, 
         text = f"{shown(path)}: ok ({_sentence(model)})\n"
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    diagnostics = (*model.diagnostics, *_input_faults(model))
+    diagnostics = (*model.diagnostics, *_input_faults(model), *_missing_print(model))
     say_diagnostics(diagnostics, shown(path))
     if not silent:
         put(text)
@@ -75,6 +75,28 @@ def _input_faults(model: Model) -> list[Diagnostic]:
             place = model.built.read.document.place(path)
             faults += [fault._replace(place=place) for fault in mobility.drawn_faults(problem)]
     return faults
+
+
+def _missing_print(model: Model) -> list[Diagnostic]:
+    """One warning of all missing files of printed values, which tables only need for comparison;
+    a note where none is there, as beside a copied mechanism file."""
+    read = model.built.read
+    folder, tables = read.document.folder, read.file.tables
+    printed = {i: table.published.file for i, table in enumerate(tables) if table.published}
+    if folder is None:
+        return []
+    missing = [i for i, file in printed.items() if not (folder / file).is_file()]
+    if not missing:
+        return []
+    first, *others = missing
+    path: tuple[str | int, ...] = ("tables", first, "published")
+    at = path if read.document.node((*path, "file")) is None else (*path, "file")
+    more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
+    text = f"there are no printed values in {folder / printed[first]}{more}"
+    hint = "the path leads from the folder of the mechanism file; put the file there"
+    severity: Severity = "note" if len(missing) == len(printed) else "warning"
+    place = read.document.place(at)
+    return [Diagnostic("published-missing", severity, text, place, hint=hint)]
 
 
 def _sentence(model: Model) -> str:

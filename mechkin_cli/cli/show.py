@@ -50,6 +50,12 @@ if TYPE_CHECKING:
 MOST_ROWS = 60
 """Longer tables are shown with this many rows."""
 
+HEAD_LINES = 2
+"""Lines above the cells of a column: its label and its unit."""
+
+GAP_MARK = "..."
+"""In the first column, where rows are left out."""
+
 GAP = "  "
 
 
@@ -82,6 +88,10 @@ def shown_table(table: Columns, count: int) -> str:
 def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[str]]:
     """The lines of the columns that fit side by side, group by group."""
     columns = [_texts(column, rows) for column in table.columns]
+    gaps = [k for k in range(1, len(rows)) if rows[k] != rows[k - 1] + 1]
+    for gap in reversed(gaps):
+        for number, cells in enumerate(columns):
+            cells.insert(HEAD_LINES + gap, "" if number else GAP_MARK)
     if table.summary is not None:
         columns = _with_summary(columns, table.summary)
     padded = [[cell.rjust(max(map(len, cells))) for cell in cells] for cells in columns]
@@ -118,7 +128,7 @@ def _texts(column: TableColumn, chosen: Sequence[int]) -> list[str]:
         texts = column.values.texts(chosen)
     else:
         part = column.part(chosen)
-        texts = part.texts(column_texts(part.numbers, part.decimals))
+        texts = part.texts(column_texts(part.numbers, part.decimals, part.rounding))
     return [_one_line(column.label), f"[{column.unit}]" if column.unit else "", *texts]
 
 

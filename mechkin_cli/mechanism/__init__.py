@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         driving_joint as driving_joint,
         hint_in_plane as hint_in_plane,
         hint_of as hint_of,
+        is_of_motion as is_of_motion,
         reference_point as reference_point,
     )
     from mechkin_cli.mechanism.held import (
@@ -176,7 +177,7 @@ __getattr__, __dir__ = lazy_names(
         "curve": "Curve Joining LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
-        "base_quantity driving_joint hint_in_plane hint_of reference_point",
+        "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.model import Mechanism
@@ -236,21 +236,146 @@ def ledger_catalogue() -> dict[str, Wanted]:
     }
 
 
-def hint_of(name: str) -> str | None:
-    """Which owners have the derived quantity that an unknown name asks for; None for others.
+def hint_of(name: str, known: Mapping[str, Wanted]) -> str | None:
+    """Which owners have the derived quantity that an unknown name asks for, or which of the `known`
+    quantities is meant by a word of everyday speech; None for others.
 
-    >>> hint_of("A.turn")
+    >>> hint_of("A.turn", {})
     'joints of type S, Sp, Sg have an orientation'
     """
     words = name.split(".")[1:]
     if words and (words[-1] == "jerk" or words[-1].endswith(ORDERS[3])):
         return "a jerk is known where a motion is prescribed; a response has none"
-    return next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
+    told = next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
+    return told or _meant_by(name, known)
+
+
+# Everyday words for quantities of joints, points and links.
+
+_TURNING = {
+    **dict.fromkeys(("angle", "rotation", "phi"), 0),
+    **dict.fromkeys(("omega", "w", "rpm", "angular_velocity", "angular_speed", "angular_rate"), 1),
+    **dict.fromkeys(("alpha", "angular_acceleration"), 2),
+}
+_SLIDING = dict.fromkeys(("displacement", "stroke", "travel", "extension", "slide", *"xyz"), 0)
+_ORDER_OF = {
+    **_TURNING,
+    **_SLIDING,
+    **dict.fromkeys(("position", "pos", "place", "coordinate", "coordinates", "value"), 0),
+    "q": 0,
+    **dict.fromkeys(("velocity", "vel", "v", "speed", "rate"), 1),
+    **dict.fromkeys(("acceleration", "accel", "acc", "a"), 2),
+}
+_EFFORTS = {
+    "torque",
+    "motor_torque",
+    "drive_torque",
+    "driving_torque",
+    "motor",
+    "drive",
+    "actuator",
+}
+_REACTIONS = {"reaction", "reactions", "reaction_force", "joint_force", "load", "f"}
+_REACTIONS |= {"bearing", "bearing_force", "bearing_load", "pin_force", "contact_force"}
+_OF_JOINTS = {*_EFFORTS, *_REACTIONS, *_ORDER_OF, "force", "moment", "theta", "s", "friction"}
+_COMPONENTS = {
+    f"{short}{gap}{axis}": f"{word}.{axis}"
+    for letter, word in (("f", "force"), ("m", "moment"), ("v", "velocity"), ("a", "acceleration"))
+    for short, gap in ((letter, ""), (letter, "_"), (word, "_"))
+    for axis in "xyz"
+} | {axis: f"position.{axis}" for axis in "xyz"}
+_OF_LINKS = (
+    "a link has omega and alpha; its angle and its forces are those of its joints, and a point of "
+    "it, named under points:, has position, velocity and acceleration"
+)
+
+
+def _meant_by(name: str, known: Mapping[str, Wanted]) -> str | None:
+    """What to write for a word such as torque, speed or reaction; None for other words."""
+    owner, _, rest = name.partition(".")
+    word, _, part = rest.casefold().partition(".")
+    if "energy" in (name, word):
+        return "energies are row.kinetic_energy and row.potential_energy"
+    own = {one.name: one for one in known.values() if one.owner == owner}
+    if not own or not word:
+        return None
+    if word == "power":
+        return f"a power is a product, such as {_power(owner, known)}"
+    vector, _, axis = _COMPONENTS.get(word, f"{word}.x" if part else "").partition(".")
+    if f"{owner}.{vector}" in own:
+        vector = f"{owner}.{vector}"
+        return f"its size is norm({vector})" if part else f"did you mean {vector}.{axis}?"
+    efforts = [each for each in own if each.endswith(".effort")]
+    if word in _EFFORTS and efforts:
+        return f"did you mean {min(efforts, key=len)}?"
+    if word in _EFFORTS and f"{owner}.moment" in own:
+        acting = [each for each in known if each.endswith(".effort")]
+        at = f"an effort acts where there is one: {min(acting, key=len)}; " if acting else ""
+        return f"{at}what the joint transmits is {owner}.moment"
+    if word == "friction" and f"{owner}.force" in own and f"{owner}.friction_force" not in own:
+        return f"no friction acts: add loads: [{{type: friction, joint: {owner}, ...}}]"
+    if word == "friction":
+        meant = [one for one in own.values() if one.kind in ("friction_force", "friction_moment")]
+    elif word in _REACTIONS:
+        meant = [one for one in own.values() if one.kind in ("force", "moment")]
+    else:
+        meant = _in_order(own.values(), word) if word in _ORDER_OF else []
+    if meant:
+        texts = [f"norm({one.name})" if len(one.places) > 1 else one.name for one in meant]
+        return f"did you mean {' or '.join(texts)}?"
+    return _OF_LINKS if f"{owner}.omega" in own and word in _OF_JOINTS else None
+
+
+def _in_order(own: Iterable[Wanted], word: str) -> list[Wanted]:
+    """Quantities of a joint, point or link by their order in time, angles or lengths as the word
+    says."""
+    order = _ORDER_OF[word]
+    turning = {1: "omega", 2: "alpha"}.get(_TURNING.get(word, 0))
+    found = [
+        one
+        for one in own
+        if one.kind == turning or (one.kind in ("coordinate", "point") and one.order == order)
+    ]
+    coordinates = [one for one in found if one.kind == "coordinate"]
+    turns = [one for one in coordinates if is_angle(one.coordinate)]
+    slides = [one for one in coordinates if not is_angle(one.coordinate)]
+    return (word in _TURNING and turns) or (word in _SLIDING and slides) or found
+
+
+def _power(owner: str, known: Mapping[str, Wanted]) -> str:
+    """A power as an expression, of the owner's own effort if it has one."""
+    efforts = [one for one in known.values() if one.kind == "effort"]
+    own = [one for one in efforts if one.owner == owner]
+    if not efforts:
+        return "A.effort*A.theta_dot of an input"
+    effort = min(own or efforts, key=lambda one: len(one.name))
+    return f"{effort.name}*{effort.owner}.{effort.coordinate}_dot"
 
 
 def hint_in_plane(name: str) -> str | None:
     """What a plane file has instead of a quantity of space; None for other names."""
     return _HELD.get(name.rpartition(".")[2])
+
+
+_OF_MOTION = {
+    "time",
+    "effort",
+    "per",
+    "reduced_inertia",
+    "mechanical_advantage",
+    *COEFFICIENT_KINDS,
+    *TRANSMISSION_KINDS,
+    *LEDGER,
+}
+
+
+def is_of_motion(name: str) -> bool:
+    """Whether it depends on what is driven if a quantity of this name is there.
+
+    >>> is_of_motion("A.effort"), is_of_motion("A.phi")
+    (True, False)
+    """
+    return not _OF_MOTION.isdisjoint(name.split("."))
 
 
 def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:

@@ -140,7 +140,7 @@ class Problem:
         response = self.response is not None
         passive = without_effort(name, self._quantities, self.mechanism.drives, response=response)
         held = hint_in_plane(name) if self.mechanism.plane else None
-        return passive or held or hint_of(name)
+        return passive or held or hint_of(name, self._quantities)
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:

@@ -20,7 +20,7 @@ from mechkin_cli.analysis import (
 )
 from mechkin_cli.arguments import Setting, a_path, a_text, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
-from mechkin_cli.diagnostics import Diagnostic, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.model.position import Position, solver_of
 from mechkin_cli.session import Session
@@ -776,10 +776,13 @@ def loads(
         folder: where the files are that the text names; None: it may name none.
 
     Raises:
-        UsageError: an unknown parameter.
+        UsageError: an unknown parameter, or the text is the name of a file.
         InvalidFile: with every independent error, its line and its column.
     """
     a_text("text", text, '"format: 1 ..."'), a_text("name", name, '"rcsr.yaml"')
+    if text.strip().casefold().endswith((".yaml", ".yml")) and "\n" not in text.strip():
+        shown = text.strip()[:LONGEST_NAME]
+        raise UsageError(f"text: this looks like the name of a file; use load({shown!r})")
     place = None if folder is None else a_path("folder", folder)
     built = build(open_text(text, name, _texts(parameters), place))
     return Model(Design(built, Path(name).stem))

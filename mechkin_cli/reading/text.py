@@ -15,7 +15,7 @@ import stat
 from pathlib import Path
 from typing import Final
 
-from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError, nearest
+from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, Place, UsageError
 
 MOST_BYTES: Final = 1 << 20
 """Size of the file in bytes."""
@@ -37,6 +37,9 @@ MOST_DIAGNOSTICS: Final = 50
 
 MOST_TABLE_BYTES: Final = 1 << 30
 """Size of a table on disk that is compared; committed tables have some kilobytes."""
+
+SHORT_NAME: Final = 8
+"""Letters of a file's name below which a slip makes the name of another mechanism."""
 
 _PIECE = 1 << 20
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
@@ -196,8 +199,33 @@ def _similar(path: Path) -> str:
         names = [entry.name for entry in path.parent.glob("*.y*ml") if entry.is_file()]
     except OSError:
         names = []
-    name = nearest(path.name, names)
-    return f"; did you mean {path.parent / name}?" if name else "; check the path"
+    meant = [name for name in sorted(names) if _is_slip(path.stem, Path(name).stem)]
+    return f"; did you mean {path.parent / meant[0]}?" if meant else "; check the path"
+
+
+def _is_slip(asked: str, name: str) -> bool:
+    """Whether a file's name differs from what was asked by case, blanks or one slip of the keys.
+
+    Short names, and those with other digits, are other files: rscr and rcsr are two mechanisms.
+    """
+    asked, name = (re.sub(r"[\s_-]", "", text.casefold()) for text in (asked, name))
+    if asked == name:
+        return True
+    if re.sub(r"\D", "", asked) != re.sub(r"\D", "", name) or len(asked) < SHORT_NAME:
+        return False
+    start = _alike(asked, name)
+    asked, name = asked[start:][::-1], name[start:][::-1]
+    end = _alike(asked, name)
+    asked, name = asked[end:], name[end:]
+    return max(len(asked), len(name)) == 1 or (len(asked) == 2 and asked == name[::-1])
+
+
+def _alike(one: str, other: str) -> int:
+    """How many letters two texts have in common from their start on."""
+    return next(
+        (k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b),
+        min(len(one), len(other)),
+    )
 
 
 def _not_utf8(content: bytes, error: UnicodeDecodeError, file: str) -> InvalidFile:

@@ -258,7 +258,8 @@ def _is_section(annotation: Any) -> bool:
 def advice_for_key(section: str, key: str) -> str | None:
     """What to do instead of a key that a section, by the name of its class, does not have."""
     known = JOINT_KEYS if section.endswith("Joint") else {}
-    return _SECTIONS.get(section, known).get(key.casefold())
+    word = key.casefold()
+    return _SECTIONS.get(section, known).get(word) or _MISSING.get(word)
 
 
 def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
@@ -269,8 +270,9 @@ def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | No
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
-    "mechkin has no contact: bodies that stay in touch are a joint (Sp: a sphere on a plane, Sg: a "
-    "sphere in a groove), and a response may end where they would meet (stop:)"
+    "mechkin has no contact: bodies that stay in touch are a joint (in a plane Ps, a pin in a "
+    "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
+    "where they would meet (stop:)"
 )
 RATIO = "tie two inputs by their ratio: motion: {inputs: {B.theta: {with: -2*A.theta}, ...}}"
 CAM = (
@@ -281,6 +283,38 @@ RIGID = "links are rigid; put a spring between two of them: {type: spring, joint
 CONTROL = (
     "an effort may be an expression of coordinates, rates and time: responses: {NAME: {efforts: "
     '{A.theta: "-k*(A.theta - 1 rad) - c*A.theta_dot"}}}'
+)
+ROPE = (
+    "a taut rope, cable or chain ties what it joins: motion: {inputs: {D.s: {with: 20 mm*A.theta, "
+    "drive: tie}, ...}} at a drum of radius 20 mm, {B.theta: {with: 2*A.theta, drive: tie}} over "
+    "two wheels; between two points it is a link with a joint at either end"
+)
+GENEVA = (
+    'the wheel turns by a law of the crank: motion: {inputs: {W.theta: {with: "if(abs(A.theta) < '
+    '45 deg, ..., ...)", drive: tie}, ...}}; while the pin is in its slot, the two are also a '
+    "joint (Ps in a plane, Ss in space)"
+)
+GROOVE = (
+    "a straight groove is a joint (Ps in a plane, Sg or Ss in space), one along a circle an R "
+    "about its centre; along another curve prescribe the place of the pin: motion: {inputs: "
+    "{p.position.x: {...}, p.position.y: {with: an expression of p.position.x}}}"
+)
+ROLLING = (
+    "a wheel that rolls without slip is a tie: motion: {inputs: {D.s: {with: -20 mm*A.theta, "
+    "drive: tie}, ...}} of a wheel of radius 20 mm"
+)
+OIL_FILM = (
+    "friction that depends on the speed is a load: {type: damper, joint: A, coordinate: theta, "
+    "damping: 0.1 N*m*s/rad}, or {type: torque, joint: A, value: an expression of A.theta_dot}; a "
+    "coefficient of friction may fall with it: {static: .15, sliding: .1, speed: 5 mm/s}"
+)
+BRAKE = (
+    'a brake is a load that opposes the motion: {type: torque, joint: A, value: "-3 '
+    'N*m*sign(A.theta_dot)"}'
+)
+CYLINDER = (
+    "a hydraulic cylinder is two links, tube and rod, with a P between them, whose s is driven, "
+    "and a joint at either end (R in a plane, S in space): mechkin new lift --template cylinder-arm"
 )
 MOTOR = (
     "prescribe a motion under motion: inputs:, or give a torque or force under responses: {NAME: "
@@ -322,12 +356,34 @@ LIMITS = (
 )
 LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spring, damper"
 
+_MISSING: Final = {
+    **dict.fromkeys(("ratchet", "pawl", "escapement", "clutch", "freewheel", "bumper"), CONTACT),
+    **dict.fromkeys(("rope", "ropes", "cable", "cables", "tendon", "winch", "string"), ROPE),
+    **dict.fromkeys(("roller_chain", "chains", "sprocket", "sprockets", "wire"), ROPE),
+    **dict.fromkeys(("geneva", "maltese", "geneva_drive", "maltese_cross"), GENEVA),
+    **dict.fromkeys(("curved_groove", "curved_slot", "groove_curve", "slot_curve"), GROOVE),
+    **dict.fromkeys(("grooves", "guide_curve", "path_curve"), GROOVE),
+    **dict.fromkeys(("rolling", "rolls", "roller"), ROLLING),
+    **dict.fromkeys(("hydrodynamic", "hydrodynamics", "lubrication", "oil_film"), OIL_FILM),
+    **dict.fromkeys(("viscosity", "bearing_friction", "stribeck_curve"), OIL_FILM),
+    **dict.fromkeys(("brake", "brakes"), BRAKE),
+    **dict.fromkeys(("flexible", "elastic", "beam", "beams", "bushing", "bushings"), RIGID),
+    **dict.fromkeys(("compliant", "compliance", "flexure", "deformable", "fem"), RIGID),
+    **dict.fromkeys(("control", "controls", "controller", "controllers", "pid"), CONTROL),
+    **dict.fromkeys(("servo", "servos", "feedback", "regulator"), CONTROL),
+    **dict.fromkeys(("hydraulic", "hydraulics", "piston", "pistons", "ram", "jack"), CYLINDER),
+    **dict.fromkeys(("pneumatic", "linear_actuator", "telescope"), CYLINDER),
+}
+"""Keys of what mechkin does otherwise, that people try in any section."""
+
 OUTSIDE: Final = {
+    **_MISSING,
     **dict.fromkeys(("contact", "contacts", "collision", "impact", "clearance"), CONTACT),
     **dict.fromkeys(("gear", "gears", "gearing", "belt", "pulley", "chain_drive", "rack"), RATIO),
     **dict.fromkeys(("cam", "cams", "follower"), CAM),
-    **dict.fromkeys(("flexible", "elastic", "beam", "beams", "bushing", "bushings"), RIGID),
-    **dict.fromkeys(("control", "controls", "controller", "pid"), CONTROL),
+    **dict.fromkeys(("gearbox", "reducer", "timing_belt", "pulleys", "worm"), RATIO),
+    **dict.fromkeys(("wheel", "wheels", "tyre", "tire"), ROLLING),
+    **dict.fromkeys(("cylinder", "cylinders"), CYLINDER),
     **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
     "friction": FRICTION,
 }
@@ -503,6 +559,8 @@ LOAD_TYPES: Final = {
     **OUTSIDE,
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",
+    "viscous": DAMPER,
+    "chain": ROPE,
     "weight": "weights follow from the masses and {type: gravity, g: standard}",
     "acceleration": "write {type: gravity, g: [x, y, z]}",
     "damping": "write {type: damper, ..., damping: c}",
@@ -514,9 +572,15 @@ LOAD_TYPES: Final = {
 
 JOINT_TYPES: Final = {
     **OUTSIDE,
-    **dict.fromkeys(("revolute", "hinge", "pin", "turning", "pivot"), "a hinge is R"),
+    **dict.fromkeys(("revolute", "hinge", "pin", "turning", "pivot", "bearing"), "a hinge is R"),
     **dict.fromkeys(("prismatic", "slider", "sliding", "translational"), "a slider is P"),
-    **dict.fromkeys(("cylindrical", "cylindric", "cylinder"), "turning and sliding is C"),
+    **dict.fromkeys(("cylindrical", "cylindric"), "turning and sliding is C"),
+    "cylinder": f"turning and sliding is C; {CYLINDER}",
+    "chain": ROPE,
+    **dict.fromkeys(("groove", "curve", "track"), GROOVE),
+    **dict.fromkeys(("viscous", "journal"), OIL_FILM),
+    **dict.fromkeys(("wheel", "roller"), ROLLING),
+    "actuator": MOTOR,
     **dict.fromkeys(("helical", "screw", "thread"), "a screw is H, with lead: length per turn"),
     **dict.fromkeys(("spherical", "ball", "sphere", "globe"), "a ball joint is S"),
     **dict.fromkeys(("universal", "cardan", "hooke"), "a universal joint is U"),
@@ -542,7 +606,8 @@ PLANE_JOINT_TYPES: Final = {
     **dict.fromkeys(
         ("pin_in_slot", "slot", "half", "pinslot"), "a pin in a slot is Ps, with slot: [x, y]"
     ),
-    **dict.fromkeys(("cylindrical", "cylindric", "cylinder", "spherical"), _SPATIAL),
+    **dict.fromkeys(("cylindrical", "cylindric", "spherical"), _SPATIAL),
+    "cylinder": CYLINDER,
     **dict.fromkeys(("helical", "screw", "thread", "universal", "cardan"), _SPATIAL),
     **dict.fromkeys(("hooke", "ball", "sphere", "globe", "planar", "plane"), _SPATIAL),
 }

@@ -265,7 +265,8 @@ class PlaneFile(AnyFile):
 
     advice: ClassVar[dict[str, str]] = {
         "chain": "rows of Denavit and Hartenberg are spatial: write the joints under joints: as "
-        "{type: R, links: [crank, rod], point: [x, y]}",
+        "{type: R, links: [crank, rod], point: [x, y]}; a chain over two wheels is a tie: motion: "
+        "{inputs: {B.theta: {with: 2*A.theta, drive: tie}, ...}}",
         "coefficients": "they are six equations a link: leave it out; A.force and A.moment are "
         "unique in a plane",
         "idle": _LEFT_OUT + "no link spins about its own line",

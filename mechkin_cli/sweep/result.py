@@ -172,6 +172,11 @@ class Result:
         inputs = {i.name: i.written for i in self.problem.motion.inputs}
         return inputs if time is None else {"time": time.written, **inputs}
 
+    @property
+    def length(self) -> float:
+        """About the size of the mechanism, in m."""
+        return self.session.layout.length
+
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:
         """The inputs' rates of all orders in the file's units as written, nan in rows without a
@@ -306,7 +311,7 @@ class Result:
             return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
         wanted = problem.quantities().get(name)
         if wanted is None:
-            raise UnknownName(name, sorted(self._columns), problem.why_not(name))
+            raise UnknownName(name, problem.quantities(), problem.why_not(name))
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self.quantity)
         if (values := self._prescribed(name)) is not None:

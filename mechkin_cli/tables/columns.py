@@ -27,8 +27,18 @@ from mechkin_cli.tables.layout import (
     ROW_PROOF,
     ColumnLayout,
 )
-from mechkin_cli.tolerances import UNIQUE_CELL
-from mechkin_cli.units import DIMENSIONLESS
+from mechkin_cli.tolerances import UNIQUE_CELL, ZERO_CELL
+from mechkin_cli.units import (
+    ACCELERATION,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_JERK,
+    ANGULAR_RATE,
+    DIMENSIONLESS,
+    JERK,
+    LENGTH,
+    VELOCITY,
+)
 from mechkin_cli.verdict import Proof, Status, has_solution
 
 if TYPE_CHECKING:
@@ -40,8 +50,9 @@ if TYPE_CHECKING:
 #
 # Declared decimals hold as they are. Undeclared ones give six significant digits to the column's
 # largest value, less the zeros that would end every number; a column whose largest value is below
-# 1e-6 or from 1e9 on is written with exponents. Every text is the exact binary value rounded once,
-# ties to even, so it is the same on every machine; zero has no sign.
+# 1e-6 or from 1e9 on is written with exponents, and what is rounding of zero for the column's size
+# (`rounding_of`) is zero. Every text is the exact binary value rounded once, ties to even, so it is
+# the same on every machine; zero has no sign.
 
 SIGNIFICANT_DIGITS = 6
 PLAIN_EXPONENTS = range(-6, 9)
@@ -51,11 +62,17 @@ DecimalColumn = tuple["Floats", bool, int, bool]
 the zeros that end every one of them."""
 
 
-def decimal_column(values: Floats, decimals: int | None = None) -> DecimalColumn:
-    """The layout of an array of shape (rows,); `decimals` as declared, None to choose them."""
+def decimal_column(
+    values: Floats, decimals: int | None = None, rounding: float = 0.0
+) -> DecimalColumn:
+    """The layout of an array of shape (rows,); `decimals` as declared, None to choose them.
+
+    Where they are chosen, numbers up to `rounding` are zero.
+    """
     values = number_column(values)
     if decimals is not None:
         return values, False, decimals, False
+    values = np.where(np.abs(values) <= rounding, 0.0, values)
     largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
     # of the rounded value, which may have one digit more
     exponent = int(f"{float(largest):.{SIGNIFICANT_DIGITS - 1}e}".partition("e")[2])
@@ -64,9 +81,9 @@ def decimal_column(values: Floats, decimals: int | None = None) -> DecimalColumn
     return values, False, max(0, SIGNIFICANT_DIGITS - 1 - exponent), True
 
 
-def column_texts(values: Floats, decimals: int | None = None) -> list[str]:
+def column_texts(values: Floats, decimals: int | None = None, rounding: float = 0.0) -> list[str]:
     """One text per value of an array of shape (rows,); a value that is not finite has none."""
-    texts: list[str] = _kernel.decimal_texts(decimal_column(values, decimals))
+    texts: list[str] = _kernel.decimal_texts(decimal_column(values, decimals, rounding))
     return texts
 
 
@@ -158,6 +175,10 @@ class TableSource(Protocol):
         """The same rows with reactions that are off by their rounding, where constraints are
         redundant."""
 
+    @property
+    def length(self) -> float:
+        """About the size of the mechanism, in SI."""
+
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by its dotted name, in SI.
 
@@ -229,7 +250,8 @@ class TableColumn:
     """One evaluated column: `values` in the unit that `unit` names, shape (rows,).
 
     `unbounded` (rows,) is infinite with its sign in rows at a dead centre towards which the column
-    grows without bound, else zero; None where it does in no row.
+    grows without bound, else zero; None where it does in no row. Numbers up to `rounding` are
+    rounding of zero.
     """
 
     label: str
@@ -237,6 +259,7 @@ class TableColumn:
     values: FloatArray | Words
     decimals: int | None = None
     unbounded: FloatArray | None = None
+    rounding: float = 0.0
 
     @property
     def numbers(self) -> FloatArray:
@@ -323,6 +346,58 @@ def column_of(layout: ColumnLayout, source: TableSource) -> TableColumn:
     disturbed = [_evaluated(layout, other).values for other in source.disturbed]
     values = unique_cells(column.values, others, disturbed)  # type: ignore[arg-type]
     return replace(column, values=values)
+
+
+def rounding_of(
+    layouts: Sequence[ColumnLayout], columns: Sequence[TableColumn], source: TableSource
+) -> tuple[TableColumn, ...]:
+    """The columns of a table with the size up to which their numbers are rounding of zero: a small
+    part of the largest number that the table has of the same unit, of the mechanism's size for
+    lengths, and of 1 for angles and numbers without a unit; as fast as the inputs move, for rates.
+
+    Inputs are as written, and the measures of accuracy are small by nature: these have none.
+    """
+    sizes = _sizes(source)
+    for column in columns:
+        if not isinstance(column.values, Words) and column.unit:
+            finite = np.isfinite(column.values)
+            largest = float(np.abs(column.values).max(initial=0.0, where=finite))
+            sizes[column.unit] = max(largest, sizes.get(column.unit, 0.0))
+    return tuple(
+        column
+        if not _is_rounded(layout, column, source)
+        else replace(column, rounding=ZERO_CELL * sizes.get(column.unit, 0.0))
+        for layout, column in zip(layouts, columns, strict=True)
+    )
+
+
+def _is_rounded(layout: ColumnLayout, column: TableColumn, source: TableSource) -> bool:
+    """Whether a column is a number computed from positions, rates and loads alone."""
+    if isinstance(column.values, Words) or layout.expression.text.strip() in source.inputs:
+        return False
+    measured = any(name.startswith("row.") for name in layout.expression.names)
+    return not (measured and column.unit == "")
+
+
+def _sizes(source: TableSource) -> dict[str, float]:
+    """By their labels in the file's units: lengths, angles and their rates of the mechanism's size,
+    and 1 for what has none."""
+    rates = [0.0]
+    for name, values in source.input_rates.items():
+        quantity = source.quantity(name)
+        per_size = {ANGULAR_RATE: 1.0, VELOCITY: source.length}.get(quantity.dimension)
+        if per_size is not None:
+            largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
+            rates.append(float(largest) / float(source.units.from_si(per_size, quantity.dimension)))
+    sizes = {"": 1.0}
+    for size, kinds in (
+        (1.0, (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)),
+        (source.length, (LENGTH, VELOCITY, ACCELERATION, JERK)),
+    ):
+        for kind in kinds:
+            sizes[source.units.label(kind)] = float(source.units.from_si(size, kind))
+            size *= max(rates)
+    return sizes
 
 
 def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:

@@ -104,9 +104,9 @@ def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> b
         if isinstance(column.values, Words):
             cells.append(word_column(column.values, markdown_text))
         elif column.unbounded is None:
-            cells.append(decimal_column(column.values, column.decimals))
+            cells.append(decimal_column(column.values, column.decimals, column.rounding))
         else:  # the kernel takes texts, and sets them to the left
-            texts = column.texts(column_texts(column.values, column.decimals))
+            texts = column.texts(column_texts(column.values, column.decimals, column.rounding))
             width = max(map(len, (headers[number], *texts)))
             headers[number] = headers[number].rjust(width)
             cells.append(word_column(words_of([text.rjust(width) for text in texts])))
@@ -320,7 +320,8 @@ def _cells(column: TableColumn) -> list[str]:
         texts = [latex_text(word) for word in column.values.words]
         return [texts[code] for code in column.values.codes]
     return [
-        latex_number(text) for text in column.texts(column_texts(column.values, column.decimals))
+        latex_number(text)
+        for text in column.texts(column_texts(column.values, column.decimals, column.rounding))
     ]
 
 

@@ -206,7 +206,12 @@ def summary_of(
     along = run_parameter(source)
     summed = tuple(
         SummaryColumn(
-            number, column.label, column.unit, column.decimals, statistics(column.numbers, source)
+            number,
+            column.label,
+            column.unit,
+            column.decimals,
+            statistics(column.numbers, source),
+            column.rounding,
         )
         for number, (layout, column) in enumerate(zip(layouts, columns, strict=True))
         if isinstance(column.values, np.ndarray)
@@ -263,6 +268,7 @@ class SummaryColumn(NamedTuple):
     unit: str
     decimals: int | None
     statistics: Statistics
+    rounding: float = 0.0
 
 
 class Summary(NamedTuple):
@@ -311,6 +317,6 @@ class Summary(NamedTuple):
         numbers = np.array(self.numbers(column))
         is_value = np.array([line not in (AT, ROWS) for line in self.lines])
         own = column_of_numbers("", "", numbers[is_value])
-        values = iter(own.texts(column_texts(numbers[is_value], column.decimals)))
+        values = iter(own.texts(column_texts(numbers[is_value], column.decimals, column.rounding)))
         others = (f"{n + 0.0:.9g}" if np.isfinite(n) else "" for n in numbers[~is_value].tolist())
         return [next(values) if mine else next(others) for mine in is_value]

@@ -16,6 +16,7 @@ from mechkin_cli.tables.columns import (
     column_of,
     column_of_numbers,
     column_texts,
+    rounding_of,
     words_of,
 )
 from mechkin_cli.tables.layout import TableLayout
@@ -46,7 +47,7 @@ class Columns(Listed):
 def _cells(column: TableColumn) -> list[str]:
     if isinstance(column.values, Words):
         return column.values.texts(range(column.rows))
-    return column.texts(column_texts(column.values, column.decimals))
+    return column.texts(column_texts(column.values, column.decimals, column.rounding))
 
 
 def evaluate(table: TableLayout, source: TableSource) -> Columns:
@@ -55,7 +56,9 @@ def evaluate(table: TableLayout, source: TableSource) -> Columns:
     Raises:
         ExpressionError: a column is no number per row, or names what the source does not have.
     """
-    columns = tuple(column_of(layout, source) for layout in table.columns)
+    columns = rounding_of(
+        table.columns, [column_of(layout, source) for layout in table.columns], source
+    )
     summary = None
     if table.summary:
         from mechkin_cli.tables.summary import summary_of

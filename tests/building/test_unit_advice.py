@@ -110,9 +110,28 @@ def test_a_coherent_unit_system_says_nothing(units: str) -> None:
     assert codes(model(units)) == []
 
 
-def test_positions_need_no_unit_of_force() -> None:
+SWING = "responses: {swing: {start: {O.theta: 1}, time: {from: 0, to: 1, count: 2}EFFORTS}}\n"
+
+
+@pytest.mark.parametrize(
+    "section",
+    [
+        "",
+        "tables: [{name: t, columns: [O.theta]}]",
+        "tables: [{name: t, columns: [O.effort, norm(O.force)]}]",
+        "coefficients: [{name: c, row: 1}]",
+        SWING.replace("EFFORTS", ""),
+    ],
+)
+def test_a_file_that_writes_no_force_needs_no_unit_of_one(section: str) -> None:
     text = FILE.replace("UNITS", "units: {length: mm}").partition("loads")[0]
-    assert codes(mk.loads(f"{text}tables: [{{name: t, columns: [O.theta]}}]")) == []
+    assert codes(mk.loads(f"{text}{section}")) == []
+
+
+def test_an_effort_of_a_response_has_a_unit_of_force() -> None:
+    text = FILE.replace("UNITS", "units: {length: mm}").partition("loads")[0]
+    section = SWING.replace("EFFORTS", ", efforts: {O.theta: 3}")
+    assert codes(mk.loads(f"{text}{section}")) == ["force-unit"]
 
 
 @pytest.mark.parametrize(

@@ -54,10 +54,8 @@ def test_summary_counts_rows_that_are_not_ok(mechkin, write) -> None:
 def test_the_dead_centre_is_named_with_its_place(mechkin, write) -> None:
     run = mechkin("analyze", write("beyond.yaml", files.beyond_dead_centre()), "--quiet")
     assert run.out == ""
-    of_print, of_the_branch = run.err.splitlines()
-    assert (
-        "there are no printed values in rcsr/published/table_03.csv, nor in 10 others" in of_print
-    )
+    # the printed values of RCSR do not lie beside this copy, and analysis needs none
+    (of_the_branch,) = run.err.splitlines()
     assert of_the_branch.startswith(
         "beyond.yaml: warning: the branch ends at a dead centre; rows 29 to"
     )
@@ -100,6 +98,23 @@ def test_long_tables_are_shortened_in_the_middle(mechkin, write) -> None:
     thetas = [int(line.split()[0]) for line in out.splitlines() if re.match(r" +\d+ ", line)]
     assert thetas == [*range(30), *range(70, 100)]
     assert "(40 of 100 rows left out here; all are in out/crank)" in out
+
+
+@pytest.mark.parametrize("columns", [18, 30, 200])
+def test_the_gap_of_a_shortened_table_is_marked(mechkin, write, monkeypatch, columns) -> None:
+    """Between the rows beside it, in every group of columns; a whole table has no mark."""
+    monkeypatch.setenv("COLUMNS", str(columns))
+    more = "decimals: 2}, {label: y, value: tip.position.y, decimals: 2}]"
+    text = CRANK.replace("decimals: 2}]", more).replace("to: 90, step: 45", "to: 99, step: 1")
+    path = write("crank.yaml", text)
+    lines = mechkin("analyze", path, "--table", "tip").out.splitlines()
+    marks = [k for k, line in enumerate(lines) if line.strip() == "..."]
+    heads = [line for line in lines if "O.theta" in line.split()]
+    assert len(marks) == len(heads) == (2 if columns == 18 else 1)
+    for mark in marks:
+        assert (lines[mark - 1].split()[0], lines[mark + 1].split()[0]) == ("29", "70")
+    whole = write("whole.yaml", CRANK)
+    assert "..." not in mechkin("analyze", whole, "--table", "tip").out
 
 
 def test_set_replaces_a_parameter(mechkin, write) -> None:
@@ -170,7 +185,7 @@ def test_json_of_missing_rows_has_null_cells_and_the_diagnostic(mechkin, write) 
     assert run.code == 4
     assert run.json["tables"][0]["columns"][1]["values"][-3:] == [None, None, None]
     codes = [(each["code"], each["severity"]) for each in run.json["diagnostics"]]
-    assert codes == [("published-missing", "warning"), ("dead-centre", "warning")]
+    assert codes == [("dead-centre", "warning")]
     assert "dead centre" in run.err
 
 

@@ -137,3 +137,11 @@ def test_parameters_and_files_beside_a_dict(tmp_path) -> None:
     assert found == pytest.approx([-1.0, -2.5, -4.0], abs=1e-12)
     with pytest.raises(mk.UsageError, match="defines no parameter 'q'"):
         mk.load(data, {"q": "1"}, folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    "name", ["rcsr.yaml", "mechanisms/dissertation/rcsr.yaml", "./x.YML", " C:/a/b.yaml\n"]
+)
+def test_the_name_of_a_file_is_no_text(name: str) -> None:
+    with pytest.raises(mk.UsageError, match=r"looks like the name of a file; use load\('"):
+        mk.loads(name)

@@ -1,6 +1,7 @@
 """From a path to text: encodings, sizes, and paths that are no files."""
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -61,10 +62,41 @@ def test_lone_surrogates_of_a_python_text_are_refused() -> None:
         check_characters("a: \ud800", "f.yaml")
 
 
-def test_missing_files_name_the_nearest(tmp_path: Path) -> None:
-    (tmp_path / "rcsr.yaml").touch()
-    with pytest.raises(UsageError, match=r"did you mean .*rcsr\.yaml"):
-        read_text(tmp_path / "rscr.yaml")
+@pytest.mark.parametrize(
+    ("asked", "there"),
+    [
+        ("RCSR.yaml", "rcsr.yaml"),
+        ("rcsr.yml", "rcsr.yaml"),
+        ("four-bar.yaml", "four_bar.yaml"),
+        ("slider_cranck.yaml", "slider_crank.yaml"),
+        ("slider_carnk.yaml", "slider_crank.yaml"),
+        ("slidr_crank.yaml", "slider_crank.yaml"),
+        ("slider_crsnk.yaml", "slider_crank.yaml"),
+    ],
+)
+def test_a_slip_in_a_files_name_is_seen(asked: str, there: str, tmp_path: Path) -> None:
+    (tmp_path / there).touch()
+    with pytest.raises(UsageError, match=rf"did you mean .*{re.escape(there)}\?"):
+        read_text(tmp_path / asked)
+
+
+@pytest.mark.parametrize(
+    ("asked", "there"),
+    [
+        ("rscr.yaml", "rcsr.yaml"),
+        ("rssr.yaml", "rcsr.yaml"),
+        ("rcsr_csr.yaml", "rcsr.yaml"),
+        ("crane.yaml", "crank.yaml"),
+        ("four_bar.yaml", "planar_four_bar.yaml"),
+        ("lecture_crane_20.yaml", "lecture_crane_30.yaml"),
+        ("slider_crank.yaml", "slider_crank_2.yaml"),
+        ("slider_crank.yaml", "inverted_slider_crank.yaml"),
+    ],
+)
+def test_another_mechanism_is_not_suggested(asked: str, there: str, tmp_path: Path) -> None:
+    (tmp_path / there).touch()
+    with pytest.raises(UsageError, match=r"there is no file .*; check the path$"):
+        read_text(tmp_path / asked)
 
 
 def test_folders_name_a_file_in_them(tmp_path: Path) -> None:

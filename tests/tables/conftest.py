@@ -36,6 +36,7 @@ class HandWritten:
     alternatives: tuple = ()
     is_certified: bool = False
     disturbed: tuple = ()
+    length: float = 8.0 * INCH
 
     def quantity(self, name: str) -> Quantity:
         if name not in self.quantities:
