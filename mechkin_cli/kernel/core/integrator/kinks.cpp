@@ -36,19 +36,18 @@ bool March::bends_nothing(int lane, const double* y, const double* a, const doub
   return true;
 }
 
-// The rates at a place on the other side of a kink, and of the kinks around it that turn with it there, in `other_slope_`;
-// `values` are those there on this side. Lanes with a fault leave `told`.
-void March::turn_with_outer(int which, const double* time, const double* place, const double* values, const Flags& mask,
-                            Flags* told) {
+// The rates at a place on the other side of kinks (lanes: their numbers, rising), and of the kinks around them that turn with
+// them there, in `other_slope_`; `values` are those there on this side. Lanes with a fault leave `told`.
+void March::turn_with_outer(const std::vector<std::vector<int>>& which, const double* time, const double* place,
+                            const double* values, const Flags& mask, Flags* told) {
   const int lanes = states_.lanes, switches = (int)states_.kinds.size();
   const std::vector<std::int8_t> kept = states_.side;
-  const auto turn = [&](int s, int i) {
-    const std::size_t at = (std::size_t)s * lanes + i;
-    states_.turn(at, s == which ? values[at] : values_[at]);
-  };
   Flags open = mask;
   for (int i = 0; i < lanes; ++i)
-    if (open[i]) turn(which, i);
+    for (std::size_t n = 0; open[i] && n < which[i].size(); ++n) {
+      const std::size_t at = (std::size_t)which[i][n] * lanes + i;
+      states_.turn(at, values[at]);
+    }
   for (int k = 0; k <= switches && any(open); ++k) {
     Flags asked = open;
     states_.evaluate(time, place, false, &asked, other_slope_.data(), values_.data());
@@ -56,11 +55,11 @@ void March::turn_with_outer(int which, const double* time, const double* place, 
       if (!open[i]) continue;
       (*told)[i] = asked[i];
       open[i] = 0;
-      for (int s = which + 1; s < switches && !open[i]; ++s) {
+      for (int s = which[i].front() + 1; s < switches && !open[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
         open[i] = states_.good(at, values_[at]) < 0.0;
-        if (open[i]) turn(s, i);
+        if (open[i]) states_.turn(at, values_[at]);
       }
     }
   }
@@ -78,7 +77,7 @@ void March::compare_sides(int which, const double* time, const double* place, co
   // an event sees its kinks whatever the rates do
   std::vector<double> rounding(states_.side.size(), 0.0);
   if (states_.kinds[which].bends_event) rounding = roundings(*mask, states_.switch_value);
-  turn_with_outer(which, time, place, values, *mask, &told);
+  turn_with_outer(std::vector<std::vector<int>>(lanes, {which}), time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
     const std::size_t at = (std::size_t)which * lanes + i;
@@ -115,6 +114,46 @@ void March::mute(Flags* mask) {
       (*mask)[i] = 0;
       refuse(i, 0.5 * states_.step[i]);
       if (!control_[i].running) finish(i, LaneEnd::HELD, s);
+    }
+  }
+  compare_together(*mask);
+}
+
+// Kinks that bend nothing one by one may bend something together, as in if(x < 1, floor(x), 0) where a step passes 1 and 0:
+// those that are passed first, the first two, three ..., are turned together. Where that makes a difference none of them is
+// muted.
+void March::compare_together(const Flags& mask) {
+  const int lanes = states_.lanes, switches = (int)states_.kinds.size();
+  std::vector<std::vector<int>> passed(lanes), first(lanes);
+  std::size_t most = 0;
+  for (int i = 0; i < lanes; ++i) {
+    std::vector<double> part(switches, 0.0);
+    for (int s = 0; s < switches; ++s) {
+      const std::size_t at = (std::size_t)s * lanes + i;
+      if (!mask[i] || !muted_[at] || !is_crossed_by(i, s)) continue;
+      const double begin = std::max(states_.good(at, states_.switch_value[at]), 0.0), end = -states_.good(at, states_.switch_end[at]);
+      part[s] = begin / (begin + end);
+      passed[i].push_back(s);
+    }
+    std::stable_sort(passed[i].begin(), passed[i].end(), [&](int a, int b) { return part[a] < part[b]; });
+    most = std::max(most, passed[i].size());
+  }
+  for (std::size_t count = 2; count <= most; ++count) {
+    Flags asked(lanes, 0), told(lanes, 0);
+    for (int i = 0; i < lanes; ++i) {
+      asked[i] = passed[i].size() >= count;
+      if (!asked[i]) continue;
+      first[i].assign(passed[i].begin(), passed[i].begin() + (long)count);
+      std::sort(first[i].begin(), first[i].end());
+    }
+    turn_with_outer(first, states_.until.data(), states_.y_end.data(), states_.switch_end.data(), asked, &told);
+    for (int i = 0; i < lanes; ++i) {
+      if (!asked[i]) continue;
+      states_.fault[i] = 0;
+      const double* const end = states_.y_end.data();
+      if (told[i] && bends_nothing(i, end, states_.slope_end.data(), other_slope_.data(), states_.step[i])) continue;
+      for (int s : passed[i]) muted_[(std::size_t)s * lanes + i] = 0;
+      passed[i].clear();
     }
   }
 }

@@ -91,8 +91,9 @@ class March {
 
   // kinks.cpp
   void mute(Flags* mask);
-  void turn_with_outer(int which, const double* time, const double* place, const double* values, const Flags& mask,
-                       Flags* told);
+  void compare_together(const Flags& mask);
+  void turn_with_outer(const std::vector<std::vector<int>>& which, const double* time, const double* place,
+                       const double* values, const Flags& mask, Flags* told);
   void compare_sides(int which, const double* time, const double* place, const double* slope, const double* values,
                      Flags* mask);
   bool bends_nothing(int lane, const double* y, const double* a, const double* b, double step) const;
