@@ -10,6 +10,7 @@ namespace {
 // What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
 constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
 constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
+constexpr double SHIFT = 1e-9;  // of a kink's largest value so far: what another kink does to it
 constexpr double NOISE = 16.0;  // times the rounding of a kink's value: what may be a sign of rounding alone
 
 }  // namespace
@@ -58,8 +59,9 @@ void March::turn_with_outer(const std::vector<std::vector<int>>& which, const do
       for (int s = which[i].front() + 1; s < switches && !open[i]; ++s) {
         const std::size_t at = (std::size_t)s * lanes + i;
         if (!states_.kinds[s].may_be_nothing() || values_[at] == values[at]) continue;
-        open[i] = states_.good(at, values_[at]) < 0.0;
-        if (open[i]) states_.turn(at, values_[at]);
+        const bool rests = states_.kinds[s].may_rest && values_[at] == 0.0 && states_.side[at];
+        open[i] = rests || states_.good(at, values_[at]) < 0.0;
+        if (open[i]) rests ? (void)(states_.side[at] = 0) : states_.turn(at, values_[at]);
       }
     }
   }
@@ -73,10 +75,8 @@ void March::compare_sides(int which, const double* time, const double* place, co
                           Flags* mask) {
   const int lanes = states_.lanes;
   const double* const value = values + (std::size_t)which * lanes;
-  Flags told(lanes, 0);
-  // an event sees its kinks whatever the rates do
-  std::vector<double> rounding(states_.side.size(), 0.0);
-  if (states_.kinds[which].bends_event) rounding = roundings(*mask, states_.switch_value);
+  Flags told(lanes, 0), seen(lanes, 0);
+  std::vector<double> depth(lanes, 0.0);
   turn_with_outer(std::vector<std::vector<int>>(lanes, {which}), time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
     if (!(*mask)[i]) continue;
@@ -85,10 +85,25 @@ void March::compare_sides(int which, const double* time, const double* place, co
     const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
     const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
     (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
-    if (states_.kinds[which].bends_event)
-      (*mask)[i] &= std::max(deepest, here) <= NOISE * rounding[(std::size_t)which * lanes + i];
+    // events and other kinks see it whatever the rates do
+    if ((*mask)[i] && (states_.kinds[which].bends_event || shifts_kinks(i, which, values)))
+      seen[i] = 1, depth[i] = std::max(deepest, here);
     states_.fault[i] = 0;
   }
+  if (!any(seen)) return;
+  const std::vector<double> rounding = roundings(seen, states_.switch_value);
+  for (int i = 0; i < lanes; ++i)
+    if (seen[i]) (*mask)[i] = depth[i] <= NOISE * rounding[(std::size_t)which * lanes + i];
+}
+
+// Whether the values of other kinks in `values_`, beyond the kink `which`, differ from those before it.
+bool March::shifts_kinks(int lane, int which, const double* values) const {
+  for (int s = 0; s < (int)states_.kinds.size(); ++s) {
+    const std::size_t at = (std::size_t)s * states_.lanes + lane;
+    if (s == which || !states_.kinds[s].may_be_nothing()) continue;
+    if (std::fabs(values_[at] - values[at]) > SHIFT * control_[lane].largest[s]) return true;
+  }
+  return false;
 }
 
 // Finds the kinks that lanes pass within the step, or may pass, without its making a difference: their rates at its end are

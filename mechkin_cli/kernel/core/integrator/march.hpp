@@ -91,6 +91,7 @@ class March {
 
   // kinks.cpp
   void mute(Flags* mask);
+  bool shifts_kinks(int lane, int which, const double* values) const;
   void compare_together(const Flags& mask);
   void turn_with_outer(const std::vector<std::vector<int>>& which, const double* time, const double* place,
                        const double* values, const Flags& mask, Flags* told);
