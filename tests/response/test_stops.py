@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from mpmath import mp
 from response.motions import last_time, off, respond
 from response.oscillators import lines, slider
+
+import mechkin_cli as mk
 
 EXACT = 1e-12
 FALL = """format: 1
@@ -268,3 +271,69 @@ responses:
     ):
         found = respond(text.format(stop=stop, rows=rows))
         assert last_time(found) == pytest.approx(float(half), abs=2e-4 if "-1.19" in stop else 1e-9)
+
+
+FALLING = Path(__file__).parent / "ends" / "stops_that_jump.yaml"
+TO_ONE = math.sqrt(0.8)
+
+
+@pytest.mark.parametrize(
+    ("run", "moment"),
+    [
+        ("plain", TO_ONE),
+        ("iff", TO_ONE),
+        ("iff1", TO_ONE),
+        ("cond", TO_ONE),
+        ("andd", TO_ONE),
+        # the floor comes to 2 where the stone passes 3 m
+        ("flo", math.sqrt(0.4)),
+        ("flo25", math.sqrt(0.4)),
+        ("sgn", 1.0),
+        ("window", TO_ONE),
+        ("kink", TO_ONE),
+        ("kink2", math.sqrt(0.7998)),
+        ("kink3", math.sqrt(0.79999998)),
+    ],
+)
+def test_values_that_jump_or_bend_stop_where_they_pass(run: str, moment: float) -> None:
+    falling = mk.load(FALLING).respond(run)
+    assert off(falling["time"][-1], moment) < EXACT
+    assert off(falling["P.s"][-1], 5 - 5 * moment**2) < 1e-11
+    assert falling["row.event"][-1]
+
+
+@pytest.mark.parametrize(
+    ("stop", "moment"),
+    [
+        ("{value: S.s < 1 m}", math.sqrt(4 / 9.81)),
+        ("{value: S.s < 5 m}", 0.0),
+        ("{value: 'S.s < 2 m and time > 0.5 s'}", 0.5),
+        ("{value: 'not (S.s > 2 m or time < 0.1 s)'}", math.sqrt(2 / 9.81)),
+        ("{value: 'floor(S.s/(1 m)) == 1'}", math.sqrt(2 / 9.81)),
+        ("{value: 'sin(20 rad*time/(1 s))', at: 0.5, count: 4}", (math.pi * 17 / 6) / 20),
+        (
+            "{value: 'sin(20 rad*time/(1 s))', at: 0.5, direction: up, count: 2}",
+            (math.pi * 13 / 6) / 20,
+        ),
+        ("{value: 'sin(20 rad*time/(1 s)) > 0.5', count: 2}", (math.pi * 13 / 6) / 20),
+    ],
+)
+def test_conditions_and_counted_passages(stop: str, moment: float) -> None:
+    stopped = mk.loads(FALL.format(rate=0, stop=stop)).respond("run")
+    assert off(stopped["time"][-1], moment) < EXACT
+    assert stopped["row.event"][-1]
+
+
+@pytest.mark.parametrize(
+    ("value", "moment"),
+    [
+        ("abs(S.s - 1 m)", math.sqrt(4 / 9.81)),
+        ("(S.s - 2 m)^2/(1 m)", math.sqrt(2 / 9.81)),
+        ("max(S.s - 1 m, 1 m - S.s)", math.sqrt(4 / 9.81)),
+    ],
+)
+def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
+    touched = mk.loads(FALL.format(rate=0, stop=f"{{value: '{value}', at: 0}}")).respond("run")
+    assert off(touched["time"][-1], 5.0) < EXACT
+    (note,) = [one for one in touched.diagnostics if one.code == "stop-touched"]
+    assert f"touched at {moment:.6g} s" in note.message

@@ -398,7 +398,7 @@ bool ChartedMotion::event(int lane, int which, bool rising, double) {
 int ChartedMotion::event_at_start(int lane) {
   for (int s = 0; s < (int)stops_.size(); ++s) {
     const int which = plan_.law.kinks + edges() + slip_switches() + s;
-    const bool holds = stops_[s].kind == STOP_CONDITION && stop_start_[(std::size_t)s * lanes_ + lane] > 0.5;
+    const bool holds = stops_[s].kind == STOP_CONDITION && at(end_.watched, plan_.law.kinks + (long)s, lane) > 0.5;
     if (holds && event(lane, which, true, time_[lane])) return which;
   }
   return -1;
