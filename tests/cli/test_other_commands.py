@@ -148,7 +148,10 @@ def test_every_disagreeing_cell_can_be_listed(mechkin, committed) -> None:
     run = mechkin("tables", "mechanisms", "--against")
     assert run.code == 0
     assert run.out == (committed / "disagreements.csv").read_text(encoding="utf-8")
-    assert "mechanisms/rcsr.yaml: 1371 of 1998 cells agree, 25 one off, 602 differ; 108 more" in run.err
+    assert (
+        "mechanisms/rcsr.yaml: 1371 of 1998 cells agree, 25 one off, 602 differ; 108 more"
+        in run.err
+    )
     (record,) = mechkin("tables", "mechanisms/rcsr.yaml", "--against", "--json").json["files"]
     listed = sum(len(table["disagreements"]) for table in record["tables"])
     assert listed == len(run.out.splitlines()) - 1 == 627
