@@ -42,6 +42,9 @@ A printed cell **agrees** when it is the computed number rounded to the printed 
 off** when it is a neighbour of that number in the last digit, else it **differs**. Differences are
 printed less computed; a *unit* is one unit of the last printed digit."""
 
+ZERO_HEAD = """\
+Cells of columns that are zero throughout, in print and computed, are counted apart (*zero*)."""
+
 
 @dataclass(frozen=True, slots=True)
 class PrintedTable:
@@ -61,21 +64,32 @@ def errata_page(name: str, source: str, tables: Sequence[PrintedTable]) -> str:
     parts = [f"# {markdown_text(whole(name))}: printed and computed values"]
     if source:
         parts.append(f"Source: {markdown_text(source)}.")
-    labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
-    overview = _markdown(labels, [_table_row(one.table.name, one.agreement) for one in tables])
-    parts += [HEAD, overview, *_data(tables)]
+    parts += [HEAD, *_overview(tables), *_data(tables)]
     for table in tables:
         parts += _table_parts(table)
     return "\n\n".join(parts) + "\n"
 
 
 def counts(agreements: Iterable[TableAgreement]) -> str:
-    """Agreement of some tables in a few words: `12 of 15 cells agree, 2 one off, 1 differs`."""
+    """Agreement of some tables in a few words: `12 of 15 cells agree, 2 one off, 1 differs`, and
+    how many more are in columns of zeros."""
     total = TableAgreement(tuple(cell for one in agreements for cell in one.cells))
-    text = f"{total.agreeing} of {counted(len(total.cells), 'cell')} agree"
+    text = f"{total.agreeing} of {counted(len(total.cells) - total.zero, 'cell')} agree"
     text += f", {total.one_off} one off" if total.one_off else ""
     differ = "differs" if total.differing == 1 else "differ"
-    return text + (f", {total.differing} {differ}" if total.differing else "")
+    text += f", {total.differing} {differ}" if total.differing else ""
+    return text + (f"; {total.zero} more in columns of zeros" if total.zero else "")
+
+
+def _overview(tables: Sequence[PrintedTable]) -> list[str]:
+    """The counts of all tables, with a column for zeros where there are any."""
+    labels = ["table", "cells", "agree", "one off", "differ", "largest, units"]
+    rows = [_table_row(one.table.name, one.agreement) for one in tables]
+    if not any(one.agreement.zero for one in tables):
+        return [_markdown(labels, rows)]
+    zeros = [str(one.agreement.zero) for one in tables]
+    rows = [[*row[:2], zero, *row[2:]] for row, zero in zip(rows, zeros, strict=True)]
+    return [ZERO_HEAD, _markdown([*labels[:2], "zero", *labels[2:]], rows)]
 
 
 def _data(tables: Sequence[PrintedTable]) -> list[str]:
@@ -323,6 +337,7 @@ def against_print_record(tables: Sequence[PrintedTable]) -> list[dict[str, Any]]
             "published": one.published.file,
             "rows_by": one.agreement.rows_by,
             "cells": len(one.agreement.cells),
+            "zero": one.agreement.zero,
             "agree": one.agreement.agreeing,
             "one_off": one.agreement.one_off,
             "differ": one.agreement.differing,

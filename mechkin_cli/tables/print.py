@@ -4,7 +4,8 @@ A printed number states a value to within half a unit of its last digit. A cell 
 computed number lies within that half unit, both ends included: the printed number is then the
 computed one, rounded; at a tie both neighbours are. Beyond that and up to one and a half units it
 is one off in the last digit. Computed numbers are taken with the twelve digits of committed
-tables, which the last bits of a double do not reach, so that a tie is a tie.
+tables, which the last bits of a double do not reach, so that a tie is a tie. A column that is zero
+throughout, in print and computed, says nothing of the numbers: its cells are counted apart.
 
 In reading order: table files as text (cells stay the text of the file, so that a comparison sees
 what a reader sees), printed values, the comparison. Printed values are a CSV file with the digits
@@ -19,7 +20,7 @@ import csv
 import io
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from functools import cached_property
 from itertools import groupby
@@ -172,6 +173,7 @@ class PrintedCell:
     """One printed number beside the computed one.
 
     `key` is what found the row, the printed number or its count; `row` counts computed rows from 1.
+    `zero` tells that the whole column is zero, printed and computed.
     """
 
     row: int
@@ -179,6 +181,7 @@ class PrintedCell:
     label: str
     printed: Decimal
     computed: Decimal
+    zero: bool = False
 
     @property
     def unit(self) -> Decimal:
@@ -227,8 +230,13 @@ class TableAgreement:
 
     @cached_property
     def agreeing(self) -> int:
-        """Number of cells that agree."""
-        return sum(cell.agrees for cell in self.cells)
+        """Number of cells that agree, without those of columns of zeros."""
+        return sum(cell.agrees and not cell.zero for cell in self.cells)
+
+    @cached_property
+    def zero(self) -> int:
+        """Number of cells of columns that are zero throughout."""
+        return sum(cell.zero for cell in self.cells)
 
     @cached_property
     def one_off(self) -> int:
@@ -238,7 +246,7 @@ class TableAgreement:
     @cached_property
     def differing(self) -> int:
         """Number of cells that differ by more."""
-        return len(self.cells) - self.agreeing - self.one_off
+        return len(self.cells) - self.agreeing - self.one_off - self.zero
 
 
 def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None) -> TableAgreement:
@@ -254,6 +262,7 @@ def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None
     key = printed[0][0] if rows_by is None else rows_by
     labels = [label for label in printed[0] if label != key]
     computed = {label: _decimals(columns[label]) for label in labels if label in columns}
+    zeros = _zero_columns(printed, computed)
     cells, without_row, without_value = [], 0, 0
     for found, row, texts in _paired(table, columns, printed, key):
         if row is None or found is None:
@@ -264,9 +273,25 @@ def agreement(table: Columns, printed: PrintedValues, rows_by: str | None = None
             if text is not None and value is None:
                 without_value += 1
             elif text is not None and value is not None:
-                cells.append(PrintedCell(row + 1, found, label, text, value))
+                cells.append(PrintedCell(row + 1, found, label, text, value, label in zeros))
     others = tuple(label for label in labels if label not in computed)
     return TableAgreement(tuple(cells), without_row, without_value, others, key)
+
+
+def _zero_columns(
+    printed: PrintedValues, computed: Mapping[str, Sequence[Decimal | None]]
+) -> frozenset[str]:
+    """Labels of columns that are printed as zeros and computed as zeros, to twelve digits of the
+    table's largest number."""
+    numbers = [value for values in computed.values() for value in values if value is not None]
+    largest = max(map(abs, numbers), default=Decimal(0))
+    rounding = largest.scaleb(-COMMITTED_DIGITS)
+    found = []
+    for label, texts in zip(printed[0], zip(*printed[1], strict=True), strict=False):
+        if label in computed and not any(texts):
+            small = (abs(value) <= rounding for value in computed[label] if value is not None)
+            found += [label] if all(small) else []
+    return frozenset(found)
 
 
 def _paired(

@@ -120,3 +120,29 @@ def test_disagreements_as_data():
         "computed": 2.0,
         "units": 1.0,
     }
+
+
+def test_columns_of_zeros_are_counted_apart():
+    """Zero in print and computed, but for rounding; a column that is zero on one side is not."""
+    x = TableColumn("x", "deg", np.arange(3.0))
+    columns = {
+        "y": [1.0, 2.0, 30.0],
+        "none": [0.0, 3e-15, 0.0],
+        "small": [0.0, 3e-3, 0.0],
+        "one": [0.0, 0.0, 0.0],
+    }
+    table = Columns("t", "T", (x, *(TableColumn(n, "in", np.array(v)) for n, v in columns.items())))
+    texts = ["0 1.0 0.0 0.0 0.0", "1 2.0 0.0 0.0 0.1", "2 30.3 0.0 0.0 0.0"]
+    rows = tuple(tuple(Decimal(text) for text in line.split()) for line in texts)
+    found = agreement(table, (("x", *columns), rows))
+    assert (len(found.cells), found.zero, found.agreeing) == (12, 3, 2 + 3 + 2)
+    assert (found.one_off, found.differing) == (1, 1)
+    assert {cell.label for cell in found.cells if cell.zero} == {"none"}
+    words = "7 of 9 cells agree, 1 one off, 1 differs; 3 more in columns of zeros"
+    assert counts([found]) == words
+    one = PrintedTable(table, PrintedSource("m/t.csv"), found, "t.csv")
+    page = errata_page("M", "", [one])
+    assert "| table | cells | zero | agree |" in page
+    assert f"\n{words} ([computed]" in page
+    assert against_print_record([one])[0]["zero"] == 3
+    assert "zero" not in errata_page("M", "", [RIGHT, WRONG])
