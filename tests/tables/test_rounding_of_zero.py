@@ -6,12 +6,11 @@ import re
 
 import numpy as np
 import pytest
-from mechkin_cli.tables.latex import latex_bytes
-from mechkin_cli.tables.markdown import markdown_bytes
 
 import mechkin_cli as mk
 from mechkin_cli.tables.columns import column_texts
 from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.markup import latex_bytes, markdown_bytes
 
 # A crank in the plane square to (2, 1, 2): what is square to its plane is zero but for rounding.
 FILE = """\
