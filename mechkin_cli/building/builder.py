@@ -1,5 +1,5 @@
 """A checked file to its problem: units, parameters, links, joints, points, motion, loads, tables;
-limits on well-formed files; named expressions; unused parameters.
+then limits on well-formed files, named expressions, unused parameters.
 """
 
 from __future__ import annotations
@@ -68,104 +68,6 @@ if TYPE_CHECKING:
     from mechkin_cli.building.view import ViewSettings
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import AnyBalance, ResponseProblem
-
-
-def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
-    """Whether every block is small enough, since the work grows with the cube of the equations to
-    solve together; the first that is not is noted."""
-    for block in graph.blocks:
-        if block.equations <= MOST_EQUATIONS:
-            continue
-        closings = [graph.closings[c] for c in block.closings]
-        members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
-        joints = sorted(members | {closing.joint.name for closing in closings})
-        fields.error(
-            "block-too-large",
-            ("joints",),
-            f"{len(closings)} loops through {len(joints)} joints must be solved together: "
-            f"{listed(joints)}",
-            "drive a coordinate inside, or write parts that do not act on each other in files of "
-            "their own",
-            measured=f"{block.equations} closing equations",
-            limit=f"{MOST_EQUATIONS} closing equations",
-            numbers=(Number("closing equations", block.equations, limit=MOST_EQUATIONS),),
-        )
-        return False
-    return True
-
-
-def check_size(fields: Fields, mechanism: Mechanism) -> bool:
-    """Whether the mechanism as drawn is large enough for quotients by its size squared, such as
-    inertias; if not, that is noted."""
-    size = mechanism.box_diagonal()
-    if SMALLEST_SIZE <= size < inf:
-        return True
-    size = 0.0 if size == inf else size  # of numbers whose inverses overflow
-    fields.error(
-        "too-small",
-        ("joints",),
-        "the mechanism as drawn is too small to compute with",
-        "check exponents and units of its lengths",
-        measured=f"all joints within {size:.4g} m",
-        limit=f"{SMALLEST_SIZE:g} m",
-        numbers=(Number("size", size, "m", limit=SMALLEST_SIZE),),
-    )
-    return False
-
-
-_NAME: Final = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
-_FOR_PEOPLE: Final = ("name", "title", "source", "label", "text")
-_OF_NAMES: Final = ("parameters", "quantities")
-"""Sections whose keys are names that the file chooses."""
-
-
-def note_unused(fields: Fields) -> None:
-    """A note at every parameter that no expression uses, and at those that only such ones use.
-
-    Names are looked up in all texts of the file except those for people, so that this is
-    independent of the forms of sections: a name anywhere in a possible expression counts as used.
-    """
-    # as written: values from outside do not count
-    document = fields.document
-    data = (replace(document, overrides={}) if document.overrides else document).data
-    section = data.get("parameters")
-    if not isinstance(section, dict) or not section:
-        return
-    users: dict[str, list[str]] = {name: [] for name in section}
-    for user, text in section.items():
-        for used in set(_NAME.findall(str(text))) & section.keys():
-            users[used].append(user)
-    unused = set(section)
-    front: set[str] = set()
-    for text in _texts({key: value for key, value in data.items() if key != "parameters"}):
-        front |= unused & set(_NAME.findall(text))
-        unused -= front
-        if not unused:
-            return
-    while front:
-        unused -= front
-        front = {name for name in unused if not unused.issuperset(users[name])}
-    for name in section:
-        if name in unused:
-            but = f" but {', '.join(users[name])}, which nothing uses" if users[name] else ""
-            place = fields.document.key_place(("parameters", name))
-            text = f"nothing uses the parameter {name}{but}"
-            hint = "remove it, or use it where it was meant"
-            fields.note(Diagnostic("unused-parameter", "note", text, place, hint=hint))
-
-
-def _texts(data: Any, key: str = "") -> Iterator[str]:
-    """All texts below a part of the file in which an expression might stand."""
-    if isinstance(data, dict):
-        for inner, value in data.items():
-            is_prose = inner in _FOR_PEOPLE and key not in _OF_NAMES
-            if not (is_prose and isinstance(value, str)):
-                yield from _texts(value, inner)
-    elif isinstance(data, (list, tuple)):
-        for value in data:
-            yield from _texts(value, key)
-    elif isinstance(data, str):
-        yield data
 
 
 _NOTHING: Mapping[str, Quantity] = MappingProxyType({})
@@ -363,6 +265,49 @@ def _graph(
     return graph if check_blocks(fields, graph) else None
 
 
+def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
+    """Whether every block is small enough, since the work grows with the cube of the equations to
+    solve together; the first that is not is noted."""
+    for block in graph.blocks:
+        if block.equations <= MOST_EQUATIONS:
+            continue
+        closings = [graph.closings[c] for c in block.closings]
+        members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
+        joints = sorted(members | {closing.joint.name for closing in closings})
+        fields.error(
+            "block-too-large",
+            ("joints",),
+            f"{len(closings)} loops through {len(joints)} joints must be solved together: "
+            f"{listed(joints)}",
+            "drive a coordinate inside, or write parts that do not act on each other in files of "
+            "their own",
+            measured=f"{block.equations} closing equations",
+            limit=f"{MOST_EQUATIONS} closing equations",
+            numbers=(Number("closing equations", block.equations, limit=MOST_EQUATIONS),),
+        )
+        return False
+    return True
+
+
+def check_size(fields: Fields, mechanism: Mechanism) -> bool:
+    """Whether the mechanism as drawn is large enough for quotients by its size squared, such as
+    inertias; if not, that is noted."""
+    size = mechanism.box_diagonal()
+    if SMALLEST_SIZE <= size < inf:
+        return True
+    size = 0.0 if size == inf else size  # of numbers whose inverses overflow
+    fields.error(
+        "too-small",
+        ("joints",),
+        "the mechanism as drawn is too small to compute with",
+        "check exponents and units of its lengths",
+        measured=f"all joints within {size:.4g} m",
+        limit=f"{SMALLEST_SIZE:g} m",
+        numbers=(Number("size", size, "m", limit=SMALLEST_SIZE),),
+    )
+    return False
+
+
 def read_quantities(fields: Fields, texts: Mapping[str, str]) -> None:
     """Puts the named expressions into `fields.definitions`; those that depend on themselves or are
     not expressions are refused, with a message."""
@@ -443,3 +388,58 @@ def _error_of(
     except ExpressionError as error:
         return error
     return None
+
+
+_NAME: Final = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+_FOR_PEOPLE: Final = ("name", "title", "source", "label", "text")
+_OF_NAMES: Final = ("parameters", "quantities")
+"""Sections whose keys are names that the file chooses."""
+
+
+def note_unused(fields: Fields) -> None:
+    """A note at every parameter that no expression uses, and at those that only such ones use.
+
+    Names are looked up in all texts of the file except those for people, so that this is
+    independent of the forms of sections: a name anywhere in a possible expression counts as used.
+    """
+    # as written: values from outside do not count
+    document = fields.document
+    data = (replace(document, overrides={}) if document.overrides else document).data
+    section = data.get("parameters")
+    if not isinstance(section, dict) or not section:
+        return
+    users: dict[str, list[str]] = {name: [] for name in section}
+    for user, text in section.items():
+        for used in set(_NAME.findall(str(text))) & section.keys():
+            users[used].append(user)
+    unused = set(section)
+    front: set[str] = set()
+    for text in _texts({key: value for key, value in data.items() if key != "parameters"}):
+        front |= unused & set(_NAME.findall(text))
+        unused -= front
+        if not unused:
+            return
+    while front:
+        unused -= front
+        front = {name for name in unused if not unused.issuperset(users[name])}
+    for name in section:
+        if name in unused:
+            but = f" but {', '.join(users[name])}, which nothing uses" if users[name] else ""
+            place = fields.document.key_place(("parameters", name))
+            text = f"nothing uses the parameter {name}{but}"
+            hint = "remove it, or use it where it was meant"
+            fields.note(Diagnostic("unused-parameter", "note", text, place, hint=hint))
+
+
+def _texts(data: Any, key: str = "") -> Iterator[str]:
+    """All texts below a part of the file in which an expression might stand."""
+    if isinstance(data, dict):
+        for inner, value in data.items():
+            is_prose = inner in _FOR_PEOPLE and key not in _OF_NAMES
+            if not (is_prose and isinstance(value, str)):
+                yield from _texts(value, inner)
+    elif isinstance(data, (list, tuple)):
+        for value in data:
+            yield from _texts(value, key)
+    elif isinstance(data, str):
+        yield data

@@ -264,8 +264,8 @@ def advice_for_key(section: str, key: str) -> str | None:
 
 def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
     """What to do instead of a type that `loads` or `joints` do not have."""
-    joints = PLANE_JOINT_TYPES if in_plane else JOINT_TYPES
-    return {"loads": LOAD_TYPES, "joints": joints}.get(section, {}).get(word.casefold())
+    joints = PLANE_JOINT_ADVICE if in_plane else JOINT_ADVICE
+    return {"loads": LOAD_ADVICE, "joints": joints}.get(section, {}).get(word.casefold())
 
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
@@ -555,7 +555,7 @@ _SECTIONS: Final = {
 }
 
 
-LOAD_TYPES: Final = {
+LOAD_ADVICE: Final = {
     **OUTSIDE,
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",
@@ -570,7 +570,7 @@ LOAD_TYPES: Final = {
 }
 """Types of a load."""
 
-JOINT_TYPES: Final = {
+JOINT_ADVICE: Final = {
     **OUTSIDE,
     **dict.fromkeys(("revolute", "hinge", "pin", "turning", "pivot", "bearing"), "a hinge is R"),
     **dict.fromkeys(("prismatic", "slider", "sliding", "translational"), "a slider is P"),
@@ -598,8 +598,8 @@ _POSE = (
     "a pose in a plane is P along x, P along y and R, one after the other through two links "
     "without mass; their coordinates may be inputs"
 )
-PLANE_JOINT_TYPES: Final = {
-    **JOINT_TYPES,
+PLANE_JOINT_ADVICE: Final = {
+    **JOINT_ADVICE,
     **dict.fromkeys(("c", "h", "s", "sp", "u", "e", "ss", "sc", "cp"), _SPATIAL),
     **dict.fromkeys(("f", "free", "pose"), _POSE),
     "sg": "a pin in a slot is Ps, with slot: [x, y]",

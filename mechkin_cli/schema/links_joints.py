@@ -91,7 +91,7 @@ class Link(BodyWithMass):
     """Inertia tensor about the mass centre; left out, zero."""
 
 
-JOINT_TYPES: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "F", "W")
+JOINT_LETTERS: Final = ("R", "P", "C", "H", "S", "Sp", "Sg", "U", "E", "Ss", "Sc", "Cp", "F", "W")
 _PER_LINK_FIELDS = ("point", "axis", "normal", "groove", "slot", "pin", "x", "zero")
 
 
@@ -309,7 +309,7 @@ AnyJoint = (
     | FreePose
     | WeldJoint
 )
-Joint = Annotated[AnyJoint, by_word("type", JOINT_TYPES)]
+Joint = Annotated[AnyJoint, by_word("type", JOINT_LETTERS)]
 
 
 # A chain is a loop written as rows of four numbers (Denavit and Hartenberg 1955). Row by row the

@@ -42,7 +42,7 @@ from mechkin_cli.schema.loads import (
 )
 from mechkin_cli.schema.scalars import Acceleration, AnyDimension, Inertia, Length, Name, NamedOr
 
-PLANE_JOINT_TYPES: Final = ("R", "P", "Ps", "W")
+PLANE_JOINT_LETTERS: Final = ("R", "P", "Ps", "W")
 _LEFT_OUT: Final = "leave it out: in a plane file "
 _NORMAL: Final = _LEFT_OUT + "turns are about the plane's normal"
 
@@ -148,7 +148,7 @@ class PlaneWeldJoint(JointBase):
 
 PlaneJoint = Annotated[
     PlaneRevoluteJoint | PlanePrismaticJoint | PinInSlotJoint | PlaneWeldJoint,
-    by_word("type", PLANE_JOINT_TYPES),
+    by_word("type", PLANE_JOINT_LETTERS),
 ]
 
 

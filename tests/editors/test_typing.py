@@ -6,13 +6,13 @@ import pytest
 from editors.language_server import Server
 from editors.test_faults import PIN, TOP
 
-from mechkin_cli.schema.links_joints import JOINT_TYPES
+from mechkin_cli.schema.links_joints import JOINT_LETTERS
 
 INPUT = f"{TOP}{PIN}motion:\n  inputs:\n    A.theta:\n      "
 
 OFFERS = {
     "keys of the file": ("|", {"format", "links", "joints", "motion", "loads", "tables", "view"}),
-    "types of joints": (f"{TOP}  A:\n    type: |", set(JOINT_TYPES)),
+    "types of joints": (f"{TOP}  A:\n    type: |", set(JOINT_LETTERS)),
     "keys of a thread": (
         f"{TOP}  A:\n    type: H\n    |",
         {"links", "point", "axis", "zero", "lead"},

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.building.source import open_file
-from mechkin_cli.schema.links_joints import JOINT_TYPES, HelicalJoint
+from mechkin_cli.schema.links_joints import JOINT_LETTERS, HelicalJoint
 from mechkin_cli.schema.motion import HeldInput, SweptInput
 
 GOOD = Path(__file__).parent / "good"
@@ -55,7 +55,7 @@ def test_the_documented_example() -> None:
 def test_every_key() -> None:
     file = open_file(GOOD / "every_key.yaml").file
     assert file.parameters == {"on": "1e-3", "alpha": "12 deg", "half": "alpha / 2", "m": "010"}
-    assert sorted(joint.type for joint in file.joints.values()) == sorted(JOINT_TYPES)
+    assert sorted(joint.type for joint in file.joints.values()) == sorted(JOINT_LETTERS)
     assert isinstance(file.joints["jH"], HelicalJoint)
     assert file.joints["jH"].lead == "5 mm"
     assert [row.link for row in file.chain] == ["l1", "ground"]
