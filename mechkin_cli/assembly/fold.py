@@ -45,8 +45,8 @@ class PlacesBefore(NamedTuple):
 
 
 def at_unit_rate(session: Session, values: Floats, states: Floats, number: int) -> Batch:
-    """The run with one input at unit rate, whose `first` and `second` (states, places) are the
-    derivatives of the states by that input.
+    """The run with one input at unit rate, whose `first` and `second` (columns, places) are the
+    derivatives of the columns by that input.
 
     Args:
         session: the mechanism as it is driven.
@@ -91,7 +91,7 @@ def left_for(session: Session, row: int, state: Floats) -> list[PlacesBefore]:
         values[number] += side * before
         closed = []
         for sign in (1.0, -1.0):
-            guess = state + sign * tangent * heights
+            guess = session.moved_along(np.repeat(state, 2, axis=1), sign * tangent * heights)
             batch = session.close(values, np.ascontiguousarray(guess))
             off = np.abs(batch.states - guess).max(axis=0)
             if (batch.good & (off <= OFF_FOLD * heights)).all():

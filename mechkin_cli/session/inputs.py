@@ -342,6 +342,16 @@ def drawn_quaternion(joint: Joint, turns: Floats) -> Four:
     return _product(_product(a, r), (b[0], -b[1], -b[2], -b[3]))
 
 
+def turned_quaternion(quaternion: Floats, vector: Floats) -> Floats:
+    """Unit quaternions (4, places) turned further by rotation vectors (3, places) about fixed
+    axes."""
+    angle = np.sqrt(np.sum(vector * vector, axis=0))
+    half = 0.5 * vector * np.sinc(angle / (2.0 * pi))
+    by, q = (np.cos(0.5 * angle), *half), tuple(quaternion)
+    turned = np.array(_product(by, q))
+    return np.asarray(turned / np.sqrt(np.sum(turned * turned, axis=0)))
+
+
 def _inner(p: Four, q: Four) -> Floats:
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]
 

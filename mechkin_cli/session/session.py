@@ -29,7 +29,13 @@ from mechkin_cli.session.following import (
     follow_way as follow_along,
     step_limits,
 )
-from mechkin_cli.session.inputs import KernelInputs, TurnSlots, input_unit, kernel_inputs
+from mechkin_cli.session.inputs import (
+    KernelInputs,
+    TurnSlots,
+    input_unit,
+    kernel_inputs,
+    turned_quaternion,
+)
 from mechkin_cli.session.kernel_run import (
     POSITIONS,
     Ask,
@@ -236,6 +242,19 @@ class Session:
         structure = Structure(laid, tuple(problem.driven), self.closed_at)
         # efforts that actuators share go by the size
         return Session(problem, structure, None, self.size, self.packing, self.text)
+
+    def moved_along(self, states: Floats, columns: Floats) -> Floats:
+        """States (states, places) after increments of the columns (columns, places): those of balls
+        are rotation vectors in the axes of the carrying frame (kernel/core/rows/advance.hpp)."""
+        moved = np.array(states)
+        for carrier in self.layout.carriers:
+            kind, at, by = carrier.part.type, carrier.state, columns[carrier.column :]
+            if kind.is_ball:
+                moved[at : at + 4] = turned_quaternion(states[at : at + 4], by[:3])
+            else:
+                count = len(kind.freedoms)
+                moved[at : at + count] = states[at : at + count] + by[:count]
+        return moved
 
     def exchanged(self, graph: SolverGraph) -> Session:
         """The same mechanism with other inputs: those of a graph with the same edges."""
