@@ -74,6 +74,26 @@ def crossing_note(session: Session, followed: Followed) -> Diagnostic:
     return passed_straight_on("branch", places)
 
 
+def retraced_note(session: Session, rows: Sequence[int]) -> Diagnostic:
+    """The rows at which the inputs come to a dead centre and turn back."""
+    places = [
+        input_numbers(session.problem, session.layout, session.inputs.values[:, row])
+        for row in rows
+    ]
+    numbers = ", ".join(str(row + 1) for row in rows[:MOST_SHOWN])
+    more = f" and {len(rows) - MOST_SHOWN} more" if len(rows) > MOST_SHOWN else ""
+    at = f"at row{'s' * (len(rows) > 1)} {numbers}{more}"
+    text = "the inputs come to a dead centre and turn back; the rows behind it retrace the branch"
+    return Diagnostic(
+        "dead-centre-touched",
+        "note",
+        f"{at} {text}",
+        measured="; ".join(_words(place) for place in places[:MOST_SHOWN]),
+        hint="to go over to the other branch there, drive another coordinate",
+        numbers=tuple(number for place in places[:MOST_SHOWN] for number in place),
+    )
+
+
 def passed_straight_on(
     subject: str, places: Sequence[Sequence[Number]], place: Place | None = None
 ) -> Diagnostic:

@@ -37,21 +37,94 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
         return rows
     first = _first_row(session, start, every_row)
     if first is not None:
-        followed = session.follow_rows(first, every_row=every_row)
+        followed, turning = _follow_and_retrace(session, first, 0, 1, every_row)
         rows = SweepRows.followed(followed)
         _explain(session, values, followed, rows)
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
+        turning = []
         for step in (-1, 1):
             onward = slice(start.row, None, step)
-            followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
+            followed, found = _follow_and_retrace(session, start.state, start.row, step, every_row)
+            turning += found
             part = rows.part(onward)
             part.take(followed, 0)
             part.section *= step
             rows.nodes += followed.steps
             _explain(session, np.ascontiguousarray(values[:, onward]), followed, part)
+    if turning:
+        from mechkin_cli.sweep import branch_end
+
+        rows.diagnostics.append(branch_end.retraced_note(session, turning))
     _count_from_first(session, rows)
     return rows
+
+
+def _follow_and_retrace(
+    session: Session, state: Floats, row: int, step: int, every_row: bool
+) -> tuple[Followed, list[int]]:
+    """The rows from a row on, or with step -1 back from it, and those of them (numbers) at which
+    the inputs come to a dead centre and turn back: behind it the branch is retraced."""
+    followed = session.follow_rows(state, row, step, every_row=every_row)
+    turning: list[int] = []
+    if session.route is not None:
+        return followed, turning
+    onward = slice(row, None, step)
+    values, inputs = session.inputs.values[:, onward], session.inputs
+    reduced, whole = inputs.reduced[:, onward], inputs.whole[:, onward]
+    while followed.end != TrackEnd.FINISHED and 2 <= followed.reached < values.shape[1]:
+        turn = followed.reached - 1
+        before = _turned_back(values, turn)
+        if before is None:
+            break
+        rest = [before, *range(turn + 1, values.shape[1])]
+        path = np.ascontiguousarray(reduced[:, rest])
+        closed = session.close(path[:, :1], np.ascontiguousarray(followed.guess[:, before, None]))
+        turns = None if followed.turns is None else followed.turns[:, before].copy()
+        again = session.follow(
+            path,
+            np.ascontiguousarray(closed.states[:, 0]),
+            every_row=every_row,
+            turns=True,
+            turn=turns,
+            whole=np.ascontiguousarray(whole[:, rest]),
+        )
+        if not closed.good[0] or again.reached < 2:
+            break
+        followed = _joined(followed, again, turn)
+        turning.append(row + step * turn)
+    return followed, turning
+
+
+def _turned_back(values: Floats, turn: int) -> int | None:
+    """The last row before `turn` with other inputs, if the inputs (inputs, rows) go back from
+    `turn` the way they came from there; else None."""
+    other = np.flatnonzero((values[:, :turn] != values[:, turn, None]).any(axis=0))
+    if not other.size:
+        return None
+    before = int(other[-1])
+    came, goes = values[:, turn] - values[:, before], values[:, turn + 1] - values[:, turn]
+    length, onward = float(np.sqrt(came @ came)), float(np.sqrt(goes @ goes))
+    aside = np.abs(goes + came * (onward / length)).max()
+    return before if onward > 0.0 and aside <= tolerances.SAME_LINE * onward else None
+
+
+def _joined(followed: Followed, again: Followed, turn: int) -> Followed:
+    """What was followed up to the row `turn`, and then from the row before it back."""
+    for name in ("guess", "turns"):
+        array, more = getattr(followed, name), getattr(again, name)
+        if array is not None and more is not None:
+            array[:, turn + 1 :] = more[:, 1:]
+    followed.limit[turn + 1 :] = again.limit[1:]
+    crossings = tuple((number + turn, inputs) for number, inputs in again.crossings)
+    return again._replace(
+        guess=followed.guess,
+        limit=followed.limit,
+        turns=followed.turns,
+        reached=turn + again.reached,
+        steps=followed.steps + again.steps,
+        crossings=(*followed.crossings, *crossings),
+    )
 
 
 def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Floats | None:
