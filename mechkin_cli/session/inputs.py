@@ -16,7 +16,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.exact import PI
-from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel import _kernel, functions
 from mechkin_cli.mechanism import dimension_of
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session.kernel_run import RowInputs
@@ -345,11 +345,12 @@ def drawn_quaternion(joint: Joint, turns: Floats) -> Four:
 def turned_quaternion(quaternion: Floats, vector: Floats) -> Floats:
     """Unit quaternions (4, places) turned further by rotation vectors (3, places) about fixed
     axes."""
-    angle = np.sqrt(np.sum(vector * vector, axis=0))
-    half = 0.5 * vector * np.sinc(angle / (2.0 * pi))
-    by, q = (np.cos(0.5 * angle), *half), tuple(quaternion)
-    turned = np.array(_product(by, q))
-    return np.asarray(turned / np.sqrt(np.sum(turned * turned, axis=0)))
+    x, y, z = 0.5 * vector
+    angle = np.sqrt(x * x + y * y + z * z)
+    part = np.where(angle > 0.0, functions.sin(angle) / np.where(angle > 0.0, angle, 1.0), 1.0)
+    by: Four = (functions.cos(angle), part * x, part * y, part * z)
+    a, b, c, d = _product(by, (quaternion[0], quaternion[1], quaternion[2], quaternion[3]))
+    return np.array([a, b, c, d]) / np.sqrt(a * a + b * b + c * c + d * d)
 
 
 def _inner(p: Four, q: Four) -> Floats:

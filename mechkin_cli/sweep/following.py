@@ -104,9 +104,11 @@ def _turned_back(values: Floats, turn: int) -> int | None:
         return None
     before = int(other[-1])
     came, goes = values[:, turn] - values[:, before], values[:, turn + 1] - values[:, turn]
-    length, onward = float(np.sqrt(came @ came)), float(np.sqrt(goes @ goes))
-    aside = np.abs(goes + came * (onward / length)).max()
-    return before if onward > 0.0 and aside <= tolerances.SAME_LINE * onward else None
+    farthest = int(np.argmax(np.abs(came)))
+    part = -float(goes[farthest] / came[farthest])
+    aside = float(np.abs(goes + part * came).max())
+    goes_back = part > 0.0 and aside <= tolerances.SAME_LINE * float(np.abs(goes).max())
+    return before if goes_back else None
 
 
 def _joined(followed: Followed, again: Followed, turn: int) -> Followed:
