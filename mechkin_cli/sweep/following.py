@@ -39,23 +39,20 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     if first is not None:
         followed, turning = _follow_and_retrace(session, first, 0, 1, every_row)
         rows = SweepRows.followed(followed)
-        _explain(session, values, followed, rows)
+        _explain(session, values, followed, rows, turning)
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
-        turning = []
         for step in (-1, 1):
             onward = slice(start.row, None, step)
-            followed, found = _follow_and_retrace(session, start.state, start.row, step, every_row)
-            turning += found
+            followed, turning = _follow_and_retrace(
+                session, start.state, start.row, step, every_row
+            )
             part = rows.part(onward)
             part.take(followed, 0)
             part.section *= step
             rows.nodes += followed.steps
-            _explain(session, np.ascontiguousarray(values[:, onward]), followed, part)
-    if turning:
-        from mechkin_cli.sweep import branch_end
-
-        rows.diagnostics.append(branch_end.retraced_note(session, turning))
+            path = np.ascontiguousarray(values[:, onward])
+            _explain(session, path, followed, part, turning)
     _count_from_first(session, rows)
     return rows
 
@@ -140,11 +137,17 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
     return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
 
 
-def _explain(session: Session, path: Floats, followed: Followed, rows: SweepRows) -> None:
-    """Says which branch points were passed, and what ended the branch, if it ended."""
-    if not (followed.crossings or followed.end != TrackEnd.FINISHED):
+def _explain(
+    session: Session, path: Floats, followed: Followed, rows: SweepRows, turning: Sequence[int]
+) -> None:
+    """Says which branch points were passed, at which rows (`turning`) inputs turn back at a dead
+    centre, and what ended the branch, if it ended."""
+    if not (followed.crossings or turning or followed.end != TrackEnd.FINISHED):
         return
     from mechkin_cli.sweep import branch_end
+
+    if turning:
+        rows.diagnostics.append(branch_end.retraced_note(session, turning))
 
     if followed.crossings:
         rows.diagnostics.append(branch_end.crossing_note(session, followed))
