@@ -60,6 +60,16 @@ class PairTerm(NamedTuple):
     wrench: Wrench
     rank: int = 0
 
+    @property
+    def group(self) -> str:
+        """Name of an unknown without its axis: O1.F of O1.Fx, O3.F of O3.F B."""
+        return self.name if self.rank in (2, 4) else self.name[: len(self.joint) + 2]
+
+    def reversed(self) -> PairTerm:
+        """The unknown that counts the other way."""
+        wrench = Wrench(scale(-1.0, self.wrench.force), scale(-1.0, self.wrench.moment))
+        return self._replace(name=f"{self.name} reversed", wrench=wrench)
+
     def coefficient(self, unknown: PairTerm) -> float:
         """The factor of an unknown in this condition."""
         factors, wrench = self.wrench, unknown.wrench
@@ -225,6 +235,28 @@ def dense_system(
     return DenseSystem(tuple(equations), unknowns, coefficients, right)
 
 
+def arranged(system: DenseSystem, equations: Sequence[str], unknowns: Sequence[str]) -> DenseSystem:
+    """The system with these links and joints, and these unknowns, first; - changes a sign."""
+    owners = [name.partition(":")[0] for name, _ in system.equations]
+    rows = _places(owners, equations)
+    columns = _places([unknown.group for unknown in system.unknowns], unknowns)
+    turned = [system.unknowns[j].reversed() if s < 0.0 else system.unknowns[j] for j, s in columns]
+    matrix = [[s * t * system.coefficients[i][j] for j, t in columns] for i, s in rows]
+    return DenseSystem(
+        tuple(system.equations[i] for i, _ in rows),
+        tuple(turned),
+        matrix,
+        [s * system.right[i] for i, s in rows],
+    )
+
+
+def _places(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[int, float]]:
+    """Places of the names with their signs: of those wanted in that order, then of the others."""
+    order = {text.removeprefix("-"): k for k, text in enumerate(wanted)}
+    places = sorted(range(len(names)), key=lambda place: order.get(names[place], len(order)))
+    return [(place, -1.0 if f"-{names[place]}" in wanted else 1.0) for place in places]
+
+
 def solved(system: DenseSystem) -> list[float] | None:
     """The unknowns in SI, by elimination with row pivots; None where they are not as many as the
     equations or not independent of one another."""
@@ -270,7 +302,7 @@ def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Colu
     along = {
         name: ((one, named[one]), (two, named[two])) for name, (one, two) in layout.along.items()
     }
-    system = dense_system(result, row, along)
+    system = arranged(dense_system(result, row, along), layout.equations, layout.unknowns)
     name, of_unknowns = layout.names
     size = f"{len(system.equations)} equations in {len(system.unknowns)} unknowns"
     if layout.counted is not None:

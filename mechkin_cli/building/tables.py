@@ -215,7 +215,14 @@ def build_coefficients(
             fields.error("unknown-row", (*path, "row"), text, f"write 1 to {problem.motion.rows}")
         along = _along(fields, (*path, "along"), section, problem)
         title = section.title or section.name
-        layout = CoefficientsLayout(section.name, title, section.row, along, section.counted)
+        links = [name for name in problem.mechanism.links if name != mechanism.GROUND_NAME]
+        known = [*links, *problem.mechanism.joints]
+        equations = _ordered(fields, (*path, "equations"), section.equations, known)
+        unknowns = _ordered(fields, (*path, "unknowns"), section.unknowns, unknown_names(problem))
+        order = (equations, unknowns)
+        layout = CoefficientsLayout(
+            section.name, title, section.row, along, section.counted, *order
+        )
         taken = {table.name.casefold() for table in tables}
         taken |= {name.casefold() for other in layouts for name in other.names}
         for name in layout.names:
@@ -233,6 +240,37 @@ def build_coefficients(
         text = "there are no coefficients: where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")
     return tuple(layouts)
+
+
+def _ordered(
+    fields: Fields, path: Path, written: Sequence[str], known: Sequence[str]
+) -> tuple[str, ...]:
+    """The names, of which each must be known and stand once."""
+    names = [text.removeprefix("-") for text in written]
+    for place, name in enumerate(names):
+        if name not in known:
+            hint = nearest_hint(name, known) or f"names are {', '.join(known)}"
+            fields.error("unknown-name", (*path, place), f"there is no {name} here", hint)
+        elif name in names[:place]:
+            fields.error("named-twice", (*path, place), f"{name} is named twice", "name it once")
+    return tuple(written)
+
+
+def unknown_names(problem: Problem) -> list[str]:
+    """Names of the unknowns of the dense system, those of three components once."""
+    names = []
+    for joint in problem.mechanism.joints.values():
+        if joint.type.is_free:
+            continue
+        words = ["F"] if joint.type.is_oriented else ["F", "M"]
+        if joint.type.is_guide:
+            free = joint.type.free
+            words += ["FA"] if joint.type.is_threaded or not free["slide"] else []
+            words += ["MA"] if not (joint.type.is_threaded or free["turn"]) else []
+        names += [f"{joint.name}.{word}" for word in words]
+    drives = problem.mechanism.drives
+    word = "drive" if drives is not None and drives.constraints else "effort"
+    return [*names, *(f"{j}.{c}.{word}" for j, c in problem.acting)]
 
 
 def _along(

@@ -27,6 +27,7 @@ COORDINATE_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.([a-z][a-z0-9]*|position\
 CYCLE_PATTERN: Final = f"{COORDINATE_PATTERN}|^time$"
 START_PATTERN: Final = r"^[A-Za-z_][A-Za-z0-9_]*\.[a-z][a-z0-9]*(_dot)?$"
 TABLE_NAME_PATTERN: Final = r"^[A-Za-z0-9_-]{1,100}$"
+SIGNED_PATTERN: Final = r"^-?[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z0-9_.]+)?$"
 COLOUR_PATTERN: Final = r"^#[0-9A-Fa-f]{6}$"
 CSV_PATH_PATTERN: Final = r"^[A-Za-z0-9_-][A-Za-z0-9_. -]*(/[A-Za-z0-9_-][A-Za-z0-9_. -]*)*\.csv$"
 
@@ -42,6 +43,7 @@ FORMS: Final = {
         "write joint.coordinate or joint.coordinate_dot, for example O1.theta_dot",
     ),
     TABLE_NAME_PATTERN: ("a name for a file", "use letters, digits, - and _, at most 100"),
+    SIGNED_PATTERN: ("a name, with - where signs turn round", "for example O1.F or -O1.FA"),
     COLOUR_PATTERN: ("a colour", 'write #rrggbb in quotes, for example "#c0392b"'),
     CSV_PATH_PATTERN: (
         "a CSV file beside or below the file that names it",

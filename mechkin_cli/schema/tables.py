@@ -21,6 +21,7 @@ from mechkin_cli.schema.scalars import (
     CSV_PATH_PATTERN,
     CYCLE_PATTERN,
     DEVICE,
+    SIGNED_PATTERN,
     TABLE_NAME_PATTERN,
     AnyDimension,
     CoordinateRate,
@@ -193,6 +194,14 @@ class Table(Section):
                     raise refuse("unknown-label", text, f"labels are {', '.join(labels)}", *at)
 
 
+SignedName = Annotated[
+    str,
+    Limits(pattern=SIGNED_PATTERN),
+    Shown(("string",), "a name, with - where signs turn round", ("O1.F", "-O1.FA")),
+    SchemaName("SignedName"),
+]
+
+
 class Coefficients(Section):
     """The equations of equilibrium of all links and the conditions of all pairs at one row.
 
@@ -209,6 +218,13 @@ class Coefficients(Section):
     along: dict[Name, Annotated[tuple[Name, ...], Limits(min_length=2, max_length=2)]] = NOTHING
     """Directions of two force components of a ball; the third is along their cross
     product; left out, those along x, y and z."""
+    equations: tuple[SignedName, ...] = ()
+    """Links and joints whose equations come first, in this order, with - where a joint's conditions
+    are written along the opposite axis; left out, links come before joints."""
+    unknowns: tuple[SignedName, ...] = ()
+    """Unknowns whose columns come first, in this order, with - where they count the other way:
+    `O1.F` is all three components; left out, forces come before moments, FA and MA, balls and
+    efforts."""
     counted: Annotated[WholeNumber, Limits(ge=1)] | None = None
     """Number of unknowns that the source counts, to stand beside those here; left out, none
     does."""

@@ -100,7 +100,8 @@ class CoefficientsLayout(NamedTuple):
     """A table of the dense system at one row (counted from 1); its unknowns have one of their own.
 
     `along` names two directions of the forces of some balls, `counted` the unknowns that the source
-    counts.
+    counts. `equations` (links, joints) and `unknowns` (such as O1.F) come first in that order, with
+    - before what changes its sign.
     """
 
     name: str
@@ -108,6 +109,8 @@ class CoefficientsLayout(NamedTuple):
     row: int = 1
     along: Mapping[str, tuple[str, str]] = MappingProxyType({})
     counted: int | None = None
+    equations: tuple[str, ...] = ()
+    unknowns: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, str]:

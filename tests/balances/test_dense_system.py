@@ -17,7 +17,8 @@ from references import FILE_OF, committed
 
 import mechkin_cli as mk
 from mechkin_cli.balances.dense import borne_wrenches, row_motion
-from mechkin_cli.balances.newton_euler import dense_system, solved
+from mechkin_cli.balances.newton_euler import arranged, dense_system, solved
+from mechkin_cli.building.tables import unknown_names
 from mechkin_cli.diagnostics import InvalidFile
 
 LIMIT = 1e-11
@@ -182,7 +183,7 @@ def test_values_stand_in_the_reaction_tables():
     printed = committed("rcsr", "table_18")[0]
     for unknown, label in (("O3.F B", "FB"), ("O3.F C", "FC"), ("O3.F B x C", "FD")):
         assert abs(unknowns[unknown] - float(printed[label])) <= 1e-9
-    assert abs(unknowns["O1.theta.effort"] + float(printed["MIN"])) <= 1e-9
+    assert abs(unknowns["O1.theta.effort reversed"] - float(printed["MIN"])) <= 1e-9
 
 
 WRONG = {
@@ -190,6 +191,12 @@ WRONG = {
     "along: {O2: [B, C]}": "O2 is not a ball of the mechanism",
     "along: {O3: [B, E]}": "there is no direction E",
     "along: {O3: [B]}": "",
+    "equations: [crank, O9]": "there is no O9 here",
+    "equations: [O1, -O1]": "O1 is named twice",
+    "unknowns: [O1.F, O3.M]": "there is no O3.M here",
+    "unknowns: [-O2.FA]": "there is no O2.FA here",
+    "unknowns: [O1.F, O1.F]": "O1.F is named twice",
+    "unknowns: [O1 F]": "a name, with - where signs turn round",
     "name: table_15": "another table is written to table_15",
 }
 
@@ -205,6 +212,43 @@ def test_what_cannot_be_is_told_with_its_place(text):
     assert WRONG[text] in found.message
     assert found.place is not None
     assert found.place.line == head.count("\n") + 2
+
+
+@pytest.mark.parametrize("name", [*SOURCES, *OTHERS, *WIDE])
+def test_every_unknown_can_be_named(name):
+    """Those that a file may order are those of the system."""
+    run = analysis(name)
+    groups = [unknown.group for unknown in dense_system(run.result, 0).unknowns]
+    assert set(unknown_names(run.result.problem)) == set(groups)
+
+
+def test_order_and_signs_change_nothing_else():
+    """Any order of links, joints and unknowns, any signs: the same system and solution."""
+    run = analysis("rcsr_csr")
+    usual = dense_system(run.result, 3)
+    values = dict(zip([u.name for u in usual.unknowns], solved(usual), strict=True))
+    draw = np.random.default_rng(28)
+    owners = list(dict.fromkeys(name.partition(":")[0] for name, _ in usual.equations))
+    groups = list(dict.fromkeys(unknown.group for unknown in usual.unknowns))
+    largest = max(map(abs, values.values()))
+    for _ in range(50):
+        chosen = [
+            [
+                f"{'-' if draw.random() < 0.5 else ''}{names[k]}"
+                for k in draw.permutation(len(names))[: draw.integers(len(names) + 1)]
+            ]
+            for names in (owners, groups)
+        ]
+        system = arranged(usual, *chosen)
+        assert len(set(system.equations)) == len(usual.equations)
+        found = list(dict.fromkeys(u.group for u in system.unknowns))
+        named = [text.removeprefix("-") for text in chosen[1]]
+        assert [group.removesuffix(" reversed") for group in found][: len(named)] == named
+        for unknown, value in zip(system.unknowns, solved(system), strict=True):
+            name = unknown.name.removesuffix(" reversed")
+            sign = 1.0 if name == unknown.name else -1.0
+            assert (sign < 0.0) == (f"-{unknown.group.removesuffix(' reversed')}" in chosen[1])
+            assert abs(sign * value - values[name]) <= LIMIT * largest
 
 
 def test_a_joint_written_the_other_way_round():

@@ -6,8 +6,9 @@ joints of the files may have reversed axes or name their links the other way rou
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
-from references import committed
+from references import FILE_OF, committed
 
 LIMIT = 1e-9
 
@@ -50,49 +51,102 @@ def test_mechanisms_without_printed_numbers(stem, count):
     assert near([float(first.get("MIN") or first["FIN"])], [effort])
 
 
-A, REVERSED = 1.0, -1.0
-"""The file's axis against the source's."""
-CASES = {
-    ("rcsr", "table_15"): ("table_14", "O1", "41", 1.0, ("FA1", REVERSED)),
-    ("rcsr", "table_16"): ("table_14", "O2", "21", 1.0, None),
-    ("rcsr", "table_17"): ("table_14", "O4", "43", 1.0, ("FA4", A)),
-    ("rcsr_csr", "table_25"): ("table_24", "O1", "41", 1.0, ("FA1", REVERSED)),
-    ("rcsr_csr", "table_26"): ("table_24", "O2", "21", 1.0, None),
-    ("rcsr_csr", "table_27"): ("table_24", "O4", "43", 1.0, ("FA4", A)),
-    ("rcsr_csr", "table_29"): ("table_24", "O5", "25", 1.0, None),
-    ("rcsr_csr", "table_31"): ("table_24", "O7", "46", 1.0, ("FA7", A)),
-    ("rchch", "table_33"): ("table_32", "O1", "51", 1.0, ("FA1", REVERSED)),
-    ("rchch", "table_34"): ("table_32", "O2", "21", -1.0, None),
-    ("rchch", "table_35"): ("table_32", "O3", "32", -1.0, ("FA3", REVERSED)),
-    ("rchch", "table_36"): ("table_32", "O4", "43", 1.0, None),
-    ("rchch", "table_37"): ("table_32", "O5", "54", 1.0, ("FA5", A)),
+COLUMNS = {
+    ("rcsr", "table_14"): "F41 F21 F43 M41 M21 M43 FA1 FA4 FB FC FD MIN",
+    ("rcsr_csr", "table_24"): "F41 F21 F43 M41 M21 M43 FA1 FA4 FB FC FD MIN"
+    " F25 F46 M25 M46 FA7 FE FF FG",
+    ("rchch", "table_32"): "F51 F21 F32 F43 F54 M51 M21 M32 M43 M54 FA1 FA3 FA5 MIN",
 }
-"""Joint, pair of links, whether the source turns the reaction round, what stands apart."""
+"""Unknowns of the printed coefficient tables in the order of their columns."""
 
 
-@pytest.mark.parametrize(("where", "case"), CASES.items(), ids=[f"{s}-{t}" for s, t in CASES])
-def test_printed_layouts(where, case):
-    name, joint, pair, sign, apart = case
-    row, solution = committed(*where)[0], unknowns(where[0], name)
-    for letter in "FM":
-        found = [float(row[f"{letter}{pair}_{axis}"]) for axis in "xyz"]
-        assert near(found, [sign * solution[f"{joint}.{letter}{axis}"] for axis in "xyz"])
-    if apart is not None:
-        label, turned = apart
-        assert near([float(row[label])], [sign * turned * solution[f"{joint}.FA"]])
+@pytest.mark.parametrize(("where", "words"), COLUMNS.items(), ids=[n for _, n in COLUMNS])
+def test_unknowns_are_the_reaction_tables(where, words):
+    """In the source's order and signs: what its own columns have at the first row."""
+    stem, name = where
+    row: dict[str, str] = {}
+    for file in sorted((FILE_OF[stem].parent / stem).glob("table_??.csv")):
+        if file.stem != name:
+            row |= committed(stem, file.stem)[0]
+    labels = []
+    for word in words.split():
+        labels += [word] if word in row else [f"{word}_{axis}" for axis in "xyz"]
+    values = list(unknowns(stem, name).values())
+    for kind in ("F", "M"):
+        chosen = [k for k, label in enumerate(labels) if label.startswith(kind)]
+        assert near([values[k] for k in chosen], [float(row[labels[k]]) for k in chosen]), kind
+    assert len(values) == len(labels)
+
+
+def turned(axis: list[float], theta: float) -> np.ndarray:
+    """A direction of the crank's home drawing, turned by -theta about x."""
+    c, s = np.cos(np.radians(theta)), np.sin(np.radians(theta))
+    return np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) @ axis
+
+
+def in_plane(angle: float) -> list[float]:
+    return [np.cos(np.radians(angle)), 0.0, np.sin(np.radians(angle))]
+
+
+A1 = np.array([1.0, 0.0, 0.0])
+
+
+def coefficients(stem: str, name: str) -> tuple[list[str], np.ndarray]:
+    rows = [list(row.values()) for row in committed(stem, name)]
+    return [row[1] for row in rows], np.array([[float(q) for q in row[2:-1]] for row in rows])
 
 
 @pytest.mark.parametrize(
-    ("table", "ball", "names"),
+    ("stem", "name", "turn", "tilt", "point"),
     [
-        ("table_28", "O3", {"FB": "B", "FC": "C", "FD": "B x C"}),
-        ("table_30", "O6", {"FE": "E", "FF": "F", "FG": "E x F"}),
+        ("rcsr", "table_14", 12.0, -15.0, (0.0, 0.5, 0.0)),
+        ("rcsr_csr", "table_24", 10.0, None, None),
     ],
 )
-def test_forces_of_balls(table, ball, names):
-    row, solution = committed("rcsr_csr", table)[0], unknowns("rcsr_csr", "table_24")
-    found = [float(row[label]) for label in names]
-    assert near(found, [solution[f"{ball}.F {direction}"] for direction in names.values()])
+def test_loop_one_is_laid_out_as_in_print(stem, name, turn, tilt, point):
+    """Entries that the text names: Q(4,24), Q(20,13), Q(22,7..9), Q(23,1..3), Q(24,10..12)."""
+    names, q = coefficients(stem, name)
+    theta = float(committed(stem, "table_" + ("15" if stem == "rcsr" else "25"))[0]["theta1"])
+    a2 = turned(in_plane(turn), theta)
+    assert list(q[0:6, 23]) == [0, 0, 0, 1, 0, 0]
+    assert np.allclose(q[18, 3:6], a2, rtol=0, atol=1e-11)
+    assert np.allclose(q[19, 12:15], a2, rtol=0, atol=1e-11)
+    a4, arm = q[20, 6:9], q[21, 6:9]
+    assert np.allclose(q[21, 15:18], a4, rtol=0, atol=1e-12)
+    assert abs(a4 @ arm) <= 1e-11  # O4 x A4
+    if tilt is not None:
+        assert np.allclose(a4, in_plane(tilt), rtol=0, atol=1e-12)
+        assert np.allclose(arm, np.cross(point, a4), rtol=0, atol=1e-12)
+    assert list(q[22, 0:3]) == list(q[23, 9:12]) == list(A1)
+    assert not np.any(q[23, 0:3])  # O1 lies on A1 through the origin
+    assert [line.partition(":")[0] for line in names[:18:6]] == ["crank", "coupler", "rocker"]
+    for first in (0, 3):  # ground and crank on the crank: F41 - F21, M41 - M21
+        assert np.array_equal(q[0:3, first : first + 3], (1 - 2 * (first > 0)) * np.eye(3))
+
+
+def test_loop_two_follows_loop_one():
+    """Q(26,33) is A50z, F46 and M46 act on the output."""
+    names, q = coefficients("rcsr_csr", "table_24")
+    assert np.allclose(q[24, 24:27], q[25, 30:33], rtol=0, atol=1e-12)
+    assert abs(np.linalg.norm(q[25, 30:33]) - 1) <= 1e-11
+    assert abs(q[25, 24:27] @ q[25, 30:33]) <= 1e-10
+    assert not np.any(q[24:, :24])
+    rows = [k for k, line in enumerate(names) if line.startswith("output: ")]
+    assert np.array_equal(q[rows[:3], 27:30], np.eye(3))
+    assert np.array_equal(q[rows[3:], 33:36], np.eye(3))
+
+
+def test_the_load_of_link_four_is_in_rows_21_to_26():
+    """C(21) to C(26); MIN acts about A1 on link one, and every link takes the pair behind it."""
+    names, q = coefficients("rchch", "table_32")
+    assert names[20] == "four: force x"
+    assert names[25] == "four: moment z"
+    assert list(q[:6, 33]) == [0, 0, 0, 1, 0, 0]
+    for k, first in enumerate((0, 6, 12, 20)):
+        own, next_pair = 3 * k, 3 * k + 3
+        sign = 1.0 if k == 0 else -1.0  # F51 and F21 both act on link one
+        assert np.array_equal(q[first : first + 3, own : own + 3], sign * np.eye(3))
+        assert np.array_equal(q[first : first + 3, next_pair : next_pair + 3], np.eye(3))
 
 
 def test_screws_take_their_lead():
