@@ -52,21 +52,30 @@ bool CrossingSearch::Samples::deepest(double* at) const {
   return least < __builtin_inf() && !std::binary_search(part.begin(), part.end(), *at);
 }
 
-// The bad switch whose zero is the first by the secant, and where that is. A kink at which an event's value bends comes before
-// an event at the same place, whose value beyond is that of the other side.
-int CrossingSearch::Bracket::first(const std::vector<SwitchKind>& kinds, double* where) const {
-  int which = -1;
-  for (std::size_t s = 0; s < at_high.size(); ++s) {
-    if (!(at_high[s] < 0.0)) continue;
-    const double a = std::max(at_low[s], 0.0) * low_weight, b = at_high[s] * high_weight;
-    const double x = low + (high - low) * (a / (a - b));
-    const bool is_kink = kinds[s].bends_event, after_kink = which >= 0 && kinds[which].bends_event;
-    const double margin = is_kink && !after_kink ? FOUND : after_kink && !is_kink ? -FOUND : 0.0;
-    if (which >= 0 && !(x < *where + margin)) continue;
+// The bad switch whose zero is the first by the secant, and where that is. A kink comes before what it moves at the same place,
+// other kinks and events, which are listed behind it: their values beyond are those of the other side. One that rests at its
+// zero leaves it with another kink, which then comes first; alone it is bisected, as its values tell nothing of where it does.
+int CrossingSearch::first(int lane, double* where) const {
+  const Bracket& b = bracket_[lane];
+  const std::vector<SwitchKind>& kinds = states_.kinds;
+  int which = -1, resting = -1;
+  for (std::size_t s = 0; s < kinds.size(); ++s) {
+    if (!(b.at_high[s] < 0.0)) continue;
+    if (!states_.side[s * states_.lanes + lane]) {
+      resting = (int)s;
+      continue;
+    }
+    const double above = std::max(b.at_low[s], 0.0) * b.low_weight, below = b.at_high[s] * b.high_weight;
+    const double x = b.low + (b.high - b.low) * (above / (above - below));
+    // those before come first
+    const double margin = which >= 0 && kinds[which].bends_event ? FOUND : 0.0;
+    if (which >= 0 && !(x < *where - margin)) continue;
     *where = x;
     which = (int)s;
   }
-  return which;
+  if (which >= 0 || resting < 0) return which;
+  *where = 0.5 * (b.low + b.high);
+  return resting;
 }
 
 // Whether a switch is bad at the place that a lane was looked at.
@@ -133,7 +142,7 @@ void CrossingSearch::end(int lane, Crossing::Kind kind) {
   open_[lane] = 0;
   c.kind = kind;
   if (kind == Crossing::NONE) return;
-  c.which = b.first(states_.kinds, &c.part);
+  c.which = first(lane, &c.part);
   // all that was bad is ignored
   if (c.which < 0) return (void)(c.kind = Crossing::NONE);
   if (c.part < EARLY[2]) c.kind = Crossing::AT_ONCE;
@@ -244,10 +253,12 @@ void CrossingSearch::close_in() {
     for (int i = 0; i < states_.lanes; ++i) {
       if (!open_[i]) continue;
       Bracket& b = bracket_[i];
-      if (b.first(states_.kinds, &part_[i]) < 0) {
+      if (first(i, &part_[i]) < 0) {
         end(i, Crossing::NONE);
         continue;
       }
+      // a value that is small at the low end draws the secant there, wherever it is that another kink makes it bad
+      if (b.high - b.low > 2.0 * FOUND) part_[i] = std::max(part_[i], b.low + 2.0 * FOUND);
       const bool is_near = std::fabs(part_[i] - b.tried) <= FOUND || b.high - b.low <= FOUND;
       if (is_near) end(i, Crossing::WITHIN);
       b.tried = part_[i];

@@ -40,7 +40,6 @@ class CrossingSearch {
     std::vector<double> at_low, at_high;
     double low_weight = 1.0, high_weight = 1.0;  // Illinois' rule: of an end that stays
     double tried = -1.0;
-    int first(const std::vector<SwitchKind>& kinds, double* where) const;
   };
   // Places that were looked at, in order.
   struct Samples {
@@ -54,6 +53,7 @@ class CrossingSearch {
   // Asks the open lanes at part_; lanes with a fault are closed.
   void look();
   void forget_kinks(int lane);
+  int first(int lane, double* where) const;
   bool is_bad(int lane) const;
   void find_touch(int lane, const Samples& samples);
   void scan(const Flags& suspected);

@@ -75,7 +75,7 @@ void March::compare_sides(int which, const double* time, const double* place, co
                           Flags* mask) {
   const int lanes = states_.lanes;
   const double* const value = values + (std::size_t)which * lanes;
-  Flags told(lanes, 0), seen(lanes, 0);
+  Flags told(lanes, 0), seen(lanes, 0), asked(lanes, 0);
   std::vector<double> depth(lanes, 0.0);
   turn_with_outer(std::vector<std::vector<int>>(lanes, {which}), time, place, values, *mask, &told);
   for (int i = 0; i < lanes; ++i) {
@@ -83,17 +83,24 @@ void March::compare_sides(int which, const double* time, const double* place, co
     const std::size_t at = (std::size_t)which * lanes + i;
     const double at_end = -states_.good(at, states_.switch_end[at]);
     const double deepest = std::max(-least_inside(i, which, false), at_end), here = std::fabs(value[i]);
-    const double step = states_.step[i] * (deepest > here ? deepest / here : 1.0);
-    (*mask)[i] = told[i] && step < __builtin_inf() && bends_nothing(i, place, slope, other_slope_.data(), step);
+    // one that is zero at the place tells nothing of the rates farther on
+    const double ratio = deepest > here && here > 0.0 ? deepest / here : 1.0;
+    (*mask)[i] = told[i] && bends_nothing(i, place, slope, other_slope_.data(), ratio * states_.step[i]);
     // events and other kinks see it whatever the rates do
-    if ((*mask)[i] && (states_.kinds[which].bends_event || shifts_kinks(i, which, values)))
-      seen[i] = 1, depth[i] = std::max(deepest, here);
+    seen[i] = states_.kinds[which].bends_event || shifts_kinks(i, which, values) || (deepest > 0.0 && here == 0.0);
+    asked[i] = (*mask)[i] && seen[i];
+    depth[i] = std::max(deepest, here);
     states_.fault[i] = 0;
   }
-  if (!any(seen)) return;
-  const std::vector<double> rounding = roundings(seen, states_.switch_value);
-  for (int i = 0; i < lanes; ++i)
-    if (seen[i]) (*mask)[i] = depth[i] <= NOISE * rounding[(std::size_t)which * lanes + i];
+  if (!any(asked)) return;
+  const std::vector<double> rounding = roundings(asked, states_.switch_value);
+  for (int i = 0; i < lanes; ++i) {
+    if (!asked[i]) continue;
+    // one place may show none by chance
+    double& noise = control_[i].noise[which];
+    noise = std::max(noise, rounding[(std::size_t)which * lanes + i]);
+    (*mask)[i] = depth[i] <= NOISE * noise;
+  }
 }
 
 // Whether the values of other kinks in `values_`, beyond the kink `which`, differ from those before it.
@@ -122,6 +129,7 @@ void March::mute(Flags* mask) {
     Flags same = asked;
     compare_sides(s, states_.until.data(), states_.y_end.data(), states_.slope_end.data(), states_.switch_end.data(),
                   &same);
+    compare_where_passed(s, &same);
     for (int i = 0; i < lanes; ++i) {
       if (!asked[i]) continue;
       muted_[at + i] = same[i] || (control_[i].let_alone[s] && states_.settings.fixed_step > 0.0);
@@ -132,6 +140,38 @@ void March::mute(Flags* mask) {
     }
   }
   compare_together(*mask);
+}
+
+// Both sides may give the same at the step's end by chance, as those of if(v < 1, t, 2) do at t = 2: lanes whose step passes the
+// kink are asked about the place where it does, too, on the cubic between the ends.
+void March::compare_where_passed(int which, Flags* mask) {
+  const int lanes = states_.lanes;
+  Flags passed(lanes, 0), told(lanes, 0);
+  for (int i = 0; i < lanes; ++i) {
+    passed[i] = (*mask)[i] && is_crossed_by(i, which);
+    part_[i] = 0.0, at_[i] = states_.time[i];
+    if (!passed[i]) continue;
+    const std::size_t at = (std::size_t)which * lanes + i;
+    const double begin = std::max(states_.good(at, states_.switch_value[at]), 0.0);
+    part_[i] = begin / (begin - states_.good(at, states_.switch_end[at]));
+    at_[i] += part_[i] * states_.step[i];
+  }
+  if (!any(passed)) return;
+  for (long k = 0; k < states_.entries; ++k) {
+    const double x = part_[k % lanes], step = states_.step[k % lanes], rise = states_.y_end[k] - states_.y[k];
+    const double first = step * states_.slope[k] - rise, second = rise - step * states_.slope_end[k];
+    place_[k] = passed[k % lanes] ? states_.y[k] + x * (rise + (1.0 - x) * ((1.0 - x) * first + x * second)) : states_.y[k];
+  }
+  std::vector<double> slope(states_.entries), values(states_.side.size());
+  const Flags asked = passed;
+  states_.evaluate(at_.data(), place_.data(), false, &passed, slope.data(), values.data());
+  if (any(passed)) turn_with_outer(std::vector<std::vector<int>>(lanes, {which}), at_.data(), place_.data(), values.data(), passed, &told);
+  for (int i = 0; i < lanes; ++i) {
+    if (!asked[i]) continue;
+    states_.fault[i] = 0;
+    if (passed[i] && told[i] && !bends_nothing(i, place_.data(), slope.data(), other_slope_.data(), states_.step[i]))
+      (*mask)[i] = 0;
+  }
 }
 
 // Kinks that bend nothing one by one may bend something together, as in if(x < 1, floor(x), 0) where a step passes 1 and 0:

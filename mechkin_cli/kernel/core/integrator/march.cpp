@@ -48,6 +48,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
     c.passed.assign(states_.kinds.size(), 0);
     c.met.assign(states_.kinds.size(), 0);
     c.largest.assign(states_.kinds.size(), 0.0);
+    c.noise.assign(states_.kinds.size(), 0.0);
     c.let_alone.assign(states_.kinds.size(), 0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
@@ -244,7 +245,8 @@ void March::rewiden(int lane) {
   const double wanted = states_.step[lane] * states_.factor[lane];
   // a step that a row or a crossing cut says little of the next one
   const bool is_short = (c.is_cut || states_.step[lane] < c.wanted) && !c.was_refused;
-  c.wanted = is_short ? std::max(c.wanted, wanted) : wanted;
+  // one that a crossing made so short that the time stays as it is would never grow
+  c.wanted = std::max(is_short ? std::max(c.wanted, wanted) : wanted, least(lane));
   c.room *= 1.0 + c.room_growth;
   c.room_growth *= 2.0;
   c.was_refused = false;

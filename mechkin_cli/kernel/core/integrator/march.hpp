@@ -31,6 +31,7 @@ struct LaneControl {
   std::vector<int> passed;               // switches: how often they were passed at this place
   std::vector<long> met;                 // switches: how often they were passed at all
   std::vector<double> largest;           // switches: their largest values at the ends of steps
+  std::vector<double> noise;             // switches: the largest rounding of theirs that was measured
   std::vector<int> jumped;               // events that were passed as a kink was
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
   Flags let_alone;
@@ -92,6 +93,7 @@ class March {
   // kinks.cpp
   void mute(Flags* mask);
   bool shifts_kinks(int lane, int which, const double* values) const;
+  void compare_where_passed(int which, Flags* mask);
   void compare_together(const Flags& mask);
   void turn_with_outer(const std::vector<std::vector<int>>& which, const double* time, const double* place,
                        const double* values, const Flags& mask, Flags* told);
