@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.model import Model, load, loads
-    from mechkin_cli.verdict import Status
+    from mechkin_cli.verdict import Status, __version__ as __version__
 
 
 _PLACES = {
@@ -61,6 +61,7 @@ _PLACES = {
     "Model": "model",
     "Status": "verdict",
     "UsageError": "diagnostics",
+    "__version__": "verdict",
     "load": "model",
     "loads": "model",
 }

@@ -219,19 +219,10 @@ SWEEP: Final = "sweep"
 FORMAT = 1
 """The version of the file format, as files say it in `format:`."""
 
-UNKNOWN = "(source folder, not installed)"
-
-
-def version() -> str:
-    """The version of the installed package."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("mechkin")
-    except PackageNotFoundError:
-        return UNKNOWN
+__version__ = "0.1.0"
+"""The version of the package; its metadata are built from this line."""
 
 
 def versions() -> dict[str, object]:
     """Program and format as the first two keys of a JSON object."""
-    return {"mechkin": version(), "format": FORMAT}
+    return {"mechkin": __version__, "format": FORMAT}

@@ -13,7 +13,7 @@ import typer
 from mechkin_cli.cli import offers
 from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
 from mechkin_cli.cli.messages import ExitCode, discard, put, say
-from mechkin_cli.verdict import version as package_version
+from mechkin_cli.verdict import __version__
 
 app = typer.Typer(
     name="mechkin",
@@ -84,7 +84,7 @@ def _options(
     version: bool = typer.Option(False, "--version", help="Print the version and exit."),
 ) -> None:
     if version:
-        put(f"mechkin {package_version()}\n")
+        put(f"mechkin {__version__}\n")
         raise typer.Exit()
 
 

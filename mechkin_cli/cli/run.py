@@ -15,7 +15,7 @@ from mechkin_cli.cli.commands import COMMANDS, Command, Word
 from mechkin_cli.cli.interrupts import said
 from mechkin_cli.cli.messages import ExitCode, put, say, say_diagnostics, stdout_failed, tell_as
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
-from mechkin_cli.verdict import version
+from mechkin_cli.verdict import __version__
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def run() -> int:
 def _run() -> int:
     try:
         if sys.argv[1:] == ["--version"] and "_MECHKIN_COMPLETE" not in os.environ:
-            put(f"mechkin {version()}\n")
+            put(f"mechkin {__version__}\n")
             return ExitCode.OK
         plain = plain_line(sys.argv[1:])
         if plain is not None:

@@ -32,7 +32,7 @@ from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
 from mechkin_cli.studies.source import StudySource, open_study
 from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
 from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
-from mechkin_cli.verdict import SWEEP, version
+from mechkin_cli.verdict import SWEEP, __version__
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Solvable
@@ -47,14 +47,18 @@ Answer = tuple[dict[str, Records], str]
 """The tables that a worker has computed, and its version of mechkin."""
 
 
+def version() -> str:
+    """Done by a worker: its version of mechkin."""
+    return __version__
+
+
 def work_off(parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: int) -> Answer:
     """Done by a worker: the records of variants with these values, the first with the number
     `begin`."""
-    own = version()
-    if own != parcel[1]:
-        return {}, own
+    if parcel[1] != __version__:
+        return {}, __version__
     model, question = _unpacked(parcel)
-    return chunk(model, question, values, begin, threads), own
+    return chunk(model, question, values, begin, threads), __version__
 
 
 def check_version(found: str) -> None:
@@ -63,11 +67,10 @@ def check_version(found: str) -> None:
     Raises:
         UsageError: its numbers might be others.
     """
-    own = version()
-    if found != own:
+    if found != __version__:
         raise UsageError(
-            f"a worker has mechkin {found}, this is mechkin {own}: results would not be those of "
-            "one program; install the same version everywhere"
+            f"a worker has mechkin {found}, this is mechkin {__version__}: results would not be "
+            "those of one program; install the same version everywhere"
         )
 
 
@@ -159,7 +162,7 @@ class Study:
             "mechanism": _digest(document.text.encode("utf-8", "surrogatepass")),
             "parameters": _digest(_canonical(values)),
             "study": _digest(_canonical(study)),
-            "version": version(),
+            "version": __version__,
         }
         tables = {**document.tables, **self.source.document.tables}
         sources |= {name: _digest(content) for name, content in tables.items()}
@@ -205,7 +208,7 @@ class Study:
                     yield task, chunk(self.model, question, values, task.begin, workers.threads)
                 return
             executors, count, threads = chosen
-            parcel = pickle.dumps((self.model, question)), version()
+            parcel = pickle.dumps((self.model, question)), __version__
 
             def submit(executor: Executor, task: Task) -> Future[Answer]:
                 values = variation.values(task.begin, task.end)
@@ -213,7 +216,7 @@ class Study:
 
             def died(task: Task) -> Answer:
                 values = variation.values(task.begin, task.end)
-                return lost(question, values, task.begin), version()
+                return lost(question, values, task.begin), __version__
 
             for task, (tables, theirs) in executed(tasks, submit, died, executors, count):
                 check_version(theirs)

@@ -20,7 +20,7 @@ from mechkin_cli.record import dataclass, field
 from mechkin_cli.sweep import refuse_loaded_spin
 from mechkin_cli.tables import write_files
 from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
-from mechkin_cli.verdict import SWEEP, version
+from mechkin_cli.verdict import SWEEP, __version__
 from mechkin_cli.view.arrows import has_forces, reactions
 from mechkin_cli.view.branch import BranchScene, table_record
 from mechkin_cli.view.joints import (
@@ -303,7 +303,7 @@ def view_scene(
     said = [note for analysis in analyses for note in analysis.diagnostics]
     notes += _left_out(runs)
     scene = Scene(
-        f"mechkin {version()}",
+        f"mechkin {__version__}",
         Path(model.built.read.document.file).name,
         model.problem,
         runs,

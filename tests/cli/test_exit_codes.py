@@ -1,8 +1,12 @@
 """Exit codes: 0 ok, 1 differences, 2 usage, 3 invalid file, 4 rows are missing, 70 internal."""
 
+from importlib import metadata
+
 import pytest
 from cli import files
 from references import RCSR
+
+import mechkin_cli as mk
 
 
 @pytest.fixture(autouse=True)
@@ -87,6 +91,6 @@ def test_an_interrupt_ends_with_130(mechkin, monkeypatch) -> None:
     assert "interrupted" in run.err
 
 
-def test_version_of_the_installed_package(mechkin, monkeypatch) -> None:
-    monkeypatch.setattr("importlib.metadata.version", lambda name: f"9.9 of {name}")
-    assert mechkin("--version").out == "mechkin 9.9 of mechkin\n"
+def test_the_version_is_that_of_the_installed_package(mechkin) -> None:
+    assert mk.__version__ == metadata.version("mechkin")
+    assert mechkin("--version").out == f"mechkin {mk.__version__}\n"
