@@ -1,5 +1,5 @@
-"""Curves and pictures: which curves stand against what and what is marked, as plain data; and pictures
-as matplotlib draws them, SVG, PNG and PDF, with the same bytes for the same rows.
+"""Curves and pictures: which curves stand against what and what is marked, as plain data; and
+pictures as matplotlib draws them, SVG, PNG and PDF, with the same bytes for the same rows.
 
 A curve is a column by its label, a quantity or an expression, with its unit. Numbers stand over one
 column, a panel for each unit. Vectors are drawn in a plane with equal axes instead: a position
@@ -298,7 +298,7 @@ def drawn(picture: Picture) -> Figure:
     """
     matplotlib = _matplotlib()
     with matplotlib.rc_context(_STYLE):
-        return _in_plane(picture) if picture.is_plane else _over_a_column(picture)
+        return _plane_figure(picture) if picture.is_plane else _over_a_column(picture)
 
 
 def image(picture: Picture, ending: str) -> bytes:
@@ -354,7 +354,7 @@ def _over_a_column(picture: Picture) -> Figure:
     return figure
 
 
-def _in_plane(picture: Picture) -> Figure:
+def _plane_figure(picture: Picture) -> Figure:
     figure = _figure(_PLANE)
     axes = figure.subplots()
     (panel,) = picture.panels
