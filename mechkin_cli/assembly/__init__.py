@@ -6,12 +6,6 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.assembly.fold import (
-        PlacesBefore as PlacesBefore,
-        at_unit_rate as at_unit_rate,
-        left_for as left_for,
-        unit_rates as unit_rates,
-    )
     from mechkin_cli.assembly.home import (
         NamedModes as NamedModes,
         is_cyclic as is_cyclic,
@@ -31,20 +25,23 @@ if TYPE_CHECKING:
         HOME as HOME,
         MAY_BE_RIGID as MAY_BE_RIGID,
         NEAR as NEAR,
+        PlacesBefore as PlacesBefore,
+        at_unit_rate as at_unit_rate,
         choose_start as choose_start,
         continued_start as continued_start,
+        left_for as left_for,
         mode_letter as mode_letter,
         state_at_first_row as state_at_first_row,
+        unit_rates as unit_rates,
     )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "fold": "PlacesBefore at_unit_rate left_for unit_rates",
         "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
         "wrapped",
         "near": "AssemblyStart distances_of is_unclear nothing_found",
-        "start": "HOME MAY_BE_RIGID NEAR choose_start continued_start mode_letter "
-        "state_at_first_row",
+        "start": "HOME MAY_BE_RIGID NEAR PlacesBefore at_unit_rate choose_start "
+        "continued_start left_for mode_letter state_at_first_row unit_rates",
     },
 )

@@ -21,7 +21,7 @@ from mechkin_cli.building.fields import (
     read_points,
     read_units,
 )
-from mechkin_cli.building.links import build_linkage
+from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
 from mechkin_cli.building.source import MechanismSource
@@ -159,7 +159,7 @@ def _with_definitions(fields: Fields, file: MechanismFile, problem: Problem) -> 
 def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[AnyBalance, ...]:
     if not file.balances or SWEEP in fields.failed:
         return ()
-    from mechkin_cli.building.balances import build_balances
+    from mechkin_cli.building.tables import build_balances
 
     return build_balances(fields, file.balances, problem)
 

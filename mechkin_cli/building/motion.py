@@ -225,7 +225,7 @@ def build_inputs(
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
-        from mechkin_cli.building.course import Following
+        from mechkin_cli.building.laws import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
         followers = Following(fields, orders, rows, time, written.path)
@@ -252,7 +252,7 @@ def build_inputs(
         )
     if not inputs or (time is None and not expressions):
         return motion
-    from mechkin_cli.building.course import build_course, build_paths
+    from mechkin_cli.building.laws import build_course, build_paths
 
     course = build_course(fields, written, inputs, expressions)
     paths = build_paths(fields, inputs, expressions, time) if expressions else motion.paths

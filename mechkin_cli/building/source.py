@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from mechkin_cli import reading
+from mechkin_cli import reading, schema
 from mechkin_cli.diagnostics import InvalidFile
 from mechkin_cli.reading import (
     MOST_BYTES,
@@ -74,9 +74,7 @@ def _checked(document: Document) -> MechanismSource:
         raise InvalidFile(diagnostics) from None
     if isinstance(file, MechanismFile):
         return MechanismSource(file, document)
-    from mechkin_cli.building.plane import in_space  # only for files in a plane
-
-    return MechanismSource(in_space(file), document)
+    return MechanismSource(schema.in_space(file), document)
 
 
 class BadTable(Exception):

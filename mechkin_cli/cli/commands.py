@@ -271,7 +271,7 @@ MODES = Command(
 )
 RANGES = Command(
     "ranges",
-    "ranges:ranges",
+    "answer:ranges",
     """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.

@@ -1,4 +1,5 @@
-"""Elementary functions with the same bits on every machine, for a float or for float64 rows.
+"""Elementary functions with the same bits on every machine, for a float or for float64 rows; and
+the random numbers of the searches.
 
 Each takes a float and returns a float, or takes an array of shape (n,) and returns a new one of
 that shape; functions of two arguments take two floats or two arrays of one length, else they raise
@@ -9,6 +10,7 @@ arguments; special values (signed zeros, infinities, nan, values outside the dom
 
 from __future__ import annotations
 
+from math import ldexp, pi
 from typing import TypeVar
 
 import numpy as np
@@ -165,3 +167,51 @@ def _rows(value: float | FloatArray) -> FloatArray:
     if flags.c_contiguous and flags.writeable and value.dtype == np.float64:
         return value
     return np.require(value, dtype=np.float64, requirements=["C", "W"])
+
+
+SEED = 20_240_229
+"""Of the random starts of all searches: fixed, so that the same file gives the same starts."""
+
+_STEP = 0x9E3779B97F4A7C15
+_MIXERS = ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB))
+_ROUNDING = ldexp(1.0, -53)
+
+
+class RandomStarts:
+    """A stream of random coordinates, the same on every machine and with every NumPy.
+
+    SplitMix64 (Steele, Lea, Flood 2014): the words are a hash of a counter, so a whole array of
+    them costs a few operations, and NumPy's random module need not be imported.
+    """
+
+    def __init__(self) -> None:
+        self._counter = 0
+
+    def skip(self, count: int) -> None:
+        """Passes over the next words of the stream."""
+        self._counter += count
+
+    def words(self, count: int) -> NDArray[np.uint64]:
+        """The next words of the stream."""
+        numbers = np.arange(self._counter + 1, self._counter + count + 1, dtype=np.uint64)
+        self._counter += count
+        z = np.uint64(SEED) + numbers * np.uint64(_STEP)
+        for shift, factor in _MIXERS:
+            z = (z ^ (z >> np.uint64(shift))) * np.uint64(factor)
+        return z ^ (z >> np.uint64(31))
+
+    def fractions(self, count: int) -> FloatArray:
+        """Uniform in [0, 1): the upper 53 bits of each word."""
+        return (self.words(count) >> np.uint64(11)).astype(np.float64) * _ROUNDING
+
+    def between(self, half: float, count: int) -> FloatArray:
+        """Uniform in [-half, half)."""
+        return half * (2.0 * self.fractions(count) - 1.0)
+
+    def quaternions(self, count: int) -> FloatArray:
+        """Rotations without preferred direction (Shoemake 1992), (4, count)."""
+        share, first, second = (self.fractions(count) for _ in range(3))
+        near, far = np.sqrt(1.0 - share), np.sqrt(share)
+        first, second = 2.0 * pi * first, 2.0 * pi * second
+        (s1, c1), (s2, c2) = ((sin(a), cos(a)) for a in (first, second))
+        return np.stack([near * s1, near * c1, far * s2, far * c2])

@@ -31,6 +31,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import choose_start, probe_of
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import (
     GROUND_NAME,
     Assembly,
@@ -54,7 +55,6 @@ from mechkin_cli.mobility.opened import (
 from mechkin_cli.plan import home_state
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Session
-from mechkin_cli.structure import RandomStarts
 from mechkin_cli.units import UnitSystem
 
 if TYPE_CHECKING:

@@ -29,8 +29,8 @@ from mechkin_cli.record import dataclass, replace
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.kernel.functions import RandomStarts
     from mechkin_cli.show import Floats
-    from mechkin_cli.structure import RandomStarts
 
 
 def quadratic_forms(part: LoopPart, state: Floats, motions: Floats, stresses: Floats) -> Floats:

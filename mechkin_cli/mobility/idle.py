@@ -20,12 +20,12 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.idle import PLACES, LinkMotion, RigidGroup, held_groups
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import Joint, LockedFreedom, Problem, Vector
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart, home
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
 from mechkin_cli.mobility.opened import rank_of
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.structure import RandomStarts
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats

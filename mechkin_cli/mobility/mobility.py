@@ -26,13 +26,14 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import Joint, Mechanism, Problem, joint_type
 from mechkin_cli.mobility.configurations import Body, Configuration, assembled, first_row, home
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
 from mechkin_cli.mobility.idle import IdleFreedom, Motions, idle_freedoms
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.show import Listed, Listing
-from mechkin_cli.structure import RandomStarts, listed
+from mechkin_cli.structure import listed
 
 if TYPE_CHECKING:
     from mechkin_cli.session import Session

@@ -8,15 +8,16 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.plots.curves import (
         Picture as Picture,
+        drawn as drawn,
+        format_of as format_of,
+        image as image,
         picture as picture,
         table_picture as table_picture,
     )
-    from mechkin_cli.plots.figure import drawn as drawn, format_of as format_of, image as image
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "curves": "Picture picture table_picture",
-        "figure": "drawn format_of image",
+        "curves": "Picture drawn format_of image picture table_picture",
     },
 )

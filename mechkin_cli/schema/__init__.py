@@ -72,6 +72,7 @@ if TYPE_CHECKING:
         TimeSection as TimeSection,
         WithRates as WithRates,
     )
+    from mechkin_cli.schema.plane import in_space as in_space
     from mechkin_cli.schema.responses import (
         HeldCoordinate as HeldCoordinate,
         ListedTime as ListedTime,
@@ -105,6 +106,7 @@ __getattr__, __dir__ = lazy_names(
         "motion": "AssemblySection ConstantAcceleration ConstantRate Cycloidal FollowingInput "
         "Harmonic HeldInput InputMotion Law ListedInput MotionSection Polynomial SweptInput "
         "TableLaw TimeSection WithRates",
+        "plane": "in_space",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
         "study": "StudyFile validate_study",

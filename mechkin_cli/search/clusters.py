@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from mechkin_cli.kernel.functions import RandomStarts
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.structure import RandomStarts
 
     Isolated = Callable[[Floats], tuple[Floats, Bools, Floats, int]]
     """From end points (columns) to the points closed as well as possible, which of them are

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.kernel.functions import threads_for, width
+from mechkin_cli.kernel.functions import RandomStarts, threads_for, width
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.record import NamedTuple
@@ -33,7 +33,6 @@ from mechkin_cli.search.clusters import (
 )
 from mechkin_cli.search.loop_equation import count_assemblies
 from mechkin_cli.session import Ask, RowInputs, Session, Structure, run
-from mechkin_cli.structure import RandomStarts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import (
     GROUND,
     GROUND_NAME,
@@ -33,7 +34,6 @@ from mechkin_cli.record import dataclass, field, replace
 from mechkin_cli.session.inputs import TurnSlots
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 from mechkin_cli.structure import (
-    RandomStarts,
     Rates,
     SolverGraph,
     UnsolvableGraph,

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
         reduce as reduce,
         whole_link as whole_link,
     )
-    from mechkin_cli.structure.random_starts import RandomStarts as RandomStarts
     from mechkin_cli.structure.rank import Rates as Rates, unit_of as unit_of
 
 __getattr__, __dir__ = lazy_names(
@@ -40,7 +39,6 @@ __getattr__, __dir__ = lazy_names(
         "graph": "Block CutJoint SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
         "is_redundant listed structure_of",
         "network": "connections_of reduce whole_link",
-        "random_starts": "RandomStarts",
         "rank": "Rates unit_of",
     },
 )

@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
     from mechkin_cli.assembly import PlacesBefore
     from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.kernel.functions import RandomStarts
     from mechkin_cli.mechanism import Wanted
     from mechkin_cli.session import Ending, Followed, Session
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.structure import RandomStarts
 
 
 def sections(followed: Followed, rows: int) -> NDArray[np.int64]:
@@ -325,7 +325,7 @@ def error_bound(result: RunRows) -> Floats:
 def largest_move(result: RunRows) -> Floats:
     """The largest move of any state (rows,) in some runs with constants and inputs slightly off;
     nan where one of them did not close."""
-    from mechkin_cli.structure import RandomStarts
+    from mechkin_cli.kernel.functions import RandomStarts
 
     session, rows = result.session, result.row_states
     stream = RandomStarts()

@@ -28,9 +28,6 @@ stands beside it with its reason (`kernel/core/`):
 from __future__ import annotations
 
 from mechkin_cli.tolerances.closing import *
-from mechkin_cli.tolerances.errors import *
-from mechkin_cli.tolerances.following import *
 from mechkin_cli.tolerances.mobility import *
 from mechkin_cli.tolerances.reading import *
 from mechkin_cli.tolerances.results import *
-from mechkin_cli.tolerances.searching import *

@@ -7,9 +7,15 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.variants.design import (
+        Draws as Draws,
+        draws as draws,
         file_values as file_values,
+        has_scipy as has_scipy,
+        needs_scipy as needs_scipy,
+        normal as normal,
         one_value as one_value,
         parameter_values as parameter_values,
+        uniform as uniform,
         varied_design as varied_design,
         with_parameters as with_parameters,
     )
@@ -22,21 +28,13 @@ if TYPE_CHECKING:
         sample_of as sample_of,
         swept_parameter as swept_parameter,
     )
-    from mechkin_cli.variants.samples import (
-        Draws as Draws,
-        draws as draws,
-        has_scipy as has_scipy,
-        needs_scipy as needs_scipy,
-        normal as normal,
-        uniform as uniform,
-    )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "design": "file_values one_value parameter_values varied_design with_parameters",
+        "design": "Draws draws file_values has_scipy needs_scipy normal one_value "
+        "parameter_values uniform varied_design with_parameters",
         "many": "vary",
         "result": "Reduce Variants expressions_of read_by sample_of swept_parameter",
-        "samples": "Draws draws has_scipy needs_scipy normal uniform",
     },
 )

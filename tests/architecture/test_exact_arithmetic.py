@@ -75,7 +75,7 @@ INEXACT_METHODS |= {"standard_normal", "normal", "standard_exponential", "expone
 FRACTIONS = "exact fractions and whole exponents"
 ACCEPTED = {
     ("response/integration.py", "np.linalg"): "eigenvectors for a message",
-    ("building/links.py", "np.linalg"): "eigenvalues for a warning",
+    ("building/joints.py", "np.linalg"): "eigenvalues for a warning",
     (
         "building/motion.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",

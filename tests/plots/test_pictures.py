@@ -12,8 +12,7 @@ import yaml
 from references import RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.plots.curves import PlotCurve, picture
-from mechkin_cli.plots.figure import drawn, image
+from mechkin_cli.plots.curves import PlotCurve, drawn, image, picture
 
 FOUR_BAR = """\
 format: 1
@@ -159,7 +158,7 @@ def test_a_row_between_two_gaps_is_seen(analysis):
 def test_the_same_rows_give_the_same_bytes(analysis, ending):
     script = (
         "import sys, mechkin_cli as mk\n"
-        "from mechkin_cli.plots.figure import image\n"
+        "from mechkin_cli.plots.curves import image\n"
         "found = mk.loads(sys.argv[1]).analyze().picture(table='sizes')\n"
         "sys.stdout.buffer.write(image(found, sys.argv[2]))\n"
     )

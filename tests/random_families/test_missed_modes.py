@@ -16,11 +16,11 @@ from references import FILE_OF
 
 import mechkin_cli as mk
 from mechkin_cli import tolerances
+from mechkin_cli.kernel import functions
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.search.clusters import Clusters, same_poses
 from mechkin_cli.search.search import BlockSearch, PlaceSearch, assemblies, search_round
 from mechkin_cli.session.session import Session
-from mechkin_cli.structure import random_starts
-from mechkin_cli.structure.random_starts import RandomStarts
 
 SEARCHES = 20 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 LOOKS, ROUND, REFERENCE = 16, 128, 1 << 15
@@ -75,7 +75,7 @@ def test_the_bound_holds_at_every_look(name: str, monkeypatch: pytest.MonkeyPatc
     shares = reference.clusters.met / reference.clusters.met.sum()
     wrong = {"bound": 0, "estimate": 0, "tenth": 0}
     for seed in range(SEARCHES):
-        monkeypatch.setattr(random_starts, "SEED", 1_000_003 * seed + 17)
+        monkeypatch.setattr(functions, "SEED", 1_000_003 * seed + 17)
         search, generator = searched.begun(), RandomStarts()
         failed = set()
         for _ in range(LOOKS):

@@ -9,8 +9,8 @@ import pytest
 from references import FILE_OF
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.search.clusters import pose_keys, randomise, same_poses, unknown_states
-from mechkin_cli.structure.random_starts import RandomStarts
 
 FILES = ("rcsr", "rchch", "stewart", "rprhrrr", "five_link_suspension")
 

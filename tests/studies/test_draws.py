@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mechkin_cli.variants.samples import BLOCK, draws, normal, uniform
+from mechkin_cli.variants.design import BLOCK, draws, normal, uniform
 
 METHODS = ("random", "latin", "sobol")
 
@@ -61,6 +61,6 @@ def test_distributions_have_their_quantiles() -> None:
 
 
 def test_no_sample_gives_infinity() -> None:
-    from mechkin_cli.variants.samples import _inside
+    from mechkin_cli.variants.design import _inside
 
     assert np.isfinite(normal(_inside(np.array([0.0, 1.0])), 0.0, 1.0)).all()

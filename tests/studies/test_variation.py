@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mechkin_cli.studies.plan import StudyVariation
-from mechkin_cli.variants.samples import draws
+from mechkin_cli.variants.design import draws
 
 
 def lines(variation: StudyVariation, begin: int, end: int) -> list[tuple[float, ...]]:

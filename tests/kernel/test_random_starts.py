@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from mechkin_cli.structure import random_starts
-from mechkin_cli.structure.random_starts import RandomStarts
+from mechkin_cli.kernel import functions
+from mechkin_cli.kernel.functions import RandomStarts
 
 
 def split_mix(seed, count):
@@ -21,7 +21,7 @@ def split_mix(seed, count):
 
 
 def test_words_of_a_published_seed(monkeypatch):
-    monkeypatch.setattr(random_starts, "SEED", 1234567)
+    monkeypatch.setattr(functions, "SEED", 1234567)
     assert RandomStarts().words(3).tolist() == [
         6457827717110365317,
         3203168211198807973,
@@ -33,7 +33,7 @@ def test_pieces_make_the_same_stream():
     whole, pieces = RandomStarts(), RandomStarts()
     parts = [pieces.words(n) for n in (1, 5, 94)]
     assert whole.words(100).tolist() == np.concatenate(parts).tolist()
-    assert whole.words(3).tolist() == split_mix(random_starts.SEED, 103)[100:]
+    assert whole.words(3).tolist() == split_mix(functions.SEED, 103)[100:]
 
 
 def test_quaternions_have_no_preferred_direction():
