@@ -15,7 +15,7 @@ point; in the drawing they are not zero.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from math import floor, isfinite
 from typing import Final
@@ -69,7 +69,7 @@ from mechkin_cli.schema import (
 )
 from mechkin_cli.show import Floats
 from mechkin_cli.tables import default_table
-from mechkin_cli.tape import of_numbers, with_rates, within
+from mechkin_cli.tape import differ, of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
 from mechkin_cli.units import TIME, Dimension
 from mechkin_cli.verdict import SWEEP
@@ -242,7 +242,8 @@ def build_inputs(
     )
     if fields.error_count > errors:
         return None
-    motion = MotionInputs(inputs, rows, time)
+    unrated = () if time else _unrated(fields, written.path, inputs)
+    motion = MotionInputs(inputs, rows, time, unrated=unrated)
     if constraint_rates:
         number = {item.name: k for k, item in enumerate(inputs)}
         pairs = [(number[name], number[leader]) for name, leader in constraint_rates]
@@ -386,6 +387,18 @@ def _driven(fields: Fields, path: Path, orders: Floats, rows: int, follows: bool
             break
     value, rate, acceleration, jerk = in_si
     return DrivenInput(joint, coordinate, value, rate, acceleration, jerk, written, follows)
+
+
+def _unrated(fields: Fields, path: Path, inputs: Sequence[DrivenInput]) -> tuple[str, ...]:
+    """The inputs that rest only since no rate is written: those that move over the rows, or all
+    where none does and none has a rate."""
+    leading = [item for item in inputs if not item.follows]
+    keys = {i.name: [fields.document.node((*path, i.name, key)) for key in _RATES] for i in leading}
+    silent = {name for name, nodes in keys.items() if all(node is None for node in nodes)}
+    moving = [item.name for item in leading if differ(item.values)]
+    if moving:
+        return tuple(name for name in moving if name in silent)
+    return tuple(keys) if len(silent) == len(keys) else ()
 
 
 _POSITION = re.compile(r"(?P<point>\w+)\.position\.(?P<axis>[xyz])")

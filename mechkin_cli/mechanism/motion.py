@@ -69,7 +69,8 @@ class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
     `course` where inputs move by laws or follow others; `paths` are all inputs as functions of each
     one that others follow (`building.course`). Of `constraints` between inputs `constraint_rates`
-    (constraints, rows) are the rates of the input by its leader."""
+    (constraints, rows) are the rates of the input by its leader. `unrated` are the inputs that rest
+    only since the file gives them no rate."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
@@ -78,6 +79,7 @@ class MotionInputs(NamedTuple):
     paths: tuple[tuple[str, Tape], ...] = ()
     constraints: tuple[InputConstraint, ...] = ()
     constraint_rates: Floats | None = None
+    unrated: tuple[str, ...] = ()
 
     @property
     def driven(self) -> list[tuple[str, str]]:

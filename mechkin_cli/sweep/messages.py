@@ -1,8 +1,9 @@
 """Messages of a sweep about its rows beside their verdicts.
 
-In reading order: turns that do not close, redundant constraints, conditions, poses in gimbal lock
-(where the middle one of three turns is a quarter turn, the others go about one axis, and their
-rates are lost), sets of actuators that cannot hold the mechanism, loads without a value.
+In reading order: turns that do not close, redundant constraints, conditions, inputs without rates,
+poses in gimbal lock (where the middle one of three turns is a quarter turn, the others go about one
+axis, and their rates are lost), sets of actuators that cannot hold the mechanism, loads without a
+value.
 """
 
 from __future__ import annotations
@@ -19,13 +20,16 @@ from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
+    Damper,
     is_written,
     quantities_read,
     undefined_laws,
+    varying,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.search import pose_keys, same_poses
+from mechkin_cli.structure import listed
 from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.tables import unique_cells
 from mechkin_cli.units import MOMENT
@@ -34,7 +38,7 @@ from mechkin_cli.verdict import CONDITION_LIMITS, Status
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from mechkin_cli.mechanism import Joint, Problem, Wanted
+    from mechkin_cli.mechanism import Joint, Mechanism, Problem, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import SweepRows
@@ -206,6 +210,44 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
         hint="this may be a special position; move the sweep by a fraction of its step",
         numbers=(Number("residual", worst, limit=tolerances.RESIDUAL_ACCEPT),),
     )
+
+
+_WITHOUT_RATES = {"per_acceleration", "dynamic_transmission_angle", "actuation"}
+"""Kinds of forces that depend on no rate."""
+
+
+def unrated_notes(problem: Problem, asked: Sequence[Wanted]) -> list[Diagnostic]:
+    """Names the inputs whose rates the file leaves out, where quantities asked for, loads or masses
+    need them."""
+    unrated, mechanism = problem.motion.unrated, problem.mechanism
+    if not unrated:
+        return []
+    by_rates = Demand.VELOCITY | Demand.FORCES
+    rates = [q.name for q in asked if demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY]
+    needs = [f"{listed(rates)} {'is' if len(rates) == 1 else 'are'} as at rest"] if rates else []
+    forces = [q for q in asked if q.kind not in _WITHOUT_RATES]
+    if any(demand_of(mechanism, [q]) & by_rates == by_rates for q in forces):
+        needs.append(f"forces are as at rest, without {_of_motion(mechanism)}")
+    if not needs:
+        return []
+    have = "has" if len(unrated) == 1 else "have"
+    text = f"{listed(unrated)} {have} no rate, which is taken as zero: {', and '.join(needs)}"
+    hint = "give it with rate:, or write rate: 0 where the rows are meant at rest"
+    return [Diagnostic("no-rate", "note", text, hint=hint)]
+
+
+def _of_motion(mechanism: Mechanism) -> str:
+    """The forces that there are by rates alone."""
+    masses = [link.name for link in mechanism.links.values() if link.has_mass]
+    laws = any(amount.moving for load in mechanism.loads for amount in varying(load))
+    parts = {
+        f"the inertia forces of {listed(masses)}": bool(masses),
+        "those of dampers": any(isinstance(load, Damper) for load in mechanism.loads),
+        "friction that slides": bool(mechanism.frictions),
+        "those of loads that read rates": laws,
+    }
+    *others, last = (words for words, there in parts.items() if there)
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 _TROUBLE = (Status.branch_lost, Status.near_singular, Status.rank_unclear)

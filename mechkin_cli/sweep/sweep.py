@@ -33,6 +33,7 @@ from mechkin_cli.sweep.messages import (
     not_converged_note,
     open_turn_note,
     redundancy_note,
+    unrated_notes,
     watched,
 )
 from mechkin_cli.sweep.result import Result
@@ -133,6 +134,9 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
         result, wanted, rests_on_reactions=rests_on_reactions
     )
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
+    failed = any(d.severity == "error" for d in result.row_states.diagnostics)
+    if result.solved.any() and not failed:
+        result.row_states.diagnostics += unrated_notes(session.problem, asked)
     return result
 
 
