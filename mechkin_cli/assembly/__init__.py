@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly.fold import (
         PlacesBefore as PlacesBefore,
         at_unit_rate as at_unit_rate,
+        condition_at as condition_at,
         left_for as left_for,
         unit_rates as unit_rates,
     )
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "fold": "PlacesBefore at_unit_rate left_for unit_rates",
+        "fold": "PlacesBefore at_unit_rate condition_at left_for unit_rates",
         "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
         "wrapped",
         "near": "AssemblyStart distances_of is_unclear nothing_found",

@@ -62,10 +62,7 @@ NEAR = "near"
 HOME = "home"
 """In place of the letter of an assembled drawing."""
 
-MAY_BE_RIGID = (
-    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
-    "this is a branch point or a special position"
-)
+MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (write expressions)"
 
 
 @remembered
