@@ -28,6 +28,7 @@ if TYPE_CHECKING:
         PlacesBefore as PlacesBefore,
         at_unit_rate as at_unit_rate,
         choose_start as choose_start,
+        condition_at as condition_at,
         continued_start as continued_start,
         left_for as left_for,
         mode_letter as mode_letter,
@@ -41,7 +42,7 @@ __getattr__, __dir__ = lazy_names(
         "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
         "wrapped",
         "near": "AssemblyStart distances_of is_unclear nothing_found",
-        "start": "HOME MAY_BE_RIGID NEAR PlacesBefore at_unit_rate choose_start "
+        "start": "HOME MAY_BE_RIGID NEAR PlacesBefore at_unit_rate choose_start condition_at "
         "continued_start left_for mode_letter state_at_first_row unit_rates",
     },
 )

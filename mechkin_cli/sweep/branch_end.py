@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import mobility, modes, tolerances
-from mechkin_cli.assembly import MAY_BE_RIGID
+from mechkin_cli.assembly import MAY_BE_RIGID, condition_at
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel._kernel import MOST_PATH_STEPS
-from mechkin_cli.plan import TrackEnd
+from mechkin_cli.plan import PassageEnd, TrackEnd
 from mechkin_cli.session import (
     Ending,
     Followed,
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-MAY_BE_SPECIAL = "this may be a branch point or a special position; sweep from its other side"
+NEAR_SINGULAR = "a singular position lies next to that place; sweep from its other side"
+NOT_SINGULAR = "that place itself is regular: take smaller steps, or sweep from the other side"
 MOST_SHOWN = 4
 """Places that a message shows."""
 
@@ -74,24 +75,46 @@ def crossing_note(session: Session, followed: Followed) -> Diagnostic:
     return passed_straight_on("branch", places)
 
 
-def retraced_note(session: Session, rows: Sequence[int]) -> Diagnostic:
-    """The rows at which the inputs come to a dead centre and turn back."""
-    places = [
-        input_numbers(session.problem, session.layout, session.inputs.values[:, row])
-        for row in rows
-    ]
-    numbers = ", ".join(str(row + 1) for row in rows[:MOST_SHOWN])
-    more = f" and {len(rows) - MOST_SHOWN} more" if len(rows) > MOST_SHOWN else ""
-    at = f"at row{'s' * (len(rows) > 1)} {numbers}{more}"
-    text = "the inputs come to a dead centre and turn back; the rows behind it retrace the branch"
-    return Diagnostic(
+_TURNED_BACK = {
+    PassageEnd.DEAD_CENTRE: (
         "dead-centre-touched",
-        "note",
-        f"{at} {text}",
-        measured="; ".join(_words(place) for place in places[:MOST_SHOWN]),
-        hint="to go over to the other branch there, drive another coordinate",
-        numbers=tuple(number for place in places[:MOST_SHOWN] for number in place),
-    )
+        "a dead centre",
+        "to go over to the other branch there, drive another coordinate",
+    ),
+    PassageEnd.BRANCH_POINT: (
+        "branch-point-touched",
+        "a branch point",
+        "the mechanism may also go the other way behind it: begin another sweep there with "
+        "assembly: {near: ...}",
+    ),
+}
+"""What the inputs may come to where they turn back: code, words, hint."""
+
+
+def retraced_notes(session: Session, touched: Sequence[tuple[int, PassageEnd]]) -> list[Diagnostic]:
+    """The rows at which the inputs come to a dead centre or a branch point and turn back."""
+    notes = []
+    for kind, (code, place, hint) in _TURNED_BACK.items():
+        rows = [row for row, other in touched if other == kind]
+        if not rows:
+            continue
+        places = [
+            input_numbers(session.problem, session.layout, session.inputs.values[:, row])
+            for row in rows[:MOST_SHOWN]
+        ]
+        shown = ", ".join(str(row + 1) for row in rows[:MOST_SHOWN])
+        more = f" and {len(rows) - MOST_SHOWN} more" if len(rows) > MOST_SHOWN else ""
+        note = Diagnostic(
+            code,
+            "note",
+            f"at row{'s' * (len(rows) > 1)} {shown}{more} the inputs come to {place} and turn "
+            "back; the rows behind it retrace the branch",
+            measured="; ".join(_words(numbers) for numbers in places),
+            hint=hint,
+            numbers=tuple(number for numbers in places for number in numbers),
+        )
+        notes.append(note)
+    return notes
 
 
 def passed_straight_on(
@@ -325,6 +348,12 @@ def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Di
 
 def _lost_note(session: Session, followed: Followed, path: Floats, rows: SweepRows) -> Diagnostic:
     places = _place(session, followed, followed.inputs)
-    hint = (MAY_BE_RIGID if session.is_redundant else MAY_BE_SPECIAL) + _chords(session, path)
+    measured, hint = f"last place {_words(places)}", MAY_BE_RIGID
+    if not session.is_redundant:
+        condition = condition_at(session, followed.inputs, followed.state)
+        singular = condition is None or condition > tolerances.CONDITION_NEAR_SINGULAR
+        hint = NEAR_SINGULAR if singular else NOT_SINGULAR
+        if condition is not None:
+            measured += f", where the condition is {condition:.2g}"
     text = "the branch could not be followed further"
-    return _error("branch-lost", rows, places, text, f"last place {_words(places)}", hint)
+    return _error("branch-lost", rows, places, text, measured, hint + _chords(session, path))

@@ -12,7 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import TrackEnd, needs_all_links
+from mechkin_cli.plan import PassageEnd, TrackEnd, needs_all_links
 from mechkin_cli.record import replace
 from mechkin_cli.session import ORIENTATION, turn_count
 from mechkin_cli.structure import SolverGraph
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
+
+
+Touched = tuple[int, PassageEnd]
+"""A row at which the inputs turn back, and what they come to there."""
 
 
 def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = False) -> SweepRows:
@@ -37,14 +41,14 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
         return rows
     first = _first_row(session, start, every_row)
     if first is not None:
-        followed, turning = _follow_and_retrace(session, first, 0, 1, every_row)
+        followed, touched = _follow_and_retrace(session, first, 0, 1, every_row)
         rows = SweepRows.followed(followed)
-        _explain(session, values, followed, rows, turning)
+        _explain(session, values, followed, rows, touched)
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for step in (-1, 1):
             onward = slice(start.row, None, step)
-            followed, turning = _follow_and_retrace(
+            followed, touched = _follow_and_retrace(
                 session, start.state, start.row, step, every_row
             )
             part = rows.part(onward)
@@ -52,20 +56,20 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
             part.section *= step
             rows.nodes += followed.steps
             path = np.ascontiguousarray(values[:, onward])
-            _explain(session, path, followed, part, turning)
+            _explain(session, path, followed, part, touched)
     _count_from_first(session, rows)
     return rows
 
 
 def _follow_and_retrace(
     session: Session, state: Floats, row: int, step: int, every_row: bool
-) -> tuple[Followed, list[int]]:
-    """The rows from a row on, or with step -1 back from it, and those of them (numbers) at which
-    the inputs come to a dead centre and turn back: behind it the branch is retraced."""
+) -> tuple[Followed, list[Touched]]:
+    """The rows from a row on, or with step -1 back from it, and the singular places at which the
+    inputs turn back there: behind them the branch is retraced."""
     followed = session.follow_rows(state, row, step, every_row=every_row)
-    turning: list[int] = []
+    touched: list[Touched] = []
     if session.route is not None:
-        return followed, turning
+        return followed, touched
     onward = slice(row, None, step)
     values, inputs = session.inputs.values[:, onward], session.inputs
     reduced, whole = inputs.reduced[:, onward], inputs.whole[:, onward]
@@ -74,23 +78,46 @@ def _follow_and_retrace(
         before = _turned_back(values, turn)
         if before is None:
             break
+        guess = np.ascontiguousarray(followed.guess[:, before, None])
+        closed = session.close(np.ascontiguousarray(reduced[:, before, None]), guess)
+        if not closed.good[0]:
+            break
+        start = np.ascontiguousarray(closed.states[:, 0])
+        kind = _singular_place(session, reduced[:, [before, turn]], start)
+        if kind is None:
+            break
         rest = [before, *range(turn + 1, values.shape[1])]
-        path = np.ascontiguousarray(reduced[:, rest])
-        closed = session.close(path[:, :1], np.ascontiguousarray(followed.guess[:, before, None]))
         turns = None if followed.turns is None else followed.turns[:, before].copy()
         again = session.follow(
-            path,
-            np.ascontiguousarray(closed.states[:, 0]),
+            np.ascontiguousarray(reduced[:, rest]),
+            start,
             every_row=every_row,
             turns=True,
             turn=turns,
             whole=np.ascontiguousarray(whole[:, rest]),
         )
-        if not closed.good[0] or again.reached < 2:
+        if again.reached < 2:
             break
         followed = _joined(followed, again, turn)
-        turning.append(row + step * turn)
-    return followed, turning
+        touched.append((row + step * turn, kind))
+    return followed, touched
+
+
+def _singular_place(session: Session, way: Floats, start: Floats) -> PassageEnd | None:
+    """Whether a way (inputs, 2) from the states (states,) at its first place comes to a dead centre
+    or to a branch point at its second, as far as following shows that goes on; None: to neither."""
+    came = way[:, 1] - way[:, 0]
+    ahead = came / float(np.abs(came).max())
+    far, near = tolerances.BEFORE_DEAD_CENTRE
+    beyond = np.stack([way[:, 0], way[:, 1] + far * ahead], axis=1)
+    followed = session.follow(beyond, start, every_row=True)
+    places = [] if followed.ending is None else [(followed.ending.kind, followed.ending.inputs)]
+    places += [(PassageEnd.BRANCH_POINT, inputs) for _, inputs in followed.crossings]
+    for kind, inputs in places:
+        named = kind in (PassageEnd.DEAD_CENTRE, PassageEnd.BRANCH_POINT)
+        if named and float(np.abs(inputs - way[:, 1]).max()) <= near:
+            return kind
+    return None
 
 
 def _turned_back(values: Floats, turn: int) -> int | None:
@@ -115,14 +142,16 @@ def _joined(followed: Followed, again: Followed, turn: int) -> Followed:
         if array is not None and more is not None:
             array[:, turn + 1 :] = more[:, 1:]
     followed.limit[turn + 1 :] = again.limit[1:]
-    crossings = tuple((number + turn, inputs) for number, inputs in again.crossings)
+    # a branch point at which the inputs turn back is not passed
+    passed = [(number, inputs) for number, inputs in followed.crossings if number < turn]
+    passed += [(number + turn, inputs) for number, inputs in again.crossings]
     return again._replace(
         guess=followed.guess,
         limit=followed.limit,
         turns=followed.turns,
         reached=turn + again.reached,
         steps=followed.steps + again.steps,
-        crossings=(*followed.crossings, *crossings),
+        crossings=tuple(passed),
     )
 
 
@@ -138,17 +167,15 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
 
 
 def _explain(
-    session: Session, path: Floats, followed: Followed, rows: SweepRows, turning: Sequence[int]
+    session: Session, path: Floats, followed: Followed, rows: SweepRows, touched: Sequence[Touched]
 ) -> None:
-    """Says which branch points were passed, at which rows (`turning`) inputs turn back at a dead
-    centre, and what ended the branch, if it ended."""
-    if not (followed.crossings or turning or followed.end != TrackEnd.FINISHED):
+    """Says which branch points were passed, at which places the inputs turn back (`touched`), and
+    what ended the branch, if it ended."""
+    if not (followed.crossings or touched or followed.end != TrackEnd.FINISHED):
         return
     from mechkin_cli.sweep import branch_end
 
-    if turning:
-        rows.diagnostics.append(branch_end.retraced_note(session, turning))
-
+    rows.diagnostics += branch_end.retraced_notes(session, touched)
     if followed.crossings:
         rows.diagnostics.append(branch_end.crossing_note(session, followed))
     if followed.end != TrackEnd.FINISHED and not rows.reached.all():

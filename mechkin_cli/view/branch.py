@@ -34,6 +34,7 @@ KINDS = {
     "dead-centre": "dead-centre",
     "branch-point": "branch-point",
     "branch-point-passed": "branch-point",
+    "branch-point-touched": "branch-point",
 }
 """Kind of mark by the code of the message with the place."""
 

@@ -104,3 +104,24 @@ def test_a_crank_comes_to_its_dead_centre_and_back(seed: int) -> None:
         assert status == "ok"
         turned = np.remainder(theta - (rocker(first + value) - at) + math.pi, 2 * math.pi) - math.pi
         assert abs(turned) < 1e-7
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_parallelogram_that_turns_back_in_line_stays_one_and_says_branch_point(seed: int) -> None:
+    rng = random.Random(2000 + seed)
+    first = rng.uniform(0.3, 2.8)
+    a, d = rng.uniform(0.5, 2.0), rng.uniform(2.2, 4.0)
+    end = rng.choice([0.0, math.pi]) - first
+    values = there_and_back(rng, 0.0, end)
+    x, y = a * math.cos(first), a * math.sin(first)
+    text = FOUR_BAR.format(bx=x, by=y, cx=d + x, cy=y, d=d, values=values)
+    text += "assembly: {at_branch_points: straight}\n"
+    analysis = mk.loads(text).analyze(["D.theta"])
+    assert abs(analysis["D.theta"] - np.array(values)).max() < 1e-9
+    codes = {one.code for one in analysis.diagnostics}
+    assert "branch-point-touched" in codes
+    assert "dead-centre-touched" not in codes
+    # the last row may turn back no more, and is not passed either
+    turns = [row for row in range(1, len(values) - 1) if values[row] == end]
+    (note,) = (one for one in analysis.diagnostics if one.code == "branch-point-touched")
+    assert len(note.numbers) == len(turns)
