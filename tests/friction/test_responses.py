@@ -7,6 +7,7 @@ from math import cos, radians, sin, sqrt
 import numpy as np
 import pytest
 from friction.slider_crank import TEXT
+from scipy.integrate import solve_ivp
 
 import mechkin_cli as mk
 from mechkin_cli.verdict import Status
@@ -188,3 +189,58 @@ def test_friction_that_drives_an_idle_spin_is_refused():
     found = mk.loads(ROD.replace("JOINT", "A")).respond("go", ["A.theta", "row.energy_error"])
     assert [d.code for d in found.diagnostics if d.severity == "error"] == []
     assert (found["row.energy_error"] <= 1e-11).all()
+
+
+POST = """
+format: 1
+name: a ball that cannot leave its place in a groove
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links:
+  plate:
+    mass: 2.6
+    center_of_mass: {centre}
+    inertia: {{xx: 0.26, yy: 0.31, zz: 0.27, xy: 0.018, xz: 0.02, yz: -0.005}}
+joints:
+  A: {{type: E, links: [ground, plate], point: [-0.1, -0.3, 0.4], normal: {normal}, x: {x}}}
+  B: {{type: Sg, links: [ground, plate], point: {ball}, groove: {groove}}}
+loads:
+  - {{type: gravity, g: {g}}}
+  - {{type: friction, joint: B, coefficient: {{static: 0.19, sliding: {sliding}}}}}
+responses:
+  r:
+    start: {{A.theta: 0, A.theta_dot: {rate}}}
+    time: {{from: 0, to: 1.2, count: 13}}
+    tolerance: 1e-12
+"""
+
+
+@pytest.mark.parametrize("sliding", [0.19, 0.14])
+@pytest.mark.parametrize(("groove", "rate"), [([0.1, 0.2, 0.6], -0.05), ([0.7, 0.2, 0.3], 3.0)])
+def test_friction_of_a_slip_that_loops_forbid_does_nothing(
+    groove: list[float], rate: float, sliding: float
+) -> None:
+    """The plate stays at its height, and a groove that leaves the plane lets its ball nowhere: the
+    plate is a pendulum about the normal through the ball."""
+    normal, x = np.array([-0.1, 0.55, 0.62]), np.array([0.0, 0.62, -0.55])
+    ball, centre = np.array([0.9, 0.7, -0.6]), np.array([-0.85, 0.45, 0.84])
+    g = np.array([3.4, -6.6, 6.4])
+    given = {"normal": normal, "x": x, "ball": ball, "centre": centre, "g": g}
+    text = POST.format(
+        groove=groove, rate=rate, sliding=sliding, **{k: v.tolist() for k, v in given.items()}
+    )
+    found = mk.loads(text).respond("r", ["A.theta", "A.theta_dot", "time"])
+    n = normal / np.linalg.norm(normal)
+    arm = centre - ball - n * (n @ (centre - ball))
+    tensor = np.array([[0.26, 0.018, 0.02], [0.018, 0.31, -0.005], [0.02, -0.005, 0.27]])
+    inertia = n @ tensor @ n + 2.6 * arm @ arm
+    # n . (arm turned by theta) x m g
+    along, across = 2.6 * np.cross(n, arm) @ g / inertia, 2.6 * -(arm @ g) / inertia
+
+    def pendulum(_: float, y: np.ndarray) -> list[float]:
+        return [y[1], along * cos(y[0]) + across * sin(y[0])]
+
+    times = np.asarray(found["time"])
+    want = solve_ivp(pendulum, (0.0, 1.2), [0.0, rate], "DOP853", times, rtol=1e-13, atol=1e-13).y
+    assert not any(d.severity == "error" for d in found.diagnostics)
+    assert np.max(np.abs(found["A.theta"] - want[0])) < 1e-10
+    assert np.max(np.abs(found["A.theta_dot"] - want[1])) < 1e-10

@@ -75,6 +75,44 @@ def test_a_stiff_spring_and_damper() -> None:
     assert off(found["S.s_dot"], v) < 1e-9
 
 
+def shaken(k: float, c: float, m: float, force: float, w: float, t: Any) -> tuple[Any, Any]:
+    """x and its rate of m x'' + c x' + k x = force sin(w t) from x = 0.01 at rest, at 60 digits."""
+    with mp.workdps(60):
+        k, c, m, force, w = map(mp.mpf, (k, c, m, force, w))
+        far = force / mp.mpc(k - m * w**2, c * w)
+        root = mp.sqrt(mp.mpc(c**2 - 4 * k * m))
+        a, b = ((-c + sign * root) / (2 * m) for sign in (1, -1))
+        x0, v0 = mp.mpf(0.01) - mp.im(far), -w * mp.re(far)
+        p = (v0 - b * x0) / (a - b)
+        terms = [(p, a), (x0 - p, b), (-1j * far, 1j * w)]
+        moments = list(map(mp.mpf, t))
+        x = [mp.re(sum(y * mp.exp(r * s) for y, r in terms)) for s in moments]
+        v = [mp.re(sum(y * r * mp.exp(r * s) for y, r in terms)) for s in moments]
+    return x, v
+
+
+@pytest.mark.parametrize("power", range(-12, 13, 3))
+def test_time_constants_far_from_the_duration(power: int) -> None:
+    """m/c and sqrt(m/k), down to and up to 1e12 times the second that the motion takes."""
+    m, force, w = 1.0, 100.0, 3.0
+    constant = 10.0**power
+    for k, c in ((1.0, m / constant), (m / constant**2, 2.1 * m / constant), (1e6, 1e9)):
+        found = respond(
+            slider(
+                lines(
+                    f"- {{type: spring, joint: S, coordinate: s, stiffness: {k!r}}}",
+                    f"- {{type: damper, joint: S, coordinate: s, damping: {c!r}}}",
+                    f'- {{type: force, joint: S, value: "{force} N*sin({w} rad/s*time)"}}',
+                ),
+                lines("start: {S.s: 0.01}", "time: {from: 0, to: 1, count: 13}", indent=4),
+                m,
+            )
+        )
+        x, v = shaken(k, c, m, force, w, found["time"])
+        assert off(found["S.s"], x) < 1e-10
+        assert off(found["S.s_dot"], v) < 1e-10
+
+
 def test_a_damper_that_nothing_moves() -> None:
     """Between points of links that are welded together: rate and work are rounding."""
     text = """format: 1

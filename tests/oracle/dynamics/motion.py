@@ -249,6 +249,10 @@ class Motion:
     def rate(self, time: float, state: Array) -> Array:
         """The state's derivative by time."""
         V, power = self.accelerations(time, state)
+        return self.moving(state, V, power)
+
+    def moving(self, state: Array, V: Array, power: float) -> Array:
+        """The derivative of a state with accelerations V and a power."""
         one = state[:-1].reshape(self.links, _WIDTH)
         found = np.empty_like(one)
         found[:, :3] = one[:, 7:10]

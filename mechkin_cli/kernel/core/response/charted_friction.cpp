@@ -19,6 +19,8 @@ constexpr double NO_FORCE = 1e-12;
 // Accelerations of a slip that was just let go, in parts of that by its friction, that are rounding; and how many times
 // more tells that it goes.
 constexpr double NO_START = 1e-9, GOES = 10.0;
+// Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
+constexpr double NO_SLIP = 1e-14;
 
 Matrix inertia_of(const Packed& inertia, int n, int lanes, int lane) {
   Matrix m(n, n);
@@ -98,7 +100,8 @@ double ChartedMotion::lever(const Stage& found, int lane, int k) const {
 double ChartedMotion::unsure(const Stage& found, int lane, int k) const {
   const double started = slips_.started[(std::size_t)k * lanes_ + lane];
   if (!(started <= time_[lane])) return 0.0;
-  return NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
+  const double growing = NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
+  return growing + NO_SLIP * slips_.fastest[lane] * lever(found, lane, k);
 }
 
 // Not negative as long as a joint goes on to slip, or to stick.

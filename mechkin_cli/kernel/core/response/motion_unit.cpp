@@ -46,7 +46,13 @@ inline void predict(const Plan& p, Workspace& w, const StageGiven& given, Pack* 
     for (int c = 0; c < p.columns; ++c) w.rate[c] += off * along[c] * p.column_weight[c] * p.column_weight[c];
   }
   const Pack other = *packs(given.miss_elapsed), part = t / select(other > Pack(0.0), other, Pack(1.0));
-  const Pack cube = select(other > Pack(0.0), part * part * part, Pack(0.0));
+  Pack cube = select(other > Pack(0.0), part * part * part, Pack(0.0)), most = 0.0, added = 0.0;
+  for (int c = 0; c < p.columns; ++c) {
+    const Pack per = Pack(1.0) / p.column_weight[c];
+    most = max(most, per * abs(w.rate[c])), added = max(added, per * abs(cube * packs(given.miss)[c]));
+  }
+  // more than the way itself is what a stage far off, of an explicit step in a stiff motion, has left of its rounding
+  cube = select(added <= most, cube, Pack(0.0));
   for (int c = 0; c < p.columns; ++c) {
     missing[c] = -w.rate[c];
     w.rate[c] += cube * packs(given.miss)[c];

@@ -15,6 +15,9 @@ namespace {
 // Rates by the chart, in parts of the largest of any link, up to which a joint is in a dead centre of its own and nothing
 // that its friction does moves the mechanism.
 constexpr double IMMOBILE = 1e-8;
+// The same, and the slip and its derivative in parts of the rates and accelerations of the links, up to which loops forbid the
+// slip and what is left of it is rounding.
+constexpr double FORBIDDEN = 1e-11;
 
 // Beside the workspace; m columns, the components of all frictions in order.
 struct Slips {
@@ -130,6 +133,7 @@ inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m
   const int d = directions(p);
   Pack level = 0.0;
   for (int k = 0; k < p.links * p.charts; ++k) level = component_level(level, {m.twist[k].angular, m.twist[k].linear});
+  const Pack rates = twist_level(p, w), seconds = acceleration_level(p, w) + rates * rates;
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
     const JointPlace& j = p.place[f.place];
@@ -146,6 +150,13 @@ inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m
       s.rate[c] = power(motion_of(w, j.second).velocity - motion_of(w, j.first).velocity, frame);
       s.convective[c] = convective_slip(w, j, w.rubbing.point[k], frame);
       s.mobile[c] = largest > Pack(IMMOBILE) * lever * level;
+      // a joint in a dead centre of its own has a derivative
+      const Pack rounding = Pack(FORBIDDEN) * lever;
+      const Mask forbidden = (largest <= rounding * level) & (abs(s.rate[c]) <= rounding * rates) &
+                             (abs(s.convective[c]) <= rounding * seconds);
+      s.rate[c] = select(forbidden, Pack(0.0), s.rate[c]);
+      s.convective[c] = select(forbidden, Pack(0.0), s.convective[c]);
+      for (int i = 0; i < d; ++i) s.row[c * d + i] = select(forbidden, Pack(0.0), s.row[c * d + i]);
     }
   }
 }

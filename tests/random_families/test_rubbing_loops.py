@@ -1,0 +1,27 @@
+"""Random loops that rub; `MECHKIN_RANDOM` multiplies their number."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from random_families.rubbing_loops import judge, rubbing_loop
+
+COUNT = 30 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+
+
+@pytest.mark.parametrize("seed", [4, 6, 403])
+def test_a_random_loop_against_dense_equations_from_event_to_event(seed: int) -> None:
+    """In 403 a guide with one coefficient breaks away within a moving loop."""
+    text = rubbing_loop(seed)
+    assert text is not None
+    found = judge(text)
+    assert not found.fault
+    assert found.error < 1e-10
+
+
+@pytest.mark.parametrize("seed", [15, 107, 136, 141, 244, 375, *range(1000, 1000 + COUNT)])
+def test_no_motion_with_friction_creeps_or_is_lost(seed: int) -> None:
+    text = rubbing_loop(seed)
+    if text is not None:
+        assert not judge(text, motion_alone=True).fault
