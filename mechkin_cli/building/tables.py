@@ -1,5 +1,5 @@
-"""`tables:` and `coefficients:` - layouts whose columns have known names and one number per row; and
-`balances:` - sums over a cycle of the sweep: works, harmonics and flywheels.
+"""`tables:` and `coefficients:` - layouts whose columns have known names and one number per row;
+and `balances:` - sums over a cycle of the sweep: works, harmonics and flywheels.
 """
 
 from __future__ import annotations
