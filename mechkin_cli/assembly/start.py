@@ -2,9 +2,10 @@
 mode, the home drawing, or the nearest to it.
 
 On a fold two branches meet. Near it a state is x0 + v h for inputs u0 + a h^2/2, v of length one.
-So derivatives by the input at a distance h that rounding has left are x' = v/(a h) and x'' = -v/(a^2
-h^3), and a = |x''|/|x'|^3 is known although neither of them is (`left_for`). The branch is judged
-at the next row that is clear of the fold, unless `near` decides at the first (`judged_off_fold`).
+So derivatives by the input at a distance h that rounding has left are x' = v/(a h) and
+x'' = -v/(a^2 h^3), and a = |x''|/|x'|^3 is known although neither of them is (`left_for`). The
+branch is judged at the next row that is clear of the fold, unless `near` decides at the first
+(`judged_off_fold`).
 """
 
 from __future__ import annotations
