@@ -2,8 +2,8 @@
 
 A *scene* is a mechanism whose rows are closed; a *method* is a way to its answers at one setting,
 made by a family (`runs.FAMILIES`); a *measurement* is its time and its errors against the rows
-repeated in double-double. `runs` puts them together and judges hard
-mechanisms whose rows are known; `report` writes them. Only `mechkin bench` loads the chapters.
+repeated in double-double. `runs` puts them together and judges hard mechanisms
+whose rows are known; `report` writes them. Only `mechkin bench` loads the chapters.
 """
 
 from mechkin_cli.lazy import TYPE_CHECKING, lazy_names
