@@ -19,7 +19,6 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
 from mechkin_cli.assembly.near import (
     AssemblyStart,
-    NearestAssembly,
     box_about,
     distances_home,
     distances_near,
@@ -380,22 +379,23 @@ def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
     """By Newton's method: at once if what it finds is proven to be the nearest, else after a search
     about what is named; None where it finds none that narrows the search."""
     named = named_by(session)
-    newton = newton_from(session, inputs, named) if named.unknowns else None
+    newton = newton_from(session, inputs, named) if named[1] else None
     if newton is None:
         return None
-    distance = distances_of(session, inputs, newton.state[:, None])[0][0]
-    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < newton.unique:
+    state, unique, condition = newton
+    distance = distances_of(session, inputs, state[:, None])[0][0]
+    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < unique:
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
-            f"within {newton.unique:.2g}"
+            f"within {unique:.2g}"
         )
-        return AssemblyStart(newton.state, NEAR, how, off=distance, condition=newton.condition)
+        return AssemblyStart(state, NEAR, how, off=distance, condition=condition)
     # coordinates that are exact are so but for rounding
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
     inside = all_assemblies(session, inputs, box_about(session, named, radius), thorough=False)
-    return _nearest_about(session, inputs, newton, inside, radius)
+    return _nearest_about(session, inputs, state, inside, radius)
 
 
 def _noted_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> AssemblyStart:
@@ -407,10 +407,10 @@ def _noted_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> Ass
 
 
 def _nearest_about(
-    session: Session, inputs: Floats, newton: NearestAssembly, found: Assemblies, radius: float
+    session: Session, inputs: Floats, newton: Floats, found: Assemblies, radius: float
 ) -> AssemblyStart | None:
     """The nearest of all assemblies about as near as the one that Newton's method found."""
-    found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
+    found = with_assemblies(session.layout, session.plan, inputs, found, newton[:, None])
     distances, home = distances_of(session, inputs, found.states)
     order = [i for i in in_order(distances, home) if distances[i] <= radius]
     if not order:
