@@ -193,7 +193,7 @@ def _beginning(names: Iterable[object], start: str) -> Offers:
     ]
 
 
-def folder_of(text: str) -> Path:
+def folder(text: str) -> Path:
     """A folder to write to.
 
     Raises:
@@ -250,7 +250,7 @@ def _parameter(word: Word) -> Parameter:
         "autocompletion": None if word.offers is None else OFFERS[word.offers],
     }
     if word.kind == "folder":
-        told["parser"] = folder_of
+        told["parser"] = folder
     kind: Any = TYPES[word.kind]
     default: Any = word.default
     if word.kind == "flag":
