@@ -11,9 +11,9 @@ import typer
 from benchmarks.stress import options
 from benchmarks.stress.command import Stress, stress_command
 from benchmarks.suite import OF_FILES, WHOLE
+from mechkin_cli.cli.app import folder
 from mechkin_cli.cli.bench import STRESS_IS_ALONE, measure, refuse_options, show
 from mechkin_cli.cli.messages import say, say_diagnostics
-from mechkin_cli.cli.offers import folder
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
 
 OF_STRESS = ("rows", "seed", "family", "only", "page", "check", "processes", "small")

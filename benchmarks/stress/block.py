@@ -14,7 +14,7 @@ from benchmarks.stress.judge import Found, Judged, judge
 from benchmarks.stress.quantity import Truth
 from benchmarks.stress.solve import solve
 from benchmarks.stress.tally import CONTRADICTED, Fault, Tally
-from mechkin_cli.bench.stress import FAULTS, REFUSED, StressVerdict
+from mechkin_cli.bench.runs import FAULTS, REFUSED, StressVerdict
 from mechkin_cli.verdict import Status, has_solution
 
 CHUNK = 50_000

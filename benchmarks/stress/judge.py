@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from benchmarks.stress.numbers.double_double import PI, DoubleDouble, radians
 from benchmarks.stress.numbers.series import Series
 from benchmarks.stress.quantity import Mask, Quantity, Rows, Truth
-from mechkin_cli.bench.stress import (
+from mechkin_cli.bench.runs import (
     NINE_DIGITS,
     ROUNDING,
     TOLERANCE,

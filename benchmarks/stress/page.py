@@ -71,7 +71,7 @@ accelerations and forces must contain the true values for the numbers written in
 
 def page(large: Sequence[Tally], small: Sequence[Tally], rows: int, seed: int) -> str:
     """The page of a run and of the small set with the same seed."""
-    from mechkin_cli.bench.stress import WRONG, WRONG_TOLERANCES
+    from mechkin_cli.bench.runs import WRONG, WRONG_TOLERANCES
 
     families = "\n".join(
         [

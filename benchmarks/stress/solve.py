@@ -11,7 +11,7 @@ from benchmarks.stress.certify import Proofs, prove, unasked
 from benchmarks.stress.judge import Found
 from benchmarks.stress.quantity import Cell
 from mechkin_cli.analysis.analysis import Analysis
-from mechkin_cli.bench.stress import CONDITION, TAKEN
+from mechkin_cli.bench.runs import CONDITION, TAKEN
 from mechkin_cli.model.model import loads
 from mechkin_cli.verdict import Status
 

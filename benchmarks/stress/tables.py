@@ -8,7 +8,7 @@ from benchmarks.stress.families.table import FAMILIES
 from benchmarks.stress.histogram import Histogram
 from benchmarks.stress.tally import CONTRADICTED, NO_POSITION, Tally
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable
-from mechkin_cli.bench.stress import COUNTS, REFUSED
+from mechkin_cli.bench.runs import COUNTS, REFUSED
 from mechkin_cli.verdict import Proof
 
 MOST = 0.999

@@ -13,7 +13,7 @@ from benchmarks.stress.certify import Proofs
 from benchmarks.stress.histogram import Histogram
 from benchmarks.stress.judge import Judged
 from benchmarks.stress.quantity import Mask, Rows
-from mechkin_cli.bench.stress import ROUNDING, TOLERANCE, StressVerdict
+from mechkin_cli.bench.runs import ROUNDING, TOLERANCE, StressVerdict
 from mechkin_cli.verdict import Proof
 
 SHOWN = 5

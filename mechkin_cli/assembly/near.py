@@ -26,7 +26,7 @@ from mechkin_cli.assembly.home import is_cyclic, probe_of, wrapped
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import GROUND_NAME, Problem, dimension_of, is_angle, norm
 from mechkin_cli.plan import Demand, Layout, home_state
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.search import Assemblies, Within, single_assembly
 from mechkin_cli.verdict import Status
 
@@ -148,25 +148,12 @@ class AssemblyStart:
     condition: float | None = None
 
 
-class NamedAssembly(NamedTuple):
-    """What `near` names: states (states,), the others as drawn; the states that are named unknowns;
-    whether these are all unknowns."""
-
-    state: Floats
-    unknowns: frozenset[int]
-    complete: bool
+Named = tuple["Floats", frozenset[int], bool]
+"""What `near` names: states (states,), the others as drawn; the states that are named unknowns;
+whether these are all unknowns."""
 
 
-class NearestAssembly(NamedTuple):
-    """The assembly (states,) that Newton's method finds, and the distance from it within which
-    there is no other, 0 where none is known; `condition` of its loops."""
-
-    state: Floats
-    unique: float
-    condition: float
-
-
-def named_by(session: Session) -> NamedAssembly:
+def named_by(session: Session) -> Named:
     """What the problem's `near` names."""
     layout = session.layout
     state, named = home_state(layout), set()
@@ -185,38 +172,43 @@ def named_by(session: Session) -> NamedAssembly:
         if freedom in left:
             named.add(number)
             left.discard(freedom)
-    return NamedAssembly(state, frozenset(named), complete and not left)
+    return state, frozenset(named), complete and not left
 
 
-def newton_from(session: Session, inputs: Floats, named: NamedAssembly) -> NearestAssembly | None:
-    """The assembly that Newton's method reaches from what is named; None if it reaches none.
+def newton_from(
+    session: Session, inputs: Floats, named: Named
+) -> tuple[Floats, float, float] | None:
+    """The assembly (states,) that Newton's method reaches from what is named, the distance from it
+    within which there is no other, 0 where none is known, and the condition of its loops; None if
+    it reaches none.
 
     `inputs` (inputs,) in kernel units.
     """
-    start = single_assembly(session.layout, session.plan, inputs, named.state)
+    drawn, _, complete = named
+    start = single_assembly(session.layout, session.plan, inputs, drawn)
     batch = session.close(inputs[:, None], start[:, None], Demand.CONDITION)
     if not batch.good[0] or batch.condition is None:
         return None
     state, condition = batch.states[:, 0], float(batch.condition[0])
     if not condition < tolerances.SEARCH_CONDITION:
         return None
-    unique = _unique(session, state, condition) if named.complete else 0.0
-    return NearestAssembly(state, unique, condition)
+    unique = _unique(session, state, condition) if complete else 0.0
+    return state, unique, condition
 
 
-def box_about(session: Session, named: NamedAssembly, radius: float) -> Within:
+def box_about(session: Session, named: Named, radius: float) -> Within:
     """The box of all states whose named unknowns lie within `radius` (rad, parts of the size)."""
-    layout = session.layout
+    layout, (drawn, unknowns, _) = session.layout, named
     size = layout.mechanism.box_diagonal() / layout.length
-    radii = np.full(named.state.size, inf)
+    radii = np.full(drawn.size, inf)
     for block in layout.graph.blocks:
         for edge, freedom in block.unknowns:
             k, local = layout.carrier_of(edge, freedom)
             carrier = layout.carriers[k]
-            if carrier.state + local in named.unknowns:
+            if carrier.state + local in unknowns:
                 slide = carrier.part.type.slides[local]
                 radii[carrier.state + local] = radius * size if slide else radius
-    return named.state, radii
+    return drawn, radii
 
 
 def _unique(session: Session, state: Floats, condition: float) -> float:

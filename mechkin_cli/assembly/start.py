@@ -2,9 +2,9 @@
 mode, the home drawing, or the nearest to it.
 
 On a fold two branches meet. Near it a state is x0 + v h for inputs u0 + a h^2/2, v of length one.
-So derivatives by the input at a distance h that rounding has left are x' = v/(a h) and x'' =
--v/(a^2 h^3), and a = |x''|/|x'|^3 is known although neither of them is (`left_for`). The branch is
-judged at the next row that is clear of the fold, unless `near` decides at the first
+So derivatives by the input at a distance h that rounding has left are x' = v/(a h) and
+x'' = -v/(a^2 h^3), and a = |x''|/|x'|^3 is known although neither of them is (`left_for`). The
+branch is judged at the next row that is clear of the fold, unless `near` decides at the first
 (`judged_off_fold`).
 """
 
@@ -19,7 +19,6 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
 from mechkin_cli.assembly.near import (
     AssemblyStart,
-    NearestAssembly,
     box_about,
     distances_home,
     distances_near,
@@ -139,7 +138,7 @@ def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
         return start
     condition = start.condition
     if condition is None:
-        condition = condition_at(session, session.inputs.reduced[:, 0], start.state)
+        condition = _condition(session, session.inputs.reduced[:, 0], start.state)
     if condition is None or condition <= tolerances.CONDITION_SIDE_UNCLEAR:
         return start
     row = _next_clear(session)
@@ -160,7 +159,7 @@ def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> Asse
     if followed.end != TrackEnd.FINISHED:
         return start
     state = np.ascontiguousarray(followed.guess[:, -1])
-    condition = condition_at(session, session.inputs.reduced[:, 0], state)
+    condition = _condition(session, session.inputs.reduced[:, 0], state)
     if condition is None or condition > tolerances.CONDITION_RANK_UNCLEAR:
         return start  # on the fold itself, where the branches are one
     how = f"{start.how}; next to a fold, where near tells its branches apart"
@@ -208,7 +207,7 @@ def _next_clear(session: Session) -> int:
     return int(clear[0]) if clear.size else int(np.argmax(distance))
 
 
-def condition_at(session: Session, inputs: Floats, state: Floats) -> float | None:
+def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
     """The condition of an assembly; None where it is none."""
     batch = session.run(RowInputs(inputs[:, None], state[:, None]), Ask(Demand.CONDITION))
     return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
@@ -245,7 +244,10 @@ NEAR = "near"
 HOME = "home"
 """In place of the letter of an assembled drawing."""
 
-MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (write expressions)"
+MAY_BE_RIGID = (
+    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
+    "this is a branch point or a special position"
+)
 
 
 @remembered
@@ -377,22 +379,23 @@ def _from_near(session: Session, inputs: Floats) -> AssemblyStart | None:
     """By Newton's method: at once if what it finds is proven to be the nearest, else after a search
     about what is named; None where it finds none that narrows the search."""
     named = named_by(session)
-    newton = newton_from(session, inputs, named) if named.unknowns else None
+    newton = newton_from(session, inputs, named) if named[1] else None
     if newton is None:
         return None
-    distance = distances_of(session, inputs, newton.state[:, None])[0][0]
-    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < newton.unique:
+    state, unique, condition = newton
+    distance = distances_of(session, inputs, state[:, None])[0][0]
+    if (1.0 + tolerances.NEAR_RUNNER_UP) * distance < unique:
         how = (
             f"{distance:.2g} rad or sizes off what near names, found by Newton's method; no other "
-            f"within {newton.unique:.2g}"
+            f"within {unique:.2g}"
         )
-        return AssemblyStart(newton.state, NEAR, how, off=distance, condition=newton.condition)
+        return AssemblyStart(state, NEAR, how, off=distance, condition=condition)
     # coordinates that are exact are so but for rounding
     radius = tolerances.NEAR_RUNNER_UP * max(distance, tolerances.SAME_MODE)
     if radius > tolerances.NEAR_BALL:
         return None
     inside = all_assemblies(session, inputs, box_about(session, named, radius), thorough=False)
-    return _nearest_about(session, inputs, newton, inside, radius)
+    return _nearest_about(session, inputs, state, inside, radius)
 
 
 def _noted_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> AssemblyStart:
@@ -404,10 +407,10 @@ def _noted_if_far(session: Session, inputs: Floats, start: AssemblyStart) -> Ass
 
 
 def _nearest_about(
-    session: Session, inputs: Floats, newton: NearestAssembly, found: Assemblies, radius: float
+    session: Session, inputs: Floats, newton: Floats, found: Assemblies, radius: float
 ) -> AssemblyStart | None:
     """The nearest of all assemblies about as near as the one that Newton's method found."""
-    found = with_assemblies(session.layout, session.plan, inputs, found, newton.state[:, None])
+    found = with_assemblies(session.layout, session.plan, inputs, found, newton[:, None])
     distances, home = distances_of(session, inputs, found.states)
     order = [i for i in in_order(distances, home) if distances[i] <= radius]
     if not order:

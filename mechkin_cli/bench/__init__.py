@@ -2,8 +2,8 @@
 
 A *scene* is a mechanism whose rows are closed; a *method* is a way to its answers at one setting,
 made by a family (`runs.FAMILIES`); a *measurement* is its time and its errors against the rows
-repeated in double-double. `runs` puts them together, `report` writes them, `stress` judges hard
-mechanisms whose rows are known. Only `mechkin bench` loads the chapters.
+repeated in double-double. `runs` puts them together and judges hard mechanisms
+whose rows are known; `report` writes them. Only `mechkin bench` loads the chapters.
 """
 
 from mechkin_cli.lazy import TYPE_CHECKING, lazy_names
@@ -27,20 +27,17 @@ if TYPE_CHECKING:
         Rounds as Rounds,
         Suite as Suite,
         bench as bench,
-    )
-    from mechkin_cli.bench.scene import BenchScene as BenchScene
-    from mechkin_cli.bench.stress import (
         judge_hard_mechanisms as judge_hard_mechanisms,
         stress_table as stress_table,
     )
+    from mechkin_cli.bench.scene import BenchScene as BenchScene
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "measurement": "Bench",
         "report": "NAMES ReportTable bench_table key_of machine plain_text record write",
-        "runs": "FULL QUICK SUITE Rounds Suite bench",
+        "runs": "FULL QUICK Rounds SUITE Suite bench judge_hard_mechanisms stress_table",
         "scene": "BenchScene",
-        "stress": "judge_hard_mechanisms stress_table",
     },
 )

@@ -10,7 +10,6 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from mechkin_cli.building.assembly import build_assembly, build_follow, held_of, note_spins, settled
 from mechkin_cli.building.fields import (
     AlreadyRefused,
     Fields,
@@ -24,6 +23,13 @@ from mechkin_cli.building.fields import (
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
+from mechkin_cli.building.responses import (
+    build_assembly,
+    build_follow,
+    held_of,
+    note_spins,
+    settled,
+)
 from mechkin_cli.building.source import MechanismSource
 from mechkin_cli.building.tables import (
     ColumnSample,

@@ -17,10 +17,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli import idle
-from mechkin_cli.building.assembly import settled
 from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
 from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
 from mechkin_cli.building.fields import Fields
+from mechkin_cli.building.responses import settled
 from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Move, Quantity, numbers_read_by
 from mechkin_cli.mechanism import (

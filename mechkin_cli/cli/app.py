@@ -1,19 +1,227 @@
-"""The typer app: all commands, their help, and what is wrong with a command line."""
+"""The typer app: all commands, their help, what is wrong with a command line, and what shells offer
+while one is typed: files, and the names that the file holds.
+
+For an offer a file is only read, and one that cannot be read offers nothing. Assembly modes alone
+are searched for, in a process that is given two seconds.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import sys
+from collections.abc import Callable, Iterable, Mapping
 from inspect import Parameter, Signature
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from mechkin_cli.cli import offers
 from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
 from mechkin_cli.cli.messages import ExitCode, discard, put, say
+from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.verdict import __version__
+
+Offers = list[str]
+
+
+MODES_TIME = 2.0
+"""Seconds in which assembly modes are searched for."""
+
+HEAD = 65536
+"""Characters of a file that tell whether it is a study."""
+
+
+STUDY_FORMATS = ("csv", "parquet")
+"""As `studies.FORMATS`; a shell that asks for them does not wait for numpy."""
+
+
+def mechanism_files(incomplete: str) -> Offers:
+    """Mechanism files, and the folders on the way to them."""
+    return _yaml_files(incomplete)
+
+
+def study_files(incomplete: str) -> Offers:
+    """Study files, and the folders on the way to them."""
+    return [path for path in _yaml_files(incomplete) if path.endswith("/") or _is_study(path)]
+
+
+def _is_study(path: str) -> bool:
+    try:
+        with open(path, encoding="utf-8", errors="replace") as stream:
+            return re.search(r"^study\s*:", stream.read(HEAD), re.MULTILINE) is not None
+    except (OSError, ValueError):
+        return False
+
+
+def _yaml_files(incomplete: str) -> Offers:
+    folder, _, start = incomplete.rpartition("/")
+    above = f"{folder}/" if "/" in incomplete else ""
+    try:
+        with os.scandir(above or ".") as entries:
+            found = [
+                f"{above}{entry.name}{'/' if entry.is_dir() else ''}"
+                for entry in entries
+                if entry.name.startswith(start)
+                and (start.startswith(".") or not entry.name.startswith("."))
+                and (entry.is_dir() or entry.name.endswith((".yaml", ".yml")))
+            ]
+    except (OSError, ValueError):
+        return []
+    return sorted(found)
+
+
+def table_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Tables and coefficients of the files."""
+    sections = [data.get(name) for data in _files(ctx) for name in ("tables", "coefficients")]
+    names = [table.get("name") for section in sections for table in _mappings(section)]
+    return _beginning(names, incomplete)
+
+
+def response_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Responses of the file."""
+    return _beginning(_keys(ctx, "responses"), incomplete)
+
+
+def run_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """The sweep of the file, where it has one, and its responses."""
+    from mechkin_cli.verdict import SWEEP
+
+    sweep = [SWEEP] if any("motion" in data for data in _files(ctx)) else []
+    return _beginning([*sweep, *_keys(ctx, "responses")], incomplete)
+
+
+def mode_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Assembly modes of the file's first row, or of the start of the run on the line."""
+    import json
+    import subprocess
+    import sys
+
+    paths = _paths(ctx)
+    settings = [word for text in ctx.params.get("set_") or () for word in ("--set", text)]
+    run = ctx.params.get("run")
+    at = ["--run", run] if run in _keys(ctx, "responses") else []
+    if len(paths) != 1 or str(paths[0]) == "-":
+        return []
+    # the shell's words for completion would make the process complete, too
+    own = {name: text for name, text in os.environ.items() if name != "_MECHKIN_COMPLETE"}
+    command = [sys.executable, "-P", "-m", "mechkin_cli", "modes", str(paths[0]), "--json"]
+    try:
+        done = subprocess.run(
+            [*command, *settings, *at], capture_output=True, timeout=MODES_TIME, env=own, check=True
+        )
+        modes = json.loads(done.stdout).get("modes", [])
+    except (subprocess.SubprocessError, OSError, ValueError):
+        return []
+    return _beginning([mode.get("name") for mode in _mappings(modes)], incomplete)
+
+
+def study_format_names(incomplete: str) -> Offers:
+    """Formats of a study's results."""
+    return _beginning(STUDY_FORMATS, incomplete)
+
+
+def input_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Inputs of the file's sweep."""
+    names = [
+        name
+        for data in _files(ctx)
+        if isinstance(motion := data.get("motion"), dict)
+        and isinstance(inputs := motion.get("inputs"), dict)
+        for name in inputs
+    ]
+    return _beginning(names, incomplete)
+
+
+def parameter_names(ctx: typer.Context, incomplete: str) -> Offers:
+    """Parameters of the files, or of a study's mechanism, each with the sign behind which its value
+    stands."""
+    return _beginning([f"{name}=" for name in _keys(ctx, "parameters")], incomplete)
+
+
+def format_names(incomplete: str) -> Offers:
+    """Formats of results."""
+    from mechkin_cli.tables import WRITERS
+
+    return _beginning(WRITERS, incomplete)
+
+
+def message_forms(incomplete: str) -> Offers:
+    """Forms of messages."""
+    from mechkin_cli.cli.messages import FORMS
+
+    return _beginning(FORMS, incomplete)
+
+
+def _files(ctx: typer.Context) -> list[Mapping[str, Any]]:
+    """The files named so far, as plain data; those that are no mechanism files are left out."""
+    from mechkin_cli.diagnostics import MechkinError
+    from mechkin_cli.reading import read_document
+
+    found: list[Mapping[str, Any]] = []
+    for path in _paths(ctx):
+        try:
+            data = read_document(path).data
+            if "study" in data and isinstance(mechanism := data.get("mechanism"), str):
+                data = read_document(path.parent / mechanism).data
+        except (MechkinError, ValueError):
+            continue
+        found.append(data)
+    return found
+
+
+def _paths(ctx: typer.Context) -> list[Path]:
+    """The files on the line."""
+    # behind an option that still lacks its value, files are words that nothing has taken yet
+    given = ctx.params.get("files") or ctx.params.get("file") or ctx.args
+    return [Path(path) for path in ([given] if isinstance(given, str | Path) else given)]
+
+
+def _keys(ctx: typer.Context, section: str) -> list[str]:
+    found = [data.get(section) for data in _files(ctx)]
+    return [name for names in found if isinstance(names, dict) for name in names]
+
+
+def _mappings(section: object) -> list[dict[str, Any]]:
+    items = section if isinstance(section, list) else []
+    return [item for item in items if isinstance(item, dict)]
+
+
+def _beginning(names: Iterable[object], start: str) -> Offers:
+    return [
+        name for name in dict.fromkeys(names) if isinstance(name, str) and name.startswith(start)
+    ]
+
+
+def folder(text: str) -> Path:
+    """A folder to write to.
+
+    Raises:
+        UsageError: it has no name, as that of a variable of the shell that is not set.
+    """
+    if not text:
+        raise UsageError("--out has no name; write a folder behind it, as --out results")
+    return Path(text)
+
+
+OFFERS: dict[str, Callable[..., Offers]] = {
+    offer.__name__: offer
+    for offer in (
+        mechanism_files,
+        study_files,
+        table_names,
+        response_names,
+        run_names,
+        mode_names,
+        study_format_names,
+        input_names,
+        parameter_names,
+        format_names,
+        message_forms,
+    )
+}
+"""What words of a command line are offered, by name."""
+
 
 app = typer.Typer(
     name="mechkin",
@@ -39,10 +247,10 @@ def _parameter(word: Word) -> Parameter:
     told: dict[str, Any] = {
         "help": word.help.format(formats=all_formats()),
         "metavar": word.metavar,
-        "autocompletion": None if word.offers is None else getattr(offers, word.offers),
+        "autocompletion": None if word.offers is None else OFFERS[word.offers],
     }
     if word.kind == "folder":
-        told["parser"] = offers.folder
+        told["parser"] = folder
     kind: Any = TYPES[word.kind]
     default: Any = word.default
     if word.kind == "flag":

@@ -26,7 +26,7 @@ class Word(NamedTuple):
     """An option or, without `names`, an argument: the parameter of the command's function that it
     gives, and how help tells it.
 
-    `offers` is the function of `offers.py` that a shell is offered values by.
+    `offers` is the function of `app.py` that a shell is offered values by.
     """
 
     parameter: str

@@ -60,9 +60,9 @@ def leave(code: int) -> NoReturn:
 def _interrupted(number: int, frame: FrameType | None) -> None:
     if _final_code is not None:
         os._exit(_final_code)
-    if getattr(sys.modules.get("mechkin_cli.tables.files"), "replacing", None):
+    if getattr(sys.modules.get("mechkin_cli.tables.writers"), "replacing", None):
         raise KeyboardInterrupt
-    claims = sys.modules.get("mechkin_cli.tables.files")
+    claims = sys.modules.get("mechkin_cli.tables.writers")
     for claim in tuple(getattr(claims, "held", ())):
         claim.release()
     progress = sys.modules.get("mechkin_cli.cli.progress")

@@ -231,7 +231,7 @@ def _driven(analysis: Analysis) -> str:
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
-    words = [spin.words for spin in mechanism.spins]
+    words = [spin.idle_words for spin in mechanism.spins]
     several = Counter(held.words for held in analysis.model.problem.held)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])

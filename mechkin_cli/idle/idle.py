@@ -1,10 +1,10 @@
 """Idle freedoms: what moves freely while all else stands still, the convention about it, and what
 mechkin reports of it.
 
-The own links of a constraint may spin (`Spin`): their pose is the shortest turn from the drawing,
-and their rate is zero. Other idle freedoms are held at a coordinate (`hold`). Nothing else moves
-with them. Forces are exact as long as nothing drives such a motion (`spin_errors`); otherwise it is
-a dynamic freedom that a kinematic analysis cannot know.
+The own links of a distance spin (`DistanceConstraint`): their pose is the shortest turn from the
+drawing, and their rate is zero. Other idle freedoms are held at a coordinate (`hold`). Nothing else
+moves with them. Forces are exact as long as nothing drives such a motion (`spin_errors`); otherwise
+it is a dynamic freedom that a kinematic analysis cannot know.
 
 A body that nothing turns about a line of its own, about which it is symmetric, has no spin: the
 forces on it do not depend on its moment of inertia about that line, which is left out where a held
@@ -29,6 +29,7 @@ from mechkin_cli.mechanism import (
     Attached,
     Coordinate as NamedCoordinate,
     Damper,
+    DistanceConstraint,
     Joint,
     JointLoad,
     Line,
@@ -36,7 +37,6 @@ from mechkin_cli.mechanism import (
     Load,
     Problem,
     RigidLink,
-    Spin,
     Spring,
     Vector,
     Wanted,
@@ -86,9 +86,9 @@ def idle_freedoms(problem: Problem) -> Iterator[Idle]:
         yield Idle(*motion, length, h.convention, h.cure, h.holding)
 
 
-def _of_spin(spin: Spin) -> Idle:
+def _of_spin(spin: DistanceConstraint) -> Idle:
     return Idle(
-        spin.words,
+        spin.idle_words,
         spin.links,
         spin.lines,
         False,

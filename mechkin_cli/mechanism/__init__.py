@@ -12,9 +12,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.constraint import (
         Constraint as Constraint,
+        DistanceConstraint as DistanceConstraint,
         InputConstraint as InputConstraint,
         PairConstraint as PairConstraint,
-        Spin as Spin,
     )
     from mechkin_cli.mechanism.curve import (
         Curve as Curve,
@@ -173,7 +173,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint InputConstraint PairConstraint Spin",
+        "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint",
         "curve": "Curve Joining LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "

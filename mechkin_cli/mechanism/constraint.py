@@ -52,17 +52,6 @@ OwnEdge = tuple[Joint, str, str, bool]
 points place that link, so that the joint has no freedom."""
 
 
-class HungLinks(NamedTuple):
-    """The links that hang between the two points of a constraint: `body` at the first, aimed along
-    `line` (a unit vector on its drawing), and on it at the second a `rod`, whose slide changes the
-    distance at the rate `slide_sign`; 0 without a rod."""
-
-    body: str
-    rod: str | None
-    line: Vector
-    slide_sign: float
-
-
 @dataclass(frozen=True)
 class Constraint:
     """Equations between two links; their multipliers are the wrench of `joint`, whose name they
@@ -169,13 +158,8 @@ class Constraint:
         return ()
 
     @property
-    def hung(self) -> HungLinks | None:
-        """How its own links hang between its points."""
-        return None
-
-    @property
-    def spin(self) -> Spin | None:
-        """The idle freedom of its own links."""
+    def hung(self) -> DistanceConstraint | None:
+        """The leg whose own links hang between its points and spin."""
         return None
 
     @property
@@ -294,14 +278,9 @@ class DistanceConstraint(Constraint):
         return hangs, (self.slide, self.body, self.rod, False)
 
     @property
-    def hung(self) -> HungLinks:
-        """Body and rod, and the line between the spheres."""
-        return HungLinks(self.body, self.rod, self.line, self.slide_sign)
-
-    @property
-    def spin(self) -> Spin:
-        """About the line of its spheres."""
-        return Spin(self)
+    def hung(self) -> DistanceConstraint:
+        """Body and rod hang on the line of the spheres and spin about it."""
+        return self
 
     @property
     def label(self) -> str:
@@ -365,42 +344,24 @@ class DistanceConstraint(Constraint):
         off_line = cross(self.span, frame_on(self.slide, self.body).z)
         return norm(off_line) <= tolerances.LEG_SLIDE * norm(self.span)
 
-
-@dataclass(frozen=True)
-class Spin:
-    """The idle turn of the links of a distance about the line of its spheres.
-
-    Their pose is the shortest turn from the drawing, and their rate about the line is zero
-    (kernel/core/joints/hung_bodies.hpp).
-    """
-
-    distance: DistanceConstraint
+    # the idle turn of its links about the line of its spheres: their pose is the shortest turn from
+    # the drawing, and their rate about the line is zero (kernel/core/joints/hung_bodies.hpp)
 
     @property
-    def links(self) -> tuple[str, ...]:
-        """The links that spin as one."""
-        return self.distance.links
-
-    @property
-    def words(self) -> str:
-        """The idle freedom in an engineer's words."""
+    def idle_words(self) -> str:
+        """The idle freedom of its links, which spin as one, in an engineer's words."""
         spins = "spins" if len(self.links) == 1 else "spin"
-        line = f"{self.distance.start.name}-{self.distance.joint.name}"
+        line = f"{self.start.name}-{self.joint.name}"
         return f"{' and '.join(self.links)} {spins} freely about {line}"
 
     @property
     def lines(self) -> Mapping[str, Line | None]:
         """The line about which each link turns, on its own drawing."""
-        return {link: self.distance.line_of(link) for link in self.links}
-
-    @property
-    def length(self) -> float:
-        """What distances from the line are compared with, in m."""
-        return self.distance.length
+        return {link: self.line_of(link) for link in self.links}
 
     @property
     def convention(self) -> str:
-        """What is told of it by convention."""
+        """What is told of the idle freedom by convention."""
         return "its pose is the shortest turn from the drawing and it does not spin"
 
     @property

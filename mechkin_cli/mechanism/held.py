@@ -3,7 +3,7 @@
 Some links may move, in a chain as one body, while all others stay at rest. No equation tells that
 motion, so one coordinate of it is held where it is drawn (or where `near` puts it), as if it were
 an input at rest; nothing that is not conventional depends on it. The own links of a constraint have
-no such coordinate (constraint.py, `Spin`).
+no such coordinate (constraint.py, `DistanceConstraint`).
 """
 
 from __future__ import annotations

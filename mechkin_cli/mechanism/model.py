@@ -11,7 +11,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 from mechkin_cli.diagnostics import SHORT_LIST
-from mechkin_cli.mechanism.constraint import Constraint, InputConstraint, Spin, find_constraints
+from mechkin_cli.mechanism.constraint import (
+    Constraint,
+    DistanceConstraint,
+    InputConstraint,
+    find_constraints,
+)
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector
@@ -260,9 +265,9 @@ class Mechanism:
         return find_constraints(self.links, self.joints.values(), self.joints_of)
 
     @cached_property
-    def spins(self) -> tuple[Spin, ...]:
+    def spins(self) -> tuple[DistanceConstraint, ...]:
         """The idle freedoms of their own links."""
-        return tuple(c.spin for c in self.constraints if c.spin is not None)
+        return tuple(c.hung for c in self.constraints if c.hung is not None)
 
     @property
     def loops(self) -> int:

@@ -25,7 +25,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.session import Ask, RowInputs, Session
+from mechkin_cli.session import Ask, RowInputs, Session, quaternion_product, turned_quaternion
 from mechkin_cli.structure import SolverGraph, TreeEdge
 
 if TYPE_CHECKING:
@@ -176,29 +176,16 @@ def quaternion_of(turn: Floats) -> Floats:
     return np.asarray(row / np.sqrt(row @ row), dtype=np.float64)
 
 
-def _turned(quaternion: Floats, vector: Floats) -> Floats:
-    """Quaternions (..., 4) turned further by rotation vectors (..., 3) about fixed axes."""
-    angle = np.sqrt(np.sum(vector * vector, axis=-1, keepdims=True))
-    half = 0.5 * vector * np.sinc(angle / (2.0 * np.pi))
-    turned = _product(np.concatenate([np.cos(0.5 * angle), half], axis=-1), quaternion)
-    return np.asarray(turned / np.sqrt(np.sum(turned * turned, axis=-1, keepdims=True)))
-
-
 def _turn_between(quaternion: Floats, other: Floats) -> Floats:
     """The rotation vectors (..., 3) that turn `other` (..., 4) on to `quaternion`."""
-    by = _product(quaternion, other * np.array([1.0, -1.0, -1.0, -1.0]))
+    inverse = other * np.array([1.0, -1.0, -1.0, -1.0])
+    by = np.stack(
+        quaternion_product(np.moveaxis(quaternion, -1, 0), np.moveaxis(inverse, -1, 0)), -1
+    )
     by = np.where(by[..., :1] < 0.0, -by, by)
     sine = np.sqrt(np.sum(by[..., 1:] ** 2, axis=-1, keepdims=True))
     angle = 2.0 * np.arctan2(sine, by[..., :1])
     return np.asarray(by[..., 1:] * np.where(sine > 0.0, angle / np.where(sine > 0.0, sine, 1), 2))
-
-
-def _product(one: Floats, two: Floats) -> Floats:
-    """Products of quaternions (..., 4), scalar first."""
-    a, v = one[..., :1], one[..., 1:]
-    b, w = two[..., :1], two[..., 1:]
-    scalar = a * b - np.sum(v * w, axis=-1, keepdims=True)
-    return np.concatenate([scalar, a * w + b * v + _cross(v, w)], axis=-1)
 
 
 def _cross(one: Floats, two: Floats) -> Floats:
@@ -287,7 +274,10 @@ class Loops:
         moved[:, slots] += steps[:, columns] * units
         columns, slots = self._balls
         if slots.size:
-            moved[:, slots] = _turned(moved[:, slots], steps[:, columns])
+            before, by = moved[:, slots], steps[:, columns].reshape(-1, 3)
+            moved[:, slots] = turned_quaternion(before.reshape(-1, 4).T, by.T).T.reshape(
+                before.shape
+            )
         return moved
 
     def steps(self, states: Floats, others: Floats) -> Floats:

@@ -91,20 +91,13 @@ def _not_numbers(name: str) -> UsageError:
 COMPONENTS = "xyz"
 
 
-class Panel(NamedTuple):
-    """Curves of one unit."""
-
-    unit: str
-    curves: tuple[PlotCurve, ...]
-
-
 class Picture(NamedTuple):
     """What is drawn.
 
     Attributes:
         title: above it.
         x: against which the curves of all panels stand; in a plane one for each curve.
-        panels: from top to bottom; in a plane one.
+        panels: the curves of each, all of one unit, from top to bottom; in a plane one.
         is_plane: both axes are of one unit and drawn to one scale.
         parameter: what the run goes along.
         marks: dead centres, branch points and events: where, by that parameter, and in words.
@@ -114,7 +107,7 @@ class Picture(NamedTuple):
 
     title: str
     x: tuple[PlotCurve, ...]
-    panels: tuple[Panel, ...]
+    panels: tuple[tuple[PlotCurve, ...], ...]
     is_plane: bool
     parameter: PlotCurve
     marks: tuple[tuple[float, str], ...]
@@ -122,7 +115,7 @@ class Picture(NamedTuple):
     doubtful: tuple[tuple[str, Bools], ...]
 
     def __repr__(self) -> str:
-        curves = ", ".join(curve.words for panel in self.panels for curve in panel.curves)
+        curves = ", ".join(curve.words for panel in self.panels for curve in panel)
         return f"Picture of {curves} over {', '.join(dict.fromkeys(c.words for c in self.x))}"
 
 
@@ -148,12 +141,12 @@ def picture(
     against = curve_of(analysis, x) if isinstance(x, str) else x
     if any(curve.is_vector for curve in drawn):
         xs, ys = _in_plane(drawn, against)
-        return _picture(analysis, title, xs, (Panel(ys[0].unit, ys),), along, is_plane=True)
+        return _picture(analysis, title, xs, (ys,), along, is_plane=True)
     against = against or along
     if against.is_vector:
         raise UsageError(f"{against.label} is a vector; draw over a number, such as its .x")
     units = dict.fromkeys(curve.unit for curve in drawn)
-    panels = tuple(Panel(u, tuple(c for c in drawn if c.unit == u)) for u in units)
+    panels = tuple(tuple(c for c in drawn if c.unit == u) for u in units)
     label = analysis.result.units.label
     is_plane = against.label != along.label and set(units) == {against.unit}
     is_plane &= against.unit in {label(LENGTH), label(FORCE), label(MOMENT)}
@@ -165,7 +158,7 @@ def _picture(
     analysis: Readable,
     title: str,
     x: tuple[PlotCurve, ...],
-    panels: tuple[Panel, ...],
+    panels: tuple[tuple[PlotCurve, ...], ...],
     along: PlotCurve,
     *,
     is_plane: bool,
@@ -333,7 +326,7 @@ def _over_a_column(picture: Picture) -> Figure:
     (x,) = picture.x
     over_parameter = x.label == picture.parameter.label
     for axes, panel in zip(panels, picture.panels, strict=True):
-        for curve in panel.curves:
+        for curve in panel:
             (line,) = axes.plot(x.values, curve.values, label=curve.label)
             _single_rows(axes, picture, x.values, curve.values, line.get_color())
             if not over_parameter:
@@ -342,9 +335,9 @@ def _over_a_column(picture: Picture) -> Figure:
             _gaps(axes, picture)
             for place, _ in picture.marks:
                 axes.axvline(place, color=_MARKS[0], linestyle="--", linewidth=1.0)
-        names = ", ".join(dict.fromkeys(curve.label for curve in panel.curves))
-        alone = len(panel.curves) == 1
-        unit = f"[{panel.unit}]" if panel.unit else ""
+        names = ", ".join(dict.fromkeys(curve.label for curve in panel))
+        alone = len(panel) == 1
+        unit = f"[{panel[0].unit}]" if panel[0].unit else ""
         axes.set_ylabel(f"{names} {unit}".strip() if alone else unit)
         if not alone or axes is panels[0]:
             _legend(axes, picture, over_parameter, with_marks=axes is panels[0])
@@ -358,7 +351,7 @@ def _plane_figure(picture: Picture) -> Figure:
     figure = _figure(_PLANE)
     axes = figure.subplots()
     (panel,) = picture.panels
-    for x, y in zip(picture.x, panel.curves, strict=True):
+    for x, y in zip(picture.x, panel, strict=True):
         label = _vector_name(x, y)
         (line,) = axes.plot(x.values, y.values, label=label)
         colour = line.get_color()
@@ -369,7 +362,7 @@ def _plane_figure(picture: Picture) -> Figure:
     axes.axhline(0.0, color=_MARKS[1], linewidth=0.6)
     axes.axvline(0.0, color=_MARKS[1], linewidth=0.6)
     axes.set_xlabel(_axis(picture.x))
-    axes.set_ylabel(_axis(panel.curves))
+    axes.set_ylabel(_axis(panel))
     axes.set_title(f"{picture.title}\nnumbers: {picture.parameter.words}")
     _legend(axes, picture, over_parameter=False, with_marks=True)
     return figure

@@ -49,9 +49,11 @@ if TYPE_CHECKING:
         input_text as input_text,
         input_unit as input_unit,
         kernel_inputs as kernel_inputs,
+        quaternion_product as quaternion_product,
         reduce_angle as reduce_angle,
         turn_count as turn_count,
         turn_of as turn_of,
+        turned_quaternion as turned_quaternion,
     )
     from mechkin_cli.session.kernel_run import (
         POSITIONS as POSITIONS,
@@ -86,8 +88,8 @@ __getattr__, __dir__ = lazy_names(
         "followers": "InputPath angle_slots followers_of input_path input_rest",
         "following": "Ending Followed Runaway follow step_limits",
         "inputs": "KernelInputs ORIENTATION continuous_angle continuous_signs drawn_quaternion "
-        "held_values input_number input_numbers input_text input_unit kernel_inputs reduce_angle "
-        "turn_count turn_of",
+        "held_values input_number input_numbers input_text input_unit kernel_inputs "
+        "quaternion_product reduce_angle turn_count turn_of turned_quaternion",
         "kernel_run": "Ask Batch Chart POSITIONS PreciseConstants RESIDUAL_TESTS RowInputs "
         "assembly_size run",
         "path": "places_at places_of",

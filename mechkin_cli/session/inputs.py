@@ -339,7 +339,7 @@ def drawn_quaternion(joint: Joint, turns: Floats) -> Four:
     """
     a, b = _frame_quaternion(joint.on_first), _frame_quaternion(joint.on_second)
     r = (turns[0], turns[1], turns[2], turns[3])
-    return _product(_product(a, r), (b[0], -b[1], -b[2], -b[3]))
+    return quaternion_product(quaternion_product(a, r), (b[0], -b[1], -b[2], -b[3]))
 
 
 def turned_quaternion(quaternion: Floats, vector: Floats) -> Floats:
@@ -349,7 +349,9 @@ def turned_quaternion(quaternion: Floats, vector: Floats) -> Floats:
     angle = np.sqrt(x * x + y * y + z * z)
     part = np.where(angle > 0.0, functions.sin(angle) / np.where(angle > 0.0, angle, 1.0), 1.0)
     by: Four = (functions.cos(angle), part * x, part * y, part * z)
-    a, b, c, d = _product(by, (quaternion[0], quaternion[1], quaternion[2], quaternion[3]))
+    a, b, c, d = quaternion_product(
+        by, (quaternion[0], quaternion[1], quaternion[2], quaternion[3])
+    )
     return np.array([a, b, c, d]) / np.sqrt(a * a + b * b + c * c + d * d)
 
 
@@ -357,7 +359,8 @@ def _inner(p: Four, q: Four) -> Floats:
     return p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3]
 
 
-def _product(p: Four, q: Four) -> Four:
+def quaternion_product(p: Four | Floats, q: Four | Floats) -> Four:
+    """The product p q of quaternions (4, ...), scalar first: the turn q, then p."""
     (a, b, c, d), (e, f, g, h) = p, q
     return (
         a * e - b * f - c * g - d * h,

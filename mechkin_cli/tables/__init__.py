@@ -58,11 +58,6 @@ if TYPE_CHECKING:
         not_repeated as not_repeated,
         worst_column as worst_column,
     )
-    from mechkin_cli.tables.files import (
-        Claim as Claim,
-        OutputFolder as OutputFolder,
-        write_files as write_files,
-    )
     from mechkin_cli.tables.json import json_text as json_text, runs_record as runs_record
     from mechkin_cli.tables.layout import (
         ROW_NUMBERS as ROW_NUMBERS,
@@ -106,6 +101,9 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.writers import (
         USUAL_FORMATS as USUAL_FORMATS,
         WRITERS as WRITERS,
+        Claim as Claim,
+        OutputFolder as OutputFolder,
+        write_files as write_files,
         written_files as written_files,
     )
 
@@ -120,7 +118,6 @@ __getattr__, __dir__ = lazy_names(
         "against_print_record counts disagreements_csv errata_page overview_page",
         "errors": "ALL_COLUMNS AT_DEAD_CENTRE ColumnErrors LOST ZERO clashing column_errors "
         "least_digits not_repeated worst_column",
-        "files": "Claim OutputFolder write_files",
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_NUMBERS ROW_PROOF ROW_TEXTS "
         "Remark TableLayout chosen counted default_table effort_names row_texts",
@@ -130,6 +127,6 @@ __getattr__, __dir__ = lazy_names(
         "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "
         "root_mean_square row_weights statistics summary_of",
         "table": "Columns evaluate summary_table",
-        "writers": "USUAL_FORMATS WRITERS written_files",
+        "writers": "Claim OutputFolder USUAL_FORMATS WRITERS write_files written_files",
     },
 )

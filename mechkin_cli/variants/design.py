@@ -2,11 +2,11 @@
 
 The file's own design records once, for each set of parameters, how its plan depends on them;
 variants are replays of that. Where a recording does not hold, the variant is built again: the same
-answers and the same errors, only slower.
+answers and the same errors, only slower. First, values of parameters as a caller gives them, to SI.
 
-First, values of parameters as a caller gives them, to SI; last, numbers in (0, 1) for the samples
-of a study. Any stretch of samples is drawn by itself and is the same whatever was drawn before, so
-that the bytes of a study do not depend on the pieces in which it is computed.
+Last, numbers in (0, 1) for the samples of a study. Any stretch of samples is drawn by itself and is
+the same whatever was drawn before, so that the bytes of a study do not depend on the pieces in
+which it is computed.
 """
 
 from __future__ import annotations

@@ -259,7 +259,7 @@ def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
 
 def _idle(problem: Problem) -> Iterator[str]:
     for spin in problem.mechanism.spins:
-        yield f"{spin.words}: where it stands about that line is set by convention."
+        yield f"{spin.idle_words}: where it stands about that line is set by convention."
     for held in problem.held:
         yield f"{held.words}: {held.convention}."
 

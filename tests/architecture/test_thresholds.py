@@ -19,8 +19,8 @@ ACCEPTED = {
     ("bench/measurement.py", 1e6): "microseconds",
     ("bench/measurement.py", 1e-18): "what is zero by its nature",
     ("bench/measurement.py", 1e-9): "seconds, against a division by zero",
-    ("bench/stress.py", 1e-9): "nine digits of a row, which its reason tells",
-    ("bench/stress.py", 1e-10): "the tolerance of responses, as the file format says",
+    ("bench/runs.py", 1e-9): "nine digits of a row, which its reason tells",
+    ("bench/runs.py", 1e-10): "the tolerance of responses, as the file format says",
 }
 """(file, number) -> what it is."""
 

@@ -14,7 +14,7 @@ import mechkin_cli as mk
 from benchmarks.stress.block import run_block
 from benchmarks.stress.families.table import FAMILIES
 from benchmarks.stress.small import SEED, small_set
-from mechkin_cli.bench import stress
+from mechkin_cli.bench import runs as stress
 from mechkin_cli.cli.app import app
 from mechkin_cli.diagnostics import UsageError
 

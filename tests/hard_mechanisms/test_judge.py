@@ -15,7 +15,7 @@ from benchmarks.stress.numbers.double_double import DEGREE
 from benchmarks.stress.quantity import Truth
 from benchmarks.stress.solve import solve
 from benchmarks.stress.tally import Tally, of_record
-from mechkin_cli.bench.stress import StressVerdict
+from mechkin_cli.bench.runs import StressVerdict
 from mechkin_cli.verdict import Proof, Status
 
 ROW = 7

@@ -48,7 +48,7 @@ def ended() -> mk.Analysis:
 
 def test_a_table_has_a_panel_for_each_unit(analysis):
     found = analysis.picture(table="sizes")
-    assert [(p.unit, [c.label for c in p.curves]) for p in found.panels] == [
+    assert [(p[0].unit, [c.label for c in p]) for p in found.panels] == [
         ("N*mm", ["A.effort"]),
         ("N", ["B.radial_force"]),
         ("deg", ["D.theta", "B.theta"]),
@@ -56,19 +56,19 @@ def test_a_table_has_a_panel_for_each_unit(analysis):
     (x,) = found.x
     assert (x.words, found.is_plane) == ("A.theta [deg]", False)
     np.testing.assert_array_equal(x.values, np.arange(0.0, 361.0, 10.0))
-    np.testing.assert_array_equal(found.panels[0].curves[0].values, analysis["A.effort"])
+    np.testing.assert_array_equal(found.panels[0][0].values, analysis["A.effort"])
 
 
 def test_the_plot_of_a_table_goes_before_that(analysis):
     found = analysis.picture(table="tip")
     assert found.is_plane
     np.testing.assert_array_equal(found.x[0].values, analysis["tip.position.x"])
-    np.testing.assert_array_equal(found.panels[0].curves[0].values, analysis["tip.position.y"])
+    np.testing.assert_array_equal(found.panels[0][0].values, analysis["tip.position.y"])
 
 
 def test_a_point_is_drawn_in_the_plane_of_its_curve(analysis):
     found = analysis.picture(["tip.position"])
-    assert (found.x[0].words, found.panels[0].curves[0].words) == (
+    assert (found.x[0].words, found.panels[0][0].words) == (
         "tip.position.x [mm]",
         "tip.position.y [mm]",
     )
@@ -80,22 +80,22 @@ def test_a_point_is_drawn_in_the_plane_of_its_curve(analysis):
 def test_named_expressions_are_drawn_by_their_names():
     named = mk.loads(FOUR_BAR + "quantities: {both: A.radial_force + B.radial_force}\n").analyze()
     (panel,) = named.picture(["both"]).panels
-    assert panel.unit == "N"
+    assert panel[0].unit == "N"
     expected = named["A.radial_force"] + named["B.radial_force"]
-    np.testing.assert_allclose(panel.curves[0].values, expected, rtol=1e-15)
+    np.testing.assert_allclose(panel[0].values, expected, rtol=1e-15)
 
 
 def test_a_vector_of_a_plane_has_two_components(analysis):
     places = analysis["tip.position"][:, :2]
     found = picture(analysis, "tip", [PlotCurve("tip.position", "mm", places)])
     np.testing.assert_array_equal(found.x[0].values, places[:, 0])
-    np.testing.assert_array_equal(found.panels[0].curves[0].values, places[:, 1])
+    np.testing.assert_array_equal(found.panels[0][0].values, places[:, 1])
 
 
 def test_forces_of_a_plane_linkage_have_a_polar_diagram_without_their_arbitrary_part(analysis):
     found = analysis.picture(["A.force", "B.force"])
     assert [c.label for c in found.x] == ["A.force.x", "B.force.x"]
-    assert np.isfinite(found.panels[0].curves[1].values).all()
+    assert np.isfinite(found.panels[0][1].values).all()
     np.testing.assert_array_equal(found.x[1].values, analysis["B.force.x"])
 
 
@@ -109,10 +109,8 @@ def test_the_same_mechanism_turned_draws_the_same_curve(analysis):
     )
     other = mk.loads(turned).analyze(tables=[]).picture(["tip.position"])
     own = analysis.picture(["tip.position"])
-    assert other.panels[0].curves[0].label == "tip.position.z"
-    for mine, its in zip(
-        (*own.x, *own.panels[0].curves), (*other.x, *other.panels[0].curves), strict=True
-    ):
+    assert other.panels[0][0].label == "tip.position.z"
+    for mine, its in zip((*own.x, *own.panels[0]), (*other.x, *other.panels[0]), strict=True):
         np.testing.assert_allclose(its.values, mine.values, rtol=0, atol=1e-12 * 100)
 
 
@@ -121,7 +119,7 @@ def test_a_dead_centre_and_the_rows_beyond_it_are_marked(ended):
     ((place, words),) = found.marks
     assert words.startswith("dead centre: O1.theta = 205.14")
     assert place == pytest.approx(205.143965945, abs=1e-8)
-    assert np.isnan(found.panels[0].curves[0].values[~found.solved]).all()
+    assert np.isnan(found.panels[0][0].values[~found.solved]).all()
     assert not found.solved.all()
     (axes,) = drawn(found).axes
     legend = [text.get_text() for text in axes.get_legend().get_texts()]

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.files import OutputFolder, write_files
+from mechkin_cli.tables.writers import OutputFolder, write_files
 
 OLD = {"a.csv": b"old a", "b.md": b"old b", "other.csv": b"of another run"}
 NEW = {"a.csv": b"new a", "b.md": b"new b", "c.md": b"new c"}
