@@ -23,7 +23,6 @@ from mechkin_cli.building.fields import Fields, Path, place_at
 from mechkin_cli.building.joints import build_joints, lead_of
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import (
-    GROUND,
     GROUND_NAME,
     ZERO,
     Frame,
@@ -39,6 +38,7 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
     unit,
+    upright,
 )
 from mechkin_cli.schema import ChainRow, MechanismFile, links_joints as written
 from mechkin_cli.tape import Recorded, TraceLost, advice, cos, largest, sin
@@ -201,7 +201,8 @@ def build_chain(
         fields.refused |= {row.joint for row in rows} | {link for _, link in pairs}
         return {}
     joints = {}
-    here = GROUND
+    ground = upright(scale(-1.0, fields.origin))
+    here = ground
     for i, (row, (first, second)) in enumerate(zip(rows, pairs, strict=True)):
         theta = fields.number(("chain", i, "theta"), row.theta, ANGLE)
         s = fields.number(("chain", i, "s"), row.s, LENGTH)
@@ -211,7 +212,7 @@ def build_chain(
         here = _along_x(at_joint, alpha, a)
         behind = at_joint
         if second == GROUND_NAME:
-            behind = _along_x(GROUND, -alpha, -a)
+            behind = _along_x(ground, -alpha, -a)
         parts = (Part(row.type, at_joint, behind),)
         lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.lead is not None else 0.0
         joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)

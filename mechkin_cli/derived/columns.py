@@ -171,7 +171,8 @@ def finite_screw(run: BasisQuantities, link: str) -> dict[str, RowVector | Float
     q = quaternion(run.rotation(link))
     size = length(q[1:])
     place = run.vector(f"{link} place")
-    x, y, z = reference_point(run.session.layout.mechanism, link).vector
+    mechanism = run.session.layout.mechanism
+    x, y, z = add(mechanism.datum, reference_point(mechanism, link).vector)
     drawn = (np.full_like(size, x), np.full_like(size, y), np.full_like(size, z))
     shift = subtract(place, drawn)
     distance = length(shift)

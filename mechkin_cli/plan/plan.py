@@ -19,6 +19,7 @@ from mechkin_cli.mechanism import (
     LinkLoad,
     Spring,
     Varying,
+    add,
     cross,
     scale,
     turned_tensor,
@@ -160,7 +161,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         record(
             "units",
             layout.length,
-            layout.origin,
+            add(layout.mechanism.datum, layout.origin),
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
