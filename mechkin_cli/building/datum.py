@@ -9,7 +9,7 @@ again, rounded once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
@@ -34,7 +34,6 @@ from mechkin_cli.tape import (
     TraceLost,
     as_recorded,
     double_doubles,
-    register,
 )
 from mechkin_cli.units import LENGTH, UnitSystem
 

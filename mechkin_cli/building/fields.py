@@ -376,8 +376,8 @@ def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
 def place_at(
     fields: Fields, path: Path, place: str | tuple[str, ...], link: str | None = None
 ) -> Vector:
-    """A place in the drawing from its datum, in m; if it is fixed in a `link`, a name must be that of a point of
-    the link. Errors are noted, with zero as value."""
+    """A place in the drawing from its datum, in m; if it is fixed in a `link`, a name must be that
+    of a point of the link. Errors are noted, with zero as value."""
     if not isinstance(place, str):
         return fields.place(path, place)
     if place not in fields.points:

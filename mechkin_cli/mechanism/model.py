@@ -222,8 +222,8 @@ def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 @dataclass(frozen=True)
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
-    known. `plane`: everything stays in the plane z = 0. All places are measured from the `datum` (m),
-    in the ground's axes."""
+    known. `plane`: everything stays in the plane z = 0. All places are measured from the
+    `datum` (m), in the ground's axes."""
 
     name: str
     links: Mapping[str, RigidLink]

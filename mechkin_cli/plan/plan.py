@@ -22,6 +22,7 @@ from mechkin_cli.mechanism import (
     add,
     cross,
     scale,
+    subtract,
     turned_tensor,
     varying,
 )
@@ -339,5 +340,6 @@ def _drives(layout: Layout) -> Iterator[PlanRecord]:
 
 def _size_points(layout: Layout) -> Iterator[PlanRecord]:
     for _, at in layout.mechanism.joint_points():
-        point = at.vector if at.link == GROUND_NAME else layout.point(at)
+        on_ground = at.link == GROUND_NAME
+        point = subtract(at.vector, layout.origin) if on_ground else layout.point(at)
         yield record("add_size_point", layout.link_number[at.link], point)

@@ -176,15 +176,15 @@ HOME = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def link_poses(result: Result, links: Sequence[str]) -> Floats:
-    """Shift (m) and unit quaternion (scalar first) of links, shape (rows, links, 7), from where they
-    are drawn about the mechanism's datum.
+    """Shift (m) and unit quaternion (scalar first) of links, shape (rows, links, 7), of what is
+    drawn on them about the mechanism's datum.
 
     Rows without a solution are nan; ground, and links of loops that were not followed, are at home.
     Quaternions have q0 >= 0; `continuous` joins them.
     """
     poses = np.full((result.rows, len(links), 7), np.nan)
-    poses[result.solved] = HOME
     own = result.problem.mechanism
+    poses[result.solved] = (*own.datum, *HOME[3:])
     moving = [name for name in links if name != GROUND_NAME and name in own.links]
     wanted = [quantity for name in moving for quantity in displacement(name)]
     if not (wanted and result.solved.any()):
@@ -196,7 +196,7 @@ def link_poses(result: Result, links: Sequence[str]) -> Floats:
         place = vector_of(columns[f"{name} place"])
         for axis in range(3):
             carried = sum(rotation[k][axis] * drawn[k] for k in range(3))
-            poses[:, at, axis] = place[axis] - own.datum[axis] - carried
+            poses[:, at, axis] = place[axis] - carried
         poses[:, at, 3:] = np.stack(quaternion(rotation), axis=1)
     poses[~result.solved] = np.nan
     return poses
