@@ -68,6 +68,7 @@ class Probe:
         self.coordinates = list(mechanism.coordinates)
         self.points = [at for _, at in mechanism.joint_points() if at.link != GROUND_NAME]
         self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
+        self.datum = np.array(mechanism.datum)[:, None]
         self.readout = session.readout(coordinate_quantities(mechanism), self.points)
 
     def read(self, inputs: Floats, states: Floats) -> tuple[dict[str, Floats], Floats]:
@@ -78,7 +79,7 @@ class Probe:
         assert batch.outputs is not None
         out = batch.outputs
         coordinates = {name: out[self.readout.slots[name].start] for name in self.coordinates}
-        points = np.array([out[slot : slot + 3] for slot in self.readout.points])
+        points = np.array([out[slot : slot + 3] - self.datum for slot in self.readout.points])
         # welds have no point
         return coordinates, points.reshape(len(self.points), 3, states.shape[1])
 

@@ -138,7 +138,7 @@ def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
         return start
     condition = start.condition
     if condition is None:
-        condition = _condition(session, session.inputs.reduced[:, 0], start.state)
+        condition = condition_at(session, session.inputs.reduced[:, 0], start.state)
     if condition is None or condition <= tolerances.CONDITION_SIDE_UNCLEAR:
         return start
     row = _next_clear(session)
@@ -159,7 +159,7 @@ def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> Asse
     if followed.end != TrackEnd.FINISHED:
         return start
     state = np.ascontiguousarray(followed.guess[:, -1])
-    condition = _condition(session, session.inputs.reduced[:, 0], state)
+    condition = condition_at(session, session.inputs.reduced[:, 0], state)
     if condition is None or condition > tolerances.CONDITION_RANK_UNCLEAR:
         return start  # on the fold itself, where the branches are one
     how = f"{start.how}; next to a fold, where near tells its branches apart"
@@ -207,7 +207,7 @@ def _next_clear(session: Session) -> int:
     return int(clear[0]) if clear.size else int(np.argmax(distance))
 
 
-def _condition(session: Session, inputs: Floats, state: Floats) -> float | None:
+def condition_at(session: Session, inputs: Floats, state: Floats) -> float | None:
     """The condition of an assembly; None where it is none."""
     batch = session.run(RowInputs(inputs[:, None], state[:, None]), Ask(Demand.CONDITION))
     return float(batch.condition[0]) if batch.good[0] and batch.condition is not None else None
@@ -244,10 +244,7 @@ NEAR = "near"
 HOME = "home"
 """In place of the letter of an assembled drawing."""
 
-MAY_BE_RIGID = (
-    "an overconstrained loop moves only if its dimensions are exact (write expressions); else "
-    "this is a branch point or a special position"
-)
+MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (write expressions)"
 
 
 @remembered

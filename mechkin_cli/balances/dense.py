@@ -40,6 +40,7 @@ from mechkin_cli.mechanism import (
     reference_point,
     scale,
     subtract,
+    upright,
 )
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import ACCELERATION, ANGULAR_ACCELERATION, ANGULAR_RATE, LENGTH, VELOCITY
@@ -221,8 +222,9 @@ _ORDERS = (("place", LENGTH), ("velocity", VELOCITY), ("acceleration", ACCELERAT
 class RowLinkMotion(NamedTuple):
     """A link at one row, in ground axes (m, rad, s).
 
-    `reference` is a point of it as drawn, which is now at the origin of `frame`, whose axes are the
-    ground axes as drawn on the link, and has `velocity` and `acceleration`.
+    `reference` is a point of it as drawn, from the mechanism's datum, which is now at the origin of
+    `frame`, whose axes are the ground axes as drawn on the link, and has `velocity` and
+    `acceleration`.
     """
 
     frame: Frame = GROUND
@@ -273,7 +275,7 @@ def row_motion(result: Result, row: int) -> RowMotion:
         x, y, z = (float(component[row]) for component in columns[name])
         return (x, y, z)
 
-    motion = RowMotion({GROUND_NAME: RowLinkMotion()})
+    motion = RowMotion({GROUND_NAME: RowLinkMotion(upright(mechanism.datum))})
     for name in moving:
         x, y, z = (vector(f"{name} {axis}") for axis in AXES)
         place, velocity, acceleration = (vector(f"{name} {word}") for word, _ in _ORDERS)

@@ -10,6 +10,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
     Fields,
@@ -52,10 +53,12 @@ from mechkin_cli.expressions import (
 )
 from mechkin_cli.mechanism import (
     TIME_OF_ROW,
+    ZERO,
     Attached,
     Mechanism,
     MotionInputs,
     Problem,
+    Vector,
     Wanted,
     differentiation,
 )
@@ -110,7 +113,12 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     """
     file = source.file
     fields = read_fields(source, given)
-    problem = replace(build_problem(fields, file), hold_idle=file.idle == "hold")
+    problem = build_problem(fields, file)
+    datum = datum_of(problem.mechanism)
+    if datum != ZERO:
+        fields = read_fields(source, given, datum=datum)
+        problem = build_problem(fields, file)
+    problem = replace(problem, hold_idle=file.idle == "hold")
     problem = _with_definitions(fields, file, problem)
     tables = build_tables(fields, file, problem)
     own = [table for table in tables if table.run == SWEEP]
@@ -179,13 +187,19 @@ def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings
 
 
 def read_fields(
-    source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING, moved: Move | None = None
+    source: MechanismSource,
+    given: Mapping[str, Quantity] = _NOTHING,
+    moved: Move | None = None,
+    *,
+    datum: Vector = ZERO,
 ) -> Fields:
     """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
-    errors are noted."""
+    places are measured from the `datum` (m). Errors are noted."""
     units, errors = read_units(source.document, source.file.units)
     fields = Fields(source.document, units, diagnostics=errors, plane=source.file.in_plane)
     read_parameters(fields, source.file.parameters, given, moved)
+    if datum != ZERO:
+        fields.datum = Datum(datum, source.file.parameters, given, units)
     if source.file.quantities:
         read_quantities(fields, source.file.quantities)
     return fields
@@ -219,6 +233,7 @@ def build_problem(
     mechanism = Mechanism(
         name, links, joints, points, directions, drives=drives, plane=fields.plane
     )
+    mechanism = replace(mechanism, datum=fields.origin)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     # rows of responses have a time
     swept = problem.quantities()

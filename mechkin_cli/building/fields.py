@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
+from mechkin_cli.building.datum import Datum
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
 from mechkin_cli.expressions import (
     Definitions,
@@ -81,7 +82,7 @@ class Fields:
     `refused` holds names whose definitions have errors: their uses are not reported again.
     `failed` holds runs whose motion has an error: what is read of them is not judged. `points`
     are the file's named points as drawn, `definitions` its named expressions. `plane`: of a file in
-    a plane, whose z the user never sees.
+    a plane, whose z the user never sees. `datum`: from which places are measured.
     """
 
     document: Document
@@ -93,6 +94,12 @@ class Fields:
     points: dict[str, Attached] = field(default_factory=dict)
     definitions: Definitions = field(default_factory=Definitions)
     plane: bool = False
+    datum: Datum | None = None
+
+    @property
+    def origin(self) -> Vector:
+        """The datum of the drawing in the ground's axes, m."""
+        return ZERO if self.datum is None else self.datum.at
 
     def note(self, diagnostic: Diagnostic) -> None:
         """Adds a diagnostic.
@@ -231,6 +238,15 @@ class Fields:
         x, y, z = (self.number((*path, i), text, dimension) for i, text in enumerate(texts))
         return (x, y, z)
 
+    def place(self, path: Path, texts: Sequence[str]) -> Vector:
+        """A place that is written in the ground's axes, from the drawing's datum, in m."""
+        errors = self.error_count
+        written = self.vector(path, texts, LENGTH)
+        if self.datum is None or self.error_count > errors:
+            return written
+        x, y, z = map(self.datum.measured, range(3), texts, written)
+        return (x, y, z)
+
     def direction(self, path: Path, texts: Sequence[str]) -> Vector:
         """A direction: three components of one dimension, not all zero; returned as a unit
         vector."""
@@ -345,7 +361,7 @@ def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
     links = dict.fromkeys([*file.links, *(row.link for row in file.chain)])
     links.pop(GROUND_NAME, None)
     drawn = {
-        name: fields.vector(("points", name, "at"), point.at, LENGTH)
+        name: fields.place(("points", name, "at"), point.at)
         for name, point in file.points.items()
         if not isinstance(point.at, str)
     }
@@ -360,10 +376,10 @@ def read_points(fields: Fields, file: MechanismFile) -> dict[str, Attached]:
 def place_at(
     fields: Fields, path: Path, place: str | tuple[str, ...], link: str | None = None
 ) -> Vector:
-    """A place in the drawing, in m; if it is fixed in a `link`, a name must be that of a point of
-    the link. Errors are noted, with zero as value."""
+    """A place in the drawing from its datum, in m; if it is fixed in a `link`, a name must be that
+    of a point of the link. Errors are noted, with zero as value."""
     if not isinstance(place, str):
-        return fields.vector(path, place, LENGTH)
+        return fields.place(path, place)
     if place not in fields.points:
         _refuse_unknown(fields, path, place)
         return ZERO

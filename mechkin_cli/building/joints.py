@@ -531,7 +531,8 @@ def build_chain(
         fields.refused |= {row.joint for row in rows} | {link for _, link in pairs}
         return {}
     joints = {}
-    here = GROUND
+    ground = upright(scale(-1.0, fields.origin))
+    here = ground
     for i, (row, (first, second)) in enumerate(zip(rows, pairs, strict=True)):
         theta = fields.number(("chain", i, "theta"), row.theta, ANGLE)
         s = fields.number(("chain", i, "s"), row.s, LENGTH)
@@ -541,7 +542,7 @@ def build_chain(
         here = _along_x(at_joint, alpha, a)
         behind = at_joint
         if second == GROUND_NAME:
-            behind = _along_x(GROUND, -alpha, -a)
+            behind = _along_x(ground, -alpha, -a)
         parts = (Part(row.type, at_joint, behind),)
         lead = lead_of(fields, ("chain", i, "lead"), row.lead) if row.lead is not None else 0.0
         joints[row.joint] = Joint(row.joint, row.type, first, second, at_joint, behind, parts, lead)

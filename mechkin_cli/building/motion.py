@@ -421,7 +421,7 @@ def point_guides(
         axes, at, guide = "".join(sorted(letters)), points[name], f"{name}.position"
         links[guide] = RigidLink(guide)
         slide, place = joint_type(guide_letter(axes)), upright(at.vector)
-        parts = tuple(_slide_part(axis, at.vector) for axis in axes)
+        parts = tuple(_slide_part(axis, at.vector, fields.origin) for axis in axes)
         joints[guide] = Joint(guide, slide.letter, GROUND_NAME, guide, place, place, parts)
         held = f"{guide} of {at.link}"
         hold = _held_pin if fields.plane else _held_ball
@@ -459,11 +459,12 @@ def _axis(axis: str) -> Frame:
     return frame_about(along, perpendicular(along), GROUND.o)
 
 
-def _slide_part(axis: str, at: Vector) -> Part:
-    """A slide whose coordinate is the point's own: zero where that is, and as drawn where the
-    point is drawn."""
+def _slide_part(axis: str, at: Vector, datum: Vector) -> Part:
+    """A slide whose coordinate is the point's own, in the ground's axes: zero where that is, and
+    as drawn where the point is drawn, from the `datum`."""
     still = _axis(axis)
-    drawn = at["xyz".index(axis)]
+    number = "xyz".index(axis)
+    drawn = at[number] + datum[number]
     x, y, z = scale(drawn, still.z)
     before = Frame(still.x, still.y, still.z, (at[0] - x, at[1] - y, at[2] - z))
     return Part("P", before, Frame(still.x, still.y, still.z, at), drawn)

@@ -8,21 +8,18 @@ warning) raises `TraceLost`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from decimal import Decimal
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import pi
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli import idle
 from mechkin_cli.building.builder import Built, build_problem, check_spins, read_fields
+from mechkin_cli.building.datum import exact_numbers
 from mechkin_cli.building.exact_motion import exact_moments, exact_motion, start_motion
 from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.responses import settled
-from mechkin_cli.exact import PI
-from mechkin_cli.expressions import Move, Quantity, numbers_read_by
+from mechkin_cli.expressions import Move, Quantity
 from mechkin_cli.mechanism import (
     ExactMotion,
     LockedFreedom,
@@ -70,7 +67,7 @@ def record_exactly(
     """
     base = built.problem
     recorder = recorder or ExactRecorder()
-    with _exactly(recorder):
+    with exact_numbers(recorder):
         fields = _fields(built, given, recorder, moved)
         file = built.read.file
         problem = build_problem(fields, file, responses=False, motion=base.motion)
@@ -91,19 +88,6 @@ def _completed(problem: Problem, base: Problem, held: tuple[LockedFreedom, ...])
     return replace(problem, follow=base.follow, diagnostics=base.diagnostics)
 
 
-@contextmanager
-def _exactly(recorder: ExactRecorder) -> Iterator[None]:
-    """Numbers that are read in this context are exactly those of their digits."""
-
-    def read(digits: str) -> Traced:
-        if digits == "pi":
-            return recorder.written(pi, PI)
-        return recorder.written(float(digits), Fraction(Decimal(digits)))
-
-    with numbers_read_by(read):
-        yield
-
-
 def _fields(
     built: Built, given: Mapping[str, Quantity], recorder: ExactRecorder, moved: Move | None = None
 ) -> Fields:
@@ -112,7 +96,7 @@ def _fields(
         name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
         for name, one in given.items()
     }
-    return read_fields(built.read, recorded, moved)
+    return read_fields(built.read, recorded, moved, datum=built.problem.mechanism.datum)
 
 
 def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[LockedFreedom, ...]:
@@ -166,7 +150,7 @@ def precise_response(
         raise TraceLost("a coordinate that is driven by a law of time")
     recorder = ExactRecorder()
     file, name = built.read.file, response.name
-    with _exactly(recorder):
+    with exact_numbers(recorder):
         fields = _fields(built, given, recorder)
         base = built.problem
         problem = build_problem(fields, file, motion=base.motion, moving=base.responses)
@@ -196,7 +180,7 @@ def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:
         name: Quantity(Traced(recorder, number), quantity.dimension)  # type: ignore[arg-type]
         for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
     }
-    fields = read_fields(built.read, given)
+    fields = read_fields(built.read, given, datum=base.mechanism.datum)
     problem = build_problem(fields, built.read.file, responses=False)
     problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)

@@ -120,7 +120,7 @@ class _View:
     def _point(self, link: str, at: int, point: str | tuple[str, ...]) -> Vector | None:
         path: Path = ("view", "shapes", link, "points", at)
         if not isinstance(point, str):
-            return self.fields.vector(path, point, LENGTH)
+            return self.fields.place(path, point)
         places = (*self.mechanism.joint_points(), *self.mechanism.points.items())
         own = {name: on.vector for name, on in places if on.link == link}
         known = self._exists(path, point, list(own), f"joint or point of {link}")

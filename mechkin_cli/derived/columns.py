@@ -171,7 +171,9 @@ def finite_screw(run: BasisQuantities, link: str) -> dict[str, RowVector | Float
     q = quaternion(run.rotation(link))
     size = length(q[1:])
     place = run.vector(f"{link} place")
-    x, y, z = reference_point(run.session.layout.mechanism, link).vector
+    mechanism = run.session.layout.mechanism
+    drawing = reference_point(mechanism, link).vector
+    x, y, z = (a + b for a, b in zip(mechanism.datum, drawing, strict=True))
     drawn = (np.full_like(size, x), np.full_like(size, y), np.full_like(size, z))
     shift = subtract(place, drawn)
     distance = length(shift)

@@ -227,7 +227,8 @@ def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 @dataclass(frozen=True)
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
-    known. `plane`: everything stays in the plane z = 0."""
+    known. `plane`: everything stays in the plane z = 0. All places are measured from the
+    `datum` (m), in the ground's axes."""
 
     name: str
     links: Mapping[str, RigidLink]
@@ -239,6 +240,7 @@ class Mechanism:
     drives: Drives | None = None
     frictions: tuple[Rubbing, ...] = ()
     plane: bool = False
+    datum: Vector = ZERO
 
     @property
     def space(self) -> int:

@@ -19,8 +19,10 @@ from mechkin_cli.mechanism import (
     LinkLoad,
     Spring,
     Varying,
+    add,
     cross,
     scale,
+    subtract,
     turned_tensor,
     varying,
 )
@@ -160,7 +162,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         record(
             "units",
             layout.length,
-            layout.origin,
+            add(layout.mechanism.datum, layout.origin),
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
@@ -338,5 +340,6 @@ def _drives(layout: Layout) -> Iterator[PlanRecord]:
 
 def _size_points(layout: Layout) -> Iterator[PlanRecord]:
     for _, at in layout.mechanism.joint_points():
-        point = at.vector if at.link == GROUND_NAME else layout.point(at)
+        on_ground = at.link == GROUND_NAME
+        point = subtract(at.vector, layout.origin) if on_ground else layout.point(at)
         yield record("add_size_point", layout.link_number[at.link], point)

@@ -201,7 +201,7 @@ def _closed(structure: Structure, at: Sequence[float], move: float, off: float) 
         x, y = (scale(1.0 / length, subtract(end, middle)) for end in others)
         turn = Frame(x, y, cross(x, y), ZERO)
         back = add(add(scale(origin[0], x), scale(origin[1], y)), scale(origin[2], turn.z))
-        found[name] = turn._replace(o=subtract(middle, back))
+        found[name] = turn._replace(o=subtract(subtract(middle, layout.mechanism.datum), back))
     # the half of a cut link goes with the other
     return lambda link: found[whole_link(link)]
 

@@ -311,6 +311,7 @@ def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) 
         {name: at for name, at in mechanism.directions.items() if at.link not in gone_links},
         (),
         mechanism.gravity,
+        datum=mechanism.datum,
     )
 
 

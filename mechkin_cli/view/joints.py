@@ -176,14 +176,15 @@ HOME = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 def link_poses(result: Result, links: Sequence[str]) -> Floats:
-    """Shift (m) and unit quaternion (scalar first) of links, shape (rows, links, 7).
+    """Shift (m) and unit quaternion (scalar first) of links, shape (rows, links, 7), of what is
+    drawn on them about the mechanism's datum.
 
     Rows without a solution are nan; ground, and links of loops that were not followed, are at home.
     Quaternions have q0 >= 0; `continuous` joins them.
     """
     poses = np.full((result.rows, len(links), 7), np.nan)
-    poses[result.solved] = HOME
     own = result.problem.mechanism
+    poses[result.solved] = (*own.datum, *HOME[3:])
     moving = [name for name in links if name != GROUND_NAME and name in own.links]
     wanted = [quantity for name in moving for quantity in displacement(name)]
     if not (wanted and result.solved.any()):

@@ -49,6 +49,36 @@ def test_straight_on_wheels_turn_together(count: int, pairs: str, motion: str) -
     assert any("branch point" in str(note) for note in result.diagnostics)
 
 
+@pytest.mark.parametrize("pairs", ["SS", "RR", "CS", "RC", "RS", "SR"])
+def test_many_loops_lie_singular_at_once(pairs: str) -> None:
+    count = 11
+    result = mk.loads(wheels(count, pairs, "{from: 0, to: 720, step: 7}", STRAIGHT)).analyze()
+    turned = result["A.theta"]
+    at = np.abs(np.remainder(turned - 90 + 1e-6, 180)) < 2e-6
+    assert np.abs(result[f"D{count - 1}.theta"] - turned)[~at].max() < 1e-6
+    assert set(result["row.status"][~at].tolist()) <= {"ok", "near-singular"}
+
+
+@pytest.mark.parametrize("count", [5, 10, 20, 30])
+def test_parallelograms_in_a_row_turn_together(count: int) -> None:
+    """Between rows they pass the place where all lie flat at once."""
+    links, joints = [], ""
+    for k in range(count + 1):
+        links.append(f"crank{k}")
+        joints += f"  A{k}: {{type: R, links: [ground, crank{k}], point: [{k}, 0]}}\n"
+    for k in range(count):
+        links.append(f"rod{k}")
+        joints += f"  B{k}: {{type: R, links: [crank{k}, rod{k}], point: [{k}, 1]}}\n"
+        joints += f"  D{k}: {{type: R, links: [rod{k}, crank{k + 1}], point: [{k + 1}, 1]}}\n"
+    result = mk.loads(
+        "format: 1\nname: row\nplane: xy\nunits: {length: m, angle: rad}\n"
+        f"links: {{{', '.join(f'{link}: {{}}' for link in links)}}}\njoints:\n{joints}"
+        f"motion: {{inputs: {{A0.theta: {{from: 0, to: 3, step: 0.25}}}}}}\n{STRAIGHT}"
+    ).analyze()
+    assert set(result["row.status"].tolist()) == {"ok"}
+    assert np.abs(result[f"A{count}.theta"] - result["A0.theta"]).max() < 1e-12
+
+
 @pytest.mark.parametrize("pairs", ["SS", "RR", "CS", "RC"])
 @pytest.mark.parametrize("count", [2, 3, 4])
 def test_without_the_key_the_branch_is_lost_there(count: int, pairs: str) -> None:

@@ -230,7 +230,7 @@ struct PlanOf : PlanShape {
   ProgramOf<Number> law;     // the values of loads that vary
   const FrictionOf<Number>* friction;
   const ContactOf<Number>* contact;
-  const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m
+  const Output* size_point;  // joint points, whose box at the first assembly tells the size; of ground: in m, about the origin
   Number gravity[3];         // in length units
   Number length;             // the length unit in m, a power of two
   Number origin[3];          // the kernel's origin in m

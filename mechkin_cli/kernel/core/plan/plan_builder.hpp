@@ -66,7 +66,7 @@ class PlanBuilder {
                     double pitch, double at_rest, double sliding, double speed);
   // The next contact of the last friction, see Contact.
   Refusal add_contact(int code, double weight, double share, double tilt, double roll, const Triple& direction);
-  // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m.
+  // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m from the origin.
   Refusal add_size_point(int link, const Triple& point);
   // Checks that the parts fit together; the builder is spent after it.
   Result<FrozenPlan> finish();

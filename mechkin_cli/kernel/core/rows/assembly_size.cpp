@@ -18,6 +18,9 @@ SizeMemory::SizeMemory(const Plan& plan, const KernelUnit& unit)
 double assembly_size(const Plan& plan, const KernelUnit& unit, const double* inputs, const double* state,
                      const NewtonLimits& limits, SizeMemory& memory) {
   if (plan.size_points == 0) return 1.0;
+  // differences alone count: places about the kernel's own origin, wherever that lies
+  Plan about = plan;
+  for (double& x : about.origin) x = 0.0;
   double residual = 0.0, correction = 0.0;
   unsigned char flags = 0;
   Request r = {};
@@ -28,14 +31,14 @@ double assembly_size(const Plan& plan, const KernelUnit& unit, const double* inp
   r.residual = &residual, r.correction = &correction, r.flags = &flags;
   r.iterations = limits.iterations;
   r.tight = limits.tight, r.coarse = limits.coarse, r.accept = limits.accept;
-  unit.run_row(plan, r, memory.workspace.data());
+  unit.run_row(about, r, memory.workspace.data());
 
   double extent[3];
   for (int i = 0; i < 3; ++i) {
     double least = HUGE_VAL, most = -HUGE_VAL;
     for (int k = 0; k < plan.size_points; ++k) {
       const Output& o = plan.size_point[k];
-      // points of ground stand in m, as they were written
+      // points of ground stand in m
       const double x = o.index < 0 ? o.data[i] : memory.points[o.slot + i];
       least = x < least ? x : least;
       most = x > most ? x : most;

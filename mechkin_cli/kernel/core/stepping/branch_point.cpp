@@ -18,8 +18,6 @@ constexpr double DOUBT = 1e-8;
 constexpr double NEAR = 1e-5;
 // Way before it from which its states are predicted: the third order leaves 1e-13, rounding over the way 1e-12.
 constexpr double NEAR_STATE = 1e-4;
-// Branches that meet: the order of the zero.
-constexpr int MOST_ORDERS = 4;
 // Singular values below this part of the largest are zero at the extrapolated place, which is known to some 1e-8.
 constexpr double SINGULAR = 1e-5;
 // A matrix of one equation vanishes as a whole; those of others are about 1, with lengths in parts of the mechanism.
@@ -44,13 +42,24 @@ double inverse_zero(const std::vector<double>& p, const std::vector<double>& m, 
   return before;
 }
 
+double root(double x, int order) {
+  switch (order) {
+    case 1: return x;
+    case 2: return std::sqrt(x);
+    case 3: return std::cbrt(x);
+    case 4: return std::sqrt(std::sqrt(x));
+    default: return std::pow(x, 1.0 / order);
+  }
+}
+
 }  // namespace
 
 namespace {
 
 // The extrapolated place as seen from a base before it, at Chebyshev's places over a span.
 double place_over(Arc& arc, const Node& base, double span, BranchPointAhead* found) {
-  const LeastSquares reference(arc.bordered(base));
+  const Matrix bordered = arc.bordered(base);
+  const LeastSquares reference(bordered);
   std::vector<double> places, sigmas, values;
   for (double part : CHEBYSHEV) {
     Node at;
@@ -59,10 +68,10 @@ double place_over(Arc& arc, const Node& base, double span, BranchPointAhead* fou
     values.push_back(std::fabs(determinant(reference.solve(arc.bordered(at)))));
   }
   double best = HUGE_VAL;
-  // the zero has the order of the branches that meet
-  for (int order = 1; order <= MOST_ORDERS; ++order) {
+  // the zero has the order of the branches that meet, summed over the loops in which they meet at once
+  for (int order = 1; order <= bordered.columns; ++order) {
     std::vector<double> roots = values;
-    for (double& x : roots) x = order == 1 ? x : order == 2 ? std::sqrt(x) : order == 3 ? std::cbrt(x) : std::sqrt(std::sqrt(x));
+    for (double& x : roots) x = root(x, order);
     double doubt = HUGE_VAL, sigma_doubt = HUGE_VAL;
     const double place = inverse_zero(places, roots, &doubt), sigma = inverse_zero(sigmas, roots, &sigma_doubt);
     if (doubt < best) best = doubt, *found = {base, place, sigma};

@@ -10,7 +10,7 @@ struct BranchPointAhead {
 };
 
 // Where beyond some nodes, which come near to it, the matrix [J g; t^T] becomes singular; false where they do not tell. It
-// goes to zero as a power of the distance, by the number of branches that meet.
+// goes to zero as a power of the distance: by the branches that meet, in all loops that lie singular there together.
 bool branch_point_ahead(Arc& arc, const std::vector<Node>& nodes, BranchPointAhead* found);
 
 // The place itself; derivatives are those of a place before it.
