@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.files import (
         Claim as Claim,
         OutputFolder as OutputFolder,
+        RunFiles as RunFiles,
         write_files as write_files,
     )
     from mechkin_cli.tables.json import json_text as json_text, runs_record as runs_record
@@ -120,7 +121,7 @@ __getattr__, __dir__ = lazy_names(
         "against_print_record counts disagreements_csv errata_page overview_page",
         "errors": "ALL_COLUMNS AT_DEAD_CENTRE ColumnErrors LOST ZERO clashing column_errors "
         "least_digits not_repeated worst_column",
-        "files": "Claim OutputFolder write_files",
+        "files": "Claim OutputFolder RunFiles write_files",
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_NUMBERS ROW_PROOF ROW_TEXTS "
         "Remark TableLayout chosen counted default_table effort_names row_texts",
