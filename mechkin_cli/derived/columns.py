@@ -56,6 +56,7 @@ from mechkin_cli.derived.coefficients import coefficients, ledger
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     FINITE_KINDS,
+    GROUND,
     INSTANT_KINDS,
     LEDGER_KINDS,
     QUATERNION,
@@ -106,12 +107,14 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
     assert driver is not None
     known, unit = problem.quantities(), run.session.layout.length
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
-    wanted = [*(known[name] for name in (*names, f"{guide.name}.axis")), REACTION_LEVEL]
+    axes = [f"{guide.name}.axis"] if guide.type.axis is not None else []
+    wanted = [*(known[name] for name in (*names, *axes)), REACTION_LEVEL]
 
     def angle_of(shift: int) -> Floats:
         columns = run.result.evaluated(wanted, session=session, shift=shift)
         force, point, centre = (vector_of(columns[name]) for name in names)
-        axis = vector_of(columns[f"{guide.name}.axis"])
+        # that of a pin in a plane is no quantity
+        axis = vector_of(columns[axes[0]]) if axes else scale(np.ones_like(force[0]), GROUND.z)
         pushes = length(force) > tolerances.REACTION_ROUNDING * columns[REACTION_LEVEL.name][0]
         force = choose(pushes, force, 0.0)
         arm = subtract(point, centre)
