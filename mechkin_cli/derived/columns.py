@@ -56,7 +56,6 @@ from mechkin_cli.derived.coefficients import coefficients, ledger
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     FINITE_KINDS,
-    GROUND,
     INSTANT_KINDS,
     LEDGER_KINDS,
     QUATERNION,
@@ -114,7 +113,8 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
         columns = run.result.evaluated(wanted, session=session, shift=shift)
         force, point, centre = (vector_of(columns[name]) for name in names)
         # that of a pin in a plane is no quantity
-        axis = vector_of(columns[axes[0]]) if axes else scale(np.ones_like(force[0]), GROUND.z)
+        upright = (np.zeros_like(centre[0]), np.zeros_like(centre[0]), np.ones_like(centre[0]))
+        axis = vector_of(columns[axes[0]]) if axes else upright
         pushes = length(force) > tolerances.REACTION_ROUNDING * columns[REACTION_LEVEL.name][0]
         force = choose(pushes, force, 0.0)
         arm = subtract(point, centre)
