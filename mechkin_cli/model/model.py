@@ -245,7 +245,8 @@ class Model(Listed):
         """Runs the sweep.
 
         Args:
-            quantities: names to compute besides those that the tables read; None: no others.
+            quantities: names and expressions to compute besides what the tables read; None: no
+                others.
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: cut joints to use (the answers do not depend on them).
