@@ -153,6 +153,12 @@ _NOT_ENCLOSED_WHY: Final = {
 }
 
 
+def _component(both: tuple[Floats, Floats], place: int) -> tuple[Floats, Floats]:
+    """One component of the bounds (rows, components) of a vector."""
+    low, high = both
+    return low[:, place], high[:, place]
+
+
 def not_enclosed(
     name: str, proven: Bools, has_value: Bools, is_inside: Bools, bounded: Bools
 ) -> tuple[Diagnostic, ...]:
@@ -293,18 +299,36 @@ class Certificate(Listed):
     def enclosures(self, names: Sequence[str]) -> dict[str, tuple[Floats, Floats]]:
         """Those of several quantities by name, found together; errors as those of `enclosure`."""
         result = self.analysis.result
-        known, wanted = result.problem.quantities(), []
-        for name in names:
-            quantity = known.get(a_text("quantity", name, '"O4.theta_dot"'))
-            if quantity is None:
-                raise UsageError(f"{name[:LONGEST_NAME]} is no quantity of this mechanism")
-            against = reason_against(quantity)
-            if against:
-                raise UsageError(f"{name} is not enclosed: {against}")
-            wanted.append(quantity)
+        known = result.problem.quantities()
+        wanted = {
+            name: self._enclosed(a_text("quantity", name, '"O4.theta_dot"')) for name in names
+        }
+        asked = list(dict.fromkeys(known[quantity] for quantity, _ in wanted.values()))
         rows = result.row_states
-        found = proofs.enclosures(result.session, self._proofs, wanted, rows.states, rows.turns)
-        return {quantity.name: self._bounds(quantity, found[quantity.name]) for quantity in wanted}
+        found = proofs.enclosures(result.session, self._proofs, asked, rows.states, rows.turns)
+        both = {one.name: self._bounds(one, found[one.name]) for one in asked}
+        return {
+            name: both[quantity] if place is None else _component(both[quantity], place)
+            for name, (quantity, place) in wanted.items()
+        }
+
+    def _enclosed(self, name: str) -> tuple[str, int | None]:
+        """The quantity of a name, and which of its components is meant; None: all of it.
+
+        Raises:
+            UsageError: as `enclosure`.
+        """
+        known = self.analysis.result.problem.quantities()
+        quantity, place = known.get(name), None
+        vector, _, axis = name.rpartition(".")
+        if quantity is None and vector in known and len(known[vector].places) > 1:
+            place = "xyz"[: len(known[vector].places)].find(axis) if len(axis) == 1 else -1
+            quantity = known[vector] if place >= 0 else None
+        if quantity is None:
+            raise UsageError(f"{name[:LONGEST_NAME]} is no quantity of this mechanism")
+        if against := reason_against(quantity):
+            raise UsageError(f"{name} is not enclosed: {against}")
+        return quantity.name, place
 
     def not_enclosed(self, name: str) -> tuple[Diagnostic, ...]:
         """Which rows are proven but have no bounds of a quantity, with the reasons; empty where all

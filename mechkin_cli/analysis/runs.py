@@ -36,8 +36,8 @@ if TYPE_CHECKING:
     from mechkin_cli.building import Built
 
 QUANTITIES = (
-    "quantities are such as J.theta, J.force of a joint J, or p.position of a point p; components "
-    'and expressions are read from the analysis: r["J.force.x"]'
+    "quantities are such as J.theta, J.force of a joint J, or p.position of a point p, or "
+    "expressions of them: J.force.x"
 )
 
 
@@ -170,8 +170,8 @@ def wanted_names(
     layouts: Sequence[TableLayout],
     quantities: Iterable[str] | None,
 ) -> list[str]:
-    """The quantities that tables of a run read, then those asked for; `session` is the run's. What
-    there is, is asked only where something is wanted.
+    """The quantities that tables of a run read, then those asked for, by themselves or in
+    expressions; `session` is the run's. What there is, is asked only where something is wanted.
 
     Raises:
         UsageError: an unknown quantity.
@@ -179,14 +179,27 @@ def wanted_names(
     asked = () if quantities is None else texts("quantities", quantities, '["O4.theta"]')
     if not layouts and not asked:
         return []
-    always, known = row_texts(run), session.problem.quantities()
+    always = row_texts(run)
     used = _read_by(session, tuple(layouts))
-    names = [name for name in asked if name not in always]
-    for name in names:
+    return [*used, *(n for text in asked if text not in always for n in _named_in(session, text))]
+
+
+def _named_in(session: Session, text: str) -> list[str]:
+    """A quantity, or those that an expression reads."""
+    problem = session.problem
+    known = problem.quantities()
+    if text in known:
+        return [text]
+    try:
+        names = sorted(problem.definitions.parse(text).names)
+    except ExpressionError:
+        names = [text]
+    found = [name for name in names if name not in problem.parameters]
+    for name in found:
         if name not in known:
-            hint = session.problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
+            hint = problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
-    return [*used, *names]
+    return found
 
 
 @remembered

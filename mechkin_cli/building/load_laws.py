@@ -97,7 +97,7 @@ class LoadLaws:
                 raise ExpressionError("this value never changes", 0, hint)
             quantity = expression.in_doubles.evaluate(self._sample, self.fields.units)
             if isinstance(quantity.value, Vector):
-                hint = "write one component: .x, .y or .z"
+                hint = f"write {quantity.value.components_of(text)}"
                 raise ExpressionError(f"{self.reader} takes one number, this is a vector", 0, hint)
         except ExpressionError as error:
             self.fields.expression_error(path, error)

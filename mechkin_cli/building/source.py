@@ -8,7 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 from mechkin_cli import reading, schema
+from mechkin_cli.building.fields import read_units
 from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.expressions import evaluate_parameters, literal
 from mechkin_cli.reading import (
     MOST_BYTES,
     Document,
@@ -18,7 +20,7 @@ from mechkin_cli.reading import (
     read_regular,
 )
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.schema import InvalidDataError, MechanismFile, validate
+from mechkin_cli.schema import InvalidDataError, MechanismFile, UnitsSection, validate
 
 _NONE: Mapping[str, str] = MappingProxyType({})
 _NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
@@ -72,9 +74,29 @@ def _checked(document: Document) -> MechanismSource:
     except InvalidDataError as invalid:
         diagnostics = reading.is_study(document) or reading.explain(invalid.errors, document)
         raise InvalidFile(diagnostics) from None
+    with_units = _with_units(document, file.units)
+    if with_units != document.overrides:
+        return _checked(replace(document, overrides=with_units))
     if isinstance(file, MechanismFile):
         return MechanismSource(file, document)
     return MechanismSource(schema.in_space(file), document)
+
+
+def _with_units(document: Document, section: UnitsSection) -> dict[str, str]:
+    """The parameters set from outside: a bare number is in the file's unit of the parameter."""
+    overrides = dict(document.overrides)
+    bare = [name for name, text in overrides.items() if literal(text) is not None]
+    if not bare:
+        return overrides
+    units, _ = read_units(document, section)
+    written = replace(document, overrides={}).data["parameters"]
+    assert isinstance(written, dict)
+    own = {name: str(text) for name, text in written.items()}
+    originals = evaluate_parameters(own, units, [])
+    for name in bare:
+        if name in originals and (unit := units.label(originals[name].dimension)):
+            overrides[name] = f"{overrides[name].strip()} {unit}"
+    return overrides
 
 
 class BadTable(Exception):

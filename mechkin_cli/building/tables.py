@@ -158,7 +158,8 @@ def _column(
             quantity = expression.evaluate(sample, fields.units)
             if isinstance(quantity.value, Vector):
                 message = "a column holds one number per row, this is a vector"
-                raise ExpressionError(message, 0, "write one component: .x, .y or .z")
+                hint = f"write {quantity.value.components_of(column.value)}, each a column"
+                raise ExpressionError(message, 0, hint)
     except ExpressionError as error:
         fields.expression_error(path, error)
         return None

@@ -28,6 +28,7 @@ from mechkin_cli.mechanism import (
     quantities_read,
 )
 from mechkin_cli.plan import WRENCH_KINDS, Demand
+from mechkin_cli.structure import listed
 from mechkin_cli.tables import (
     ALL_COLUMNS,
     AT_DEAD_CENTRE,
@@ -171,11 +172,12 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     return [f"{name} ({file})", *(_line(*row) for row in rows)]
 
 
-def files_line(folder: Path, written: Sequence[Path]) -> str:
-    """Where the files are, and how many of each kind."""
+def files_line(folder: Path, written: Sequence[Path], removed: Sequence[str]) -> str:
+    """Where the files are, how many of each kind, and those of the run before that went."""
     kinds = Counter(file.suffix.removeprefix(".") for file in written)
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-    return _line("files", f"{folder} ({counts})")
+    gone = f"; removed of the run before: {listed(removed)}" if removed else ""
+    return _line("files", f"{folder} ({counts}){gone}")
 
 
 def _line(name: str, text: str) -> str:

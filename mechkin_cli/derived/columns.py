@@ -106,12 +106,15 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
     assert driver is not None
     known, unit = problem.quantities(), run.session.layout.length
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
-    wanted = [*(known[name] for name in (*names, f"{guide.name}.axis")), REACTION_LEVEL]
+    axes = [f"{guide.name}.axis"] if guide.type.axis is not None else []
+    wanted = [*(known[name] for name in (*names, *axes)), REACTION_LEVEL]
 
     def angle_of(shift: int) -> Floats:
         columns = run.result.evaluated(wanted, session=session, shift=shift)
         force, point, centre = (vector_of(columns[name]) for name in names)
-        axis = vector_of(columns[f"{guide.name}.axis"])
+        # that of a pin in a plane is no quantity
+        upright = (np.zeros_like(centre[0]), np.zeros_like(centre[0]), np.ones_like(centre[0]))
+        axis = vector_of(columns[axes[0]]) if axes else upright
         pushes = length(force) > tolerances.REACTION_ROUNDING * columns[REACTION_LEVEL.name][0]
         force = choose(pushes, force, 0.0)
         arm = subtract(point, centre)

@@ -35,6 +35,20 @@ class Vector:
         """The components in order."""
         return (self.x, self.y) if self.z is None else (self.x, self.y, self.z)
 
+    def components_of(self, text: str) -> str:
+        """What to write for one of the components of the vector that a text is.
+
+        Example:
+            >>> Vector(1.0, 2.0).components_of("A.force")
+            'A.force.x, A.force.y or norm(A.force)'
+            >>> Vector(1.0, 2.0, 3.0).components_of("a+b")
+            '(a+b).x, (a+b).y, (a+b).z or norm(a+b)'
+        """
+        name = text.strip()
+        whole = name if name.replace(".", "").isidentifier() else f"({name})"
+        axes = "xyz"[: len(self.components)]
+        return ", ".join(f"{whole}.{axis}" for axis in axes) + f" or norm({name})"
+
 
 Value = Scalar | Vector
 

@@ -13,7 +13,7 @@ from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pair_type import Attached
-from mechkin_cli.mechanism.pairs import JOINT_TYPES, dimension_of, is_angle
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES, dimension_of, is_angle
 from mechkin_cli.mechanism.quantities import BEARING_KINDS, effort_quantity, in_plane
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.mechanism.wanted import Kind, Wanted
@@ -151,6 +151,7 @@ DERIVED_KINDS = (
 )
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
+_PINS = [kind.letter for kind in PLANE_JOINT_TYPES.values() if kind.turns_in_plane]
 _GUIDES = [kind.letter for kind in JOINT_TYPES.values() if kind.is_guide]
 
 
@@ -176,7 +177,8 @@ _HINTS: dict[str, str] = {
     **dict.fromkeys(
         TRANSMISSION_KINDS,
         f"a transmission angle has theta or s, unless an input, of an {_either(_GUIDES)} between "
-        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}",
+        f"ground and a link with exactly one other joint, of type {_either(_ORIENTED)}; in a plane "
+        f"{_either(_PINS)}, and no input",
     ),
     "reduced_inertia": "inputs have a reduced inertia: A.theta.reduced_inertia; of two inputs "
     "it is A.theta.effort.per.B.theta_ddot",
@@ -379,13 +381,15 @@ def is_of_motion(name: str) -> bool:
 
 
 def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
-    """The joint that alone drives the link which `joint` guides on ground; None where the
-    structure is another."""
+    """The joint that alone drives the link which `joint` guides on ground, by a force through its
+    point: a ball, in a plane a pin; None where the structure is another."""
     if not joint.type.is_guide or GROUND_NAME not in (joint.first, joint.second):
         return None
     link = output_link(joint)
     others = [other for other in mechanism.joints_of[link] if other is not joint]
-    return others[0] if len(others) == 1 and others[0].type.is_oriented else None
+    driver = others[0] if len(others) == 1 else None
+    is_point = driver is not None and (driver.type.is_oriented or driver.type.turns_in_plane)
+    return driver if is_point else None
 
 
 def output_link(joint: Joint) -> str:
@@ -428,8 +432,10 @@ def _of_advantages(
 
 
 def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    driven = {joint for joint, _ in inputs}
     for joint in mechanism.joints.values():
-        if driving_joint(mechanism, joint) is not None:
+        driver = driving_joint(mechanism, joint)
+        if driver is not None and driver.name not in driven:
             for coordinate in joint.type.coordinates:
                 for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():
                     name = f"{joint.name}.{coordinate}.{kind}"

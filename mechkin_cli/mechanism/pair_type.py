@@ -457,6 +457,11 @@ class JointType:
         """Whether it turns as a ball does: an orientation, for which no coordinate stands."""
         return any(ELEMENTARY[letter].is_ball for letter in self.parts)
 
+    @cached_property
+    def turns_in_plane(self) -> bool:
+        """Whether it is a pair of a plane that turns: it holds by a force through its point."""
+        return self.space == 3 and any(coordinate.is_angle for coordinate in self.named)
+
     @property
     def is_free(self) -> bool:
         """Whether it holds nothing: it is no part of the machine, but tells or drives a pose."""

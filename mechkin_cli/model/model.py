@@ -245,7 +245,8 @@ class Model(Listed):
         """Runs the sweep.
 
         Args:
-            quantities: names to compute besides those that the tables read; None: no others.
+            quantities: names and expressions to compute besides what the tables read; None: no
+                others.
             tables: names of the tables wanted; None: all, [] none.
             mode: assembly mode at the first row instead of the file's choice.
             closed_at: cut joints to use (the answers do not depend on them).
@@ -735,7 +736,7 @@ def load(
         path: of the YAML file; or a dict of texts, numbers (of numpy, too), lists and dicts, whose
             messages name the way of keys to a value, `data at joints.A.point[2]`.
         parameters: what replaces values of its `parameters:`, such as {"P1": "0.6 in"}; a number
-            has no unit.
+            is in the file's unit.
         folder: where the files are that a dict names; None: it may name none.
 
     Raises:
@@ -789,6 +790,6 @@ def loads(
 
 
 def _texts(parameters: Mapping[str, Setting]) -> dict[str, str]:
-    """Parameters as texts; a number stands for itself, without a unit."""
+    """Parameters as texts; a number is in the unit that the file has for the parameter."""
     given = settings("parameters", parameters, '{"P1": "0.6 in"}')
     return {k: v if isinstance(v, str) else repr(v) for k, v in given.items()}

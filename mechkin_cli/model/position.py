@@ -198,6 +198,9 @@ def _wanted(design: Design, names: tuple[str, ...]) -> list[Wanted]:
             raise UsageError(f"solve does not give {name}; analyze does, at the rows of the file")
         if forces and any("time" in law.reads for law in problem.load_laws):
             raise UsageError(f"{name} depends on a load that varies with time; analyze gives it")
+        if forces and problem.motion.constraints:
+            text = "depends on the rates of inputs that others drive (drive: tie)"
+            raise UsageError(f"{name} {text}, which solve does not evaluate; analyze gives it")
         found.append(quantity)
     return found
 

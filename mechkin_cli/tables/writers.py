@@ -2,7 +2,7 @@
 
 A new format is a function here and its line in `WRITERS`; the command's help and the checks read
 the table. The files of a run are written all of them whole, or none, and no two runs write into one
-folder.
+folder at a time, nor beside the files of an earlier one.
 """
 
 from __future__ import annotations
@@ -16,8 +16,10 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
+from zlib import crc32
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.results import Results
@@ -444,6 +446,48 @@ _CURES = {
 }
 
 
+# What a run wrote, by which the next one knows the files that it may remove.
+
+LISTING = ".mechkin-files"
+"""A file with a line for each file of the run that its folder holds: checksum, size, name."""
+
+_HEAD = "# the files of a run of mechkin analyze: the next one in this folder removes them\n"
+_LINE = re.compile(r"(?P<sum>[0-9a-f]{8}) (?P<size>[0-9]+) (?P<name>[^/\\\0]+)")
+
+
+def _listing(files: Mapping[str, bytes]) -> bytes:
+    lines = (f"{crc32(data):08x} {len(data)} {name}\n" for name, data in files.items())
+    return (_HEAD + "".join(lines)).encode()
+
+
+def _left_by_earlier(folder: Path, fresh: Mapping[str, bytes]) -> tuple[list[str], list[str]]:
+    """Names of files of the run before in a folder that are not among the fresh ones: those that
+    are as they were written, and those that are not."""
+    try:
+        text = (folder / LISTING).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return [], []
+    same: list[str] = []
+    changed: list[str] = []
+    for line in filter(None, map(_LINE.fullmatch, text.splitlines())):
+        name = line["name"]
+        path = folder / name
+        if name not in fresh and name not in {".", ".."} and path.is_file():
+            is_same = not path.is_symlink() and path.stat().st_size == int(line["size"])
+            is_same = is_same and crc32(path.read_bytes()) == int(line["sum"], 16)
+            (same if is_same else changed).append(name)
+    return same, changed
+
+
+class RunFiles(NamedTuple):
+    """The files of a run that were written, and the names of those of the run before that were
+    removed, and that were not, since somebody changed them."""
+
+    written: list[Path]
+    removed: list[str]
+    changed: list[str]
+
+
 class OutputFolder:
     """A folder that this run alone writes to, inside `with`.
 
@@ -490,6 +534,20 @@ class OutputFolder:
         _each(self.folder, files, lambda name: _refuse_special(self.folder / name))
         replace_files(self.folder, files, removed)
         return targets
+
+    def write_run(self, files: Mapping[str, bytes]) -> RunFiles:
+        """Write the files of a run in the place of those of the run before, at one moment: what
+        that one wrote and this one does not is removed, unless it was changed since.
+
+        Raises:
+            UsageError: as `write`.
+        """
+        with _refusal(self.folder / next(iter(files), LISTING)):
+            if self._claim is None:
+                self._enter()
+            removed, changed = _left_by_earlier(self.folder, files)
+        written = self.write({**files, LISTING: _listing(files)}, removed)
+        return RunFiles(written[:-1], removed, changed)
 
     def _enter(self) -> None:
         claim = self._claim = Claim(self.folder)

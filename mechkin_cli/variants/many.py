@@ -136,6 +136,7 @@ class _SweepRun:
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
             or self._friction_takes_more(session)
+            or self._led_by_rates()
             or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
         ):
             return None
@@ -151,6 +152,11 @@ class _SweepRun:
         if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
             return False
         return bool(session.is_redundant or self.problem.has_idle)
+
+    def _led_by_rates(self) -> bool:
+        """Whether forces go by the rates of inputs that others drive, which differ by rows."""
+        forces = demand_of(self.problem.mechanism, self.wanted) & Demand.FORCES
+        return bool(forces and self.problem.motion.constraints)
 
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts but on friction, and no inputs."""

@@ -115,7 +115,7 @@ ROWS = [
 STOPS = [
     stopped("{value: »O.q}", "expression", "O.q"),
     stopped("{value: »r}", "expression", "never changes"),
-    stopped("{value: »p.position}", "expression", "write one component"),
+    stopped("{value: »p.position}", "expression", "write p.position.x, "),
     stopped("{value: »O.effort}", "expression", "O.effort"),
     stopped("{value: »O.theta_ddot}", "expression", "a stop cannot read", "acceleration"),
     stopped("{value: O.theta, at: »3 mm}", "expression", "expected an angle"),

@@ -178,7 +178,7 @@ LOADS = [
 
 COLUMNS = [
     column("»O.thetta", "expression", "O.thetta", "O.theta"),
-    column("»O.force", "expression", "vector", ".x, .y or .z"),
+    column("»O.force", "expression", "vector", "O.force.x, O.force.y, O.force.z or norm(O.force)"),
     column(
         "»D.theta.effort",
         "expression",

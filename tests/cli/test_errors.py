@@ -20,7 +20,7 @@ ALL = ["csv", "md", "json"]
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
+    return {path.name: path.read_bytes() for path in folder.glob("[!.]*")}
 
 
 def lines(path: Path) -> list[dict[str, str]]:

@@ -1,5 +1,6 @@
 """What `mechkin analyze` prints: data on stdout, messages on stderr."""
 
+import json
 import re
 
 import pytest
@@ -124,13 +125,23 @@ def test_set_replaces_a_parameter(mechkin, write) -> None:
     assert (x["label"], x["unit"], x["values"][0]) == ("x", "m", 0.5)
 
 
+def test_a_bare_number_is_in_the_file_s_unit(mechkin, write) -> None:
+    path = write("crank.yaml", CRANK.replace("format: 1", "format: 1\nunits: {length: cm}"))
+    printed = [
+        mechkin("analyze", path, "--set", f"r={text}", "--table", "tip", "--json").out
+        for text in ("30", " 3e1", "30 cm", "0.3 m")
+    ]
+    assert printed[0] == printed[1] == printed[2] == printed[3]
+    assert json.loads(printed[0])["tables"][0]["columns"][1]["values"][0] == 30
+
+
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
         ("r", "expected NAME=VALUE"),
         ("=1", "expected NAME=VALUE"),
         ("rr=1 m", "did you mean r?"),
-        ("r=1", "--set r: error: r is a length in the file, this is a dimensionless number"),
+        ("r=0.5*2", "--set r: error: r is a length in the file, this is a dimensionless number"),
         ("r=1 kg", "in the file, this is a mass"),
         ("r=2 *m", "--set r: error: there is nothing named m (at character 4 of the value); "),
         ("r=nan", "--set r: error: "),

@@ -28,7 +28,7 @@ SWEPT = PENDULUM.replace("loads:", "motion: {inputs: {A.theta: {values: [0, 10]}
 def test_every_run_has_its_files(mechkin, write, folder) -> None:
     run = mechkin("analyze", write("pendulum.yaml", SWEPT))
     assert run.code == 0
-    assert sorted(path.name for path in (folder / "out" / "pendulum").iterdir()) == [
+    assert sorted(path.name for path in (folder / "out" / "pendulum").glob("[!.]*")) == [
         *("angles.csv", "angles.md", "fall.rows.csv", "push.csv", "push.md", "push.rows.csv"),
         *("rows.csv", "sweep.csv", "sweep.md"),
     ]
@@ -75,7 +75,7 @@ def test_only_the_runs_of_the_tables_wanted(mechkin, write, folder) -> None:
     file = write("pendulum.yaml", SWEPT)
     run = mechkin("analyze", file, "--table", "angles", "--out", "one")
     assert run.code == 0
-    assert sorted(path.name for path in (folder / "one").iterdir()) == [
+    assert sorted(path.name for path in (folder / "one").glob("[!.]*")) == [
         *("angles.csv", "angles.md", "fall.rows.csv"),
     ]
     run = mechkin("analyze", file, "--table", "angels")

@@ -7,6 +7,7 @@ import pytest
 from cli import files
 from references import RCSR
 
+LISTING = ".mechkin-files"
 CRANK = files.CRANK + files.TABLES
 
 TIP_MD = """\
@@ -21,7 +22,9 @@ TIP_MD = """\
 
 
 def names(folder: Path) -> list[str]:
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+    """The files of runs, without the listings of these files."""
+    found = (path for path in folder.rglob("*") if path.is_file() and path.name != LISTING)
+    return sorted(str(path.relative_to(folder)) for path in found)
 
 
 def test_tables_and_rows_stand_in_out_stem(mechkin, write, folder) -> None:
@@ -208,3 +211,61 @@ def whole_header(folder, table: str) -> str:
 def test_help_is_short_as_well(mechkin) -> None:
     for words in ([], ["analyze"], ["check"], ["modes"], ["tables"], ["bench"], ["schema"]):
         assert mechkin(*words, "-h").out == mechkin(*words, "--help").out != ""
+
+
+# One folder holds one run.
+
+SUMMARY = CRANK.replace("columns: [{", "summary: [peak], columns: [{")
+
+
+def test_files_of_the_run_before_are_removed(mechkin, write, folder) -> None:
+    file = write("crank.yaml", SUMMARY)
+    (folder / "out/crank").mkdir(parents=True)
+    write("out/crank/notes.md", "mine")
+    write("out/crank/drive.tex", "mine, too")
+    first = mechkin("analyze", file, "--view")
+    assert first.code == 0
+    assert "removed" not in first.err
+    before = ["drive.csv", "drive.md", "drive.summary.csv", "rows.csv", "tip.csv", "tip.md"]
+    mine = ["drive.tex", "notes.md"]
+    assert names(folder / "out/crank") == sorted([*before, "view.html", *mine])
+    run = mechkin("analyze", file, "--set", "r=3 m", "--format", "json", "--errors")
+    assert run.code == 0
+    assert names(folder / "out/crank") == sorted(["analysis.json", "errors.csv", "rows.csv", *mine])
+    line = next(line for line in run.err.splitlines() if line.startswith("  files"))
+    for name in (*before[:3], *before[4:], "view.html"):
+        assert name in line
+    assert "notes" not in line
+    assert (folder / "out/crank/drive.tex").read_text(encoding="utf-8") == "mine, too"
+
+
+def test_a_file_that_somebody_changed_stays_with_a_warning(mechkin, write, folder) -> None:
+    file = write("crank.yaml", CRANK)
+    assert mechkin("analyze", file).code == 0
+    changed = folder / "out/crank/tip.md"
+    text = changed.read_text(encoding="utf-8")
+    changed.write_text(text.replace("2.00", "2.01"), encoding="utf-8")
+    (folder / "out/crank/drive.md").unlink()
+    run = mechkin("analyze", file, "--format", "tex", "--quiet")
+    assert run.code == 0
+    assert names(folder / "out/crank") == ["drive.tex", "rows.csv", "tip.md", "tip.tex"]
+    assert "warning: in out/crank tip.md is of an earlier run, but not as it was written" in run.err
+    assert "2.01" in changed.read_text(encoding="utf-8")
+    assert mechkin("analyze", file, "--format", "tex").err.count("warning") == 0
+
+
+def test_a_listing_removes_nothing_outside_its_folder(mechkin, write, folder) -> None:
+    file = write("crank.yaml", CRANK)
+    write("kept.txt", "")
+    folders = folder / "out/crank"
+    folders.mkdir(parents=True)
+    (folders / "link.txt").symlink_to("../../kept.txt")
+    listed = ["../../kept.txt", str(folder / "kept.txt"), "..", ".", "link.txt", "\x00", ""]
+    write(f"out/crank/{LISTING}", "".join(f"00000000 0 {name}\n" for name in listed))
+    run = mechkin("analyze", file)
+    assert run.code == 0
+    assert (folder / "kept.txt").exists()
+    assert (folders / "link.txt").is_symlink()
+    assert "link.txt is of an earlier run" in run.err
+    (folders / LISTING).write_bytes(b"\xff\xfe 00000000")
+    assert mechkin("analyze", file).code == 0

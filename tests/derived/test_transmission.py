@@ -282,3 +282,81 @@ def test_where_nothing_is_transmitted_there_is_no_angle():
     found = moving_slider({"crank: {}": MASSES["crank: {}"]})
     assert np.isnan(found["D.s.dynamic_transmission_angle"]).all()
     assert np.isfinite(found["D.s.transmission_angle"]).all()
+
+
+# In a plane: driven at a pin, or at a pin in a slot.
+
+PLANE = """
+format: 1
+plane: xy
+links: {{crank: {{}}, rod: {{}}, out: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0]}}
+  B: {{type: R, links: [crank, rod], point: [2, 0]}}
+  C: {{type: R, links: [rod, out], point: [{x}, {y}]}}
+  D: {{{guide}, links: [{order}]}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 350, step: 10}}}}}}
+"""
+ORDERS = ["ground, out", "out, ground"]
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_four_bar_of_a_plane_file_by_the_law_of_cosines(order):
+    text = PLANE.format(x=5.125, y=HEIGHT, guide="type: R, point: [6, 0]", order=order)
+    found = mk.loads(text).analyze(["D.theta.transmission_angle"], tables=[])
+    square = 4 + 36 - 24 * cosine(found)
+    expected = [float(mp.degrees(mp.acos(abs(x)))) for x in (25 + 16 - square) / 40]
+    assert np.max(np.abs(found["D.theta.transmission_angle"] - expected)) <= 2e-12
+
+
+@pytest.mark.parametrize("order", ORDERS)
+def test_slider_of_a_plane_file(order):
+    """The rod of 5 against the slide along x: sin of its inclination is 2 sin(theta)/5."""
+    text = PLANE.format(x=7, y=0, guide="type: P, point: [7, 0], axis: [1, 0]", order=order)
+    found = mk.loads(text).analyze(["D.s.transmission_angle"], tables=[])
+    expected = [90 - float(mp.degrees(mp.asin(abs(x) * 2 / 5))) for x in sine(found)]
+    assert np.max(np.abs(found["D.s.transmission_angle"] - expected)) <= 1e-12
+
+
+SLOT = """
+format: 1
+plane: xy
+links: {crank: {}, arm: {MASS}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  K: {type: Ps, links: [crank, arm], point: [2, 1], slot: [1, 0]}
+  D: {type: R, links: [ground, arm], point: [-4, 0]}
+motion: {inputs: {A.theta: {from: 0, to: 350, step: 10, rate: 3 rad/s}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("mass", "kind"),
+    [("", "transmission_angle"), ("mass: 2, inertia: 3", "dynamic_transmission_angle")],
+)
+def test_a_pin_pushes_square_to_its_slot(mass, kind):
+    """The slot passes the arm's pivot at 1, the pin stands at d from it: sin = sqrt(1 - 1/d^2)."""
+    name = f"D.theta.{kind}"
+    centre = ", center_of_mass: [0, 1]" if mass else ""
+    found = mk.loads(SLOT.replace("MASS", mass + centre)).analyze([name, "A.theta"], tables=[])
+    start = mp.atan2(1, 2)
+    expected = []
+    for theta in found["A.theta"]:
+        turn = start + mp.radians(float(theta))
+        square = (mp.sqrt(5) * mp.cos(turn) + 4) ** 2 + 5 * mp.sin(turn) ** 2
+        expected.append(float(mp.degrees(mp.acos(1 / mp.sqrt(square)))))
+    assert np.max(np.abs(found[name] - expected)) <= 1e-11
+
+
+@pytest.mark.parametrize("name", ["A.theta", "B.theta", "C.theta"])
+def test_other_coordinates_of_a_plane_have_none(name):
+    text = PLANE.format(x=5.125, y=HEIGHT, guide="type: R, point: [6, 0]", order=ORDERS[0])
+    with pytest.raises(UsageError, match="in a plane R or Ps, and no input"):
+        mk.loads(text).analyze([f"{name}.transmission_angle"], tables=[])
+
+
+def test_a_pin_that_is_driven_transmits_a_moment_too():
+    text = PLANE.format(x=5.125, y=HEIGHT, guide="type: R, point: [6, 0]", order=ORDERS[0])
+    text = text.replace("A.theta:", "C.theta:").replace("to: 350", "to: 30")
+    with pytest.raises(UsageError, match="in a plane R or Ps, and no input"):
+        mk.loads(text).analyze(["D.theta.transmission_angle"], tables=[])

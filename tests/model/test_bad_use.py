@@ -175,3 +175,53 @@ def test_solve_leaves_no_input_behind_that_follows_another() -> None:
         values = {name: float(model.analyze()[name][row]) for name in ("A.theta", "E.theta")}
         assert values["E.theta"] == pytest.approx(5.0 * row, abs=1e-12)
         assert dict(model.solve(values, ["A.theta", "E.theta"])) == pytest.approx(values, abs=1e-12)
+
+
+LED = """\
+format: 1
+plane: xy
+parameters: {m: 1 kg}
+links: {a: {mass: m, center_of_mass: [0.5, 0]}, b: {mass: 2, center_of_mass: [1.5, 0]}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [a, b], point: [1, 0]}
+loads: [{type: gravity, g: standard}]
+motion:
+  inputs:
+    A.theta: {from: 0, to: 90, count: 4, rate: 1 rad/s}
+    B.theta: {with: 2*A.theta, drive: tie}
+"""
+
+
+def test_efforts_of_inputs_that_others_drive_are_left_to_analyze() -> None:
+    model = mk.loads(LED)
+    places = {"A.theta": 30.0, "B.theta": 60.0}
+    assert model.solve(places, ["b.omega"]).status == "ok"
+    with pytest.raises(
+        mk.UsageError, match=r"A\.effort depends on the rates of inputs that others"
+    ):
+        model.solve(places, ["A.effort"])
+
+
+def test_variants_of_inputs_that_others_drive_are_analyses() -> None:
+    masses = [1.0, 3.0]
+    found = mk.loads(LED).vary({"m": masses}, ["A.effort"])
+    for number, mass in enumerate(masses):
+        one = mk.loads(LED, parameters={"m": f"{mass} kg"}).analyze()["A.effort"]
+        assert found["A.effort"][number] == pytest.approx(one, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [
+        ("A.force", "write A.force.x, A.force.y or norm(A.force), each a column"),
+        ("2*A.force", "write (2*A.force).x, (2*A.force).y or norm(2*A.force), each a column"),
+    ],
+)
+def test_a_vector_in_a_column_is_refused_with_what_fits(column: str, words: str) -> None:
+    with pytest.raises(mk.InvalidFile) as refused:
+        mk.loads(f"{LED}tables: [{{name: t, columns: [{column}]}}]\n")
+    assert words in str(refused.value)
+    for text in words.removeprefix("write ").removesuffix(", each a column").split(" or "):
+        for one in text.split(", "):
+            mk.loads(f"{LED}tables: [{{name: t, columns: ['{one}']}}]\n")

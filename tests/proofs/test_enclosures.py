@@ -55,6 +55,20 @@ def test_vectors_and_efforts_have_bounds() -> None:
         assert (high - low <= DOUBLES * np.abs(high)).all()
 
 
+def test_components_are_those_of_their_vector() -> None:
+    proofs = mk.load(RCSR).certify()
+    names = ["O2.force", "O2.force.x", "O3.point.z", "O3.point"]
+    found = proofs.enclosures(names)
+    assert list(found) == names
+    for name, vector, place in (("O2.force.x", "O2.force", 0), ("O3.point.z", "O3.point", 2)):
+        for part, whole in zip(found[name], proofs.enclosure(vector), strict=True):
+            np.testing.assert_array_equal(part, whole[:, place])
+        assert not proofs.not_enclosed(name)
+    for name in ("O3.point.w", "O4.theta.x", "O3.point.", "O3.point.xy", "O3.point.x.x"):
+        with pytest.raises(mk.UsageError, match="is no quantity of this mechanism"):
+            proofs.enclosure(name)
+
+
 def test_reactions_that_are_not_unique_have_none() -> None:
     proofs = mk.load(FILE_OF["bennett"]).certify()
     low, high = proofs.enclosure("A.force")
