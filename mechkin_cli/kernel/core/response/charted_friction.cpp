@@ -22,12 +22,6 @@ constexpr double NO_START = 1e-9, GOES = 10.0;
 // Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
 constexpr double NO_SLIP = 1e-14;
 
-Matrix inertia_of(const Packed& inertia, int n, int lanes, int lane) {
-  Matrix m(n, n);
-  for (int k = 0; k < n * n; ++k) m.a[k] = inertia[(std::size_t)k * lanes + lane];
-  return m;
-}
-
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -63,7 +57,7 @@ void ChartedMotion::begin_slips() {
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
   s.started.assign((std::size_t)n * lanes_, NAN);
   s.pushed.assign((std::size_t)n * lanes_, 1);
-  s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
+  s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
@@ -194,11 +188,17 @@ void ChartedMotion::arm(const Stage& found, int lane) {
   }
 }
 
+Matrix ChartedMotion::inertia_matrix(const Stage& found, int lane) const {
+  Matrix m(plan_.charts, plan_.charts);
+  for (int k = 0; k < plan_.charts * plan_.charts; ++k) m.a[k] = at(found.inertia, k, lane);
+  return m;
+}
+
 // Takes the slips of joints out of the rates v of a chart, by the impulses that stop them; as many as are independent.
 // Where nothing is left to move and nothing is driven, the rates are zero.
 int ChartedMotion::hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v) {
   const int n = plan_.charts;
-  const LeastSquares inertia(inertia_of(found->inertia, n, lanes_, lane));
+  const LeastSquares inertia(inertia_matrix(*found, lane));
   std::vector<std::vector<double>> rows, answers;
   std::vector<double> change((std::size_t)n, 0.0);
   double largest = 0.0;
