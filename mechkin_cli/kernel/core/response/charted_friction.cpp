@@ -28,6 +28,8 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
+// What friction can hold, in parts of the largest wrench without it, from which on it feeds itself.
+constexpr double JAMS = 1e3;
 // What friction can hold, in parts of the largest wrench, below which it does not matter how exactly.
 constexpr double LEAST_LIMIT = 1e-6;
 constexpr double LEAST = 1e-300;
@@ -273,9 +275,15 @@ void ChartedMotion::evaluate_here(int lane, const std::vector<double>& v, Stage*
   stand_still(found, lane);
 }
 
+// Whether what friction can hold at the end of the last step is far more than all forces without friction make of it.
+bool ChartedMotion::feeds_itself(int lane, int k) const {
+  return at(end_.slip.limit, k, lane) > JAMS * at(end_.slip.level, 0, lane);
+}
+
 std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& report) const {
   if (!plan_.frictions) return {};
-  const int k = report.which - plan_.law.kinks - edges();
+  // what was met most often is what ends a lane only where it is held
+  const int k = report.end == LaneEnd::HELD ? report.which - plan_.law.kinks - edges() : -1;
   if (k >= 0 && k < plan_.frictions) return {k};
   if (k >= 0 && k < slip_switches()) return sticking(lane);
   if (report.fault & STAGE_FRICTION && report.fault != NOT_FINITE) return slips_.doubtful[lane];
@@ -283,7 +291,8 @@ std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& rep
   if (report.end != LaneEnd::STUCK || report.fault) return starting;
   for (int f = 0; f < plan_.frictions; ++f) {
     const std::size_t at = (std::size_t)f * lanes_ + lane;
-    if (slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at] && rubs(lane, f)) starting.push_back(f);
+    const bool starts = slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at];
+    if (rubs(lane, f) && (starts || feeds_itself(lane, f))) starting.push_back(f);
   }
   return starting;
 }

@@ -157,6 +157,7 @@ class ChartedMotion : public Motion {
   double held_size(int lane, int k) const;
   void write_slip_switches(const Stage& found, int lane, double* switches);
   void look_for_ways(const Places& places, const Rates& rates);
+  bool feeds_itself(int lane, int k) const;
   void tell_undecided(const Stage& found, int lane);
   std::vector<int> sticking(int lane) const;
   void arm(const Stage& found, int lane);
