@@ -321,6 +321,13 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
             "from other branches: end the response before it"
         )
         return Status.branch_lost, _error("branch-lost", text, hint)
+    if report.joints and _runs_away(response, report):
+        text = (
+            f"friction of {_rubbing(free, report)} feeds itself without bound: the mechanism jams"
+        )
+        hint = "make a coefficient smaller, or bearings longer"
+        growth = f"rates grow by themselves in {1.0 / report.growth:.1e} s"
+        return Status.friction_undecided, _error("friction-undecided", text, hint, growth)
     if report.joints:
         text = f"{_rubbing(free, report)} starts to slip in a direction that no step determines"
         hint = "make its static coefficient a little larger than that of sliding"

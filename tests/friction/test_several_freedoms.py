@@ -220,6 +220,55 @@ def test_a_shaft_that_turns_slides_until_both_stop() -> None:
     assert np.ptp(found["A.s"][-3:]) == 0.0
 
 
+@pytest.mark.parametrize("slow", [1.0, 100.0])
+@pytest.mark.parametrize("coefficients", ["0.3", "{static: 0.3, sliding: 0.3}"])
+def test_a_shaft_gives_way_in_two_directions_to_a_load_that_grows(
+    slow: float, coefficients: str
+) -> None:
+    """Its coefficient does not jump, so that the slip begins with neither rate nor acceleration:
+    along the load w = (f, m/r) t at the limit, w0 = mu N d, and by the first two terms in t of
+    M v' = w - mu N v/|v| on."""
+    mass, inertia, r, force, couple, last = 1.3, 0.05, 0.08, 3 / slow, 1.1 / slow, 3 * slow
+    text = f"""{HEAD}name: cylinder
+links:
+  a: {{mass: {mass}, center_of_mass: [0, 0, 0], inertia: {{xx: 0.1, yy: 0.1, zz: {inertia}}}}}
+joints: {{A: {{type: C, links: [ground, a], point: [0, 0, 0], axis: [0, 0, 1]}}}}
+loads:
+  - {{type: gravity, g: [0, -{G}, 0]}}
+  - {{type: force, link: a, point: [0, 0, 0], force: [0, 0, "{force} N/s*time"]}}
+  - {{type: torque, link: a, torque: [0, 0, "{couple * r} N*m/s*time"]}}
+  - {{type: friction, joint: A, coefficient: {coefficients}, radius: {r}}}
+responses:
+  go: {{start: {{A.theta: 0, A.s: 0}}, time: {{from: 0, to: {last}, count: 13}}}}
+"""
+    found = mk.loads(text).respond("go", ["A.s", "A.theta", "time"])
+    assert {str(word) for word in found["row.status"]} == {"ok"}
+    held, growth = 0.3 * mass * G, np.array([force, couple])
+    per = np.array([1 / mass, r * r / inertia])
+    begin = held / np.linalg.norm(growth)
+    along = growth / np.linalg.norm(growth)
+    across = np.array([-along[1], along[0]])
+    second, turn = np.linalg.solve(np.array([along, held * per * across]).T, growth * per)
+    early = 1e-4 * (last - begin)
+    way = along + turn * early * across
+    way /= np.linalg.norm(way)
+
+    def slope(t: float, y: Floats) -> Floats:
+        v = y[2:]
+        return np.concatenate([v, per * (growth * t - held * v / np.linalg.norm(v))])
+
+    start = np.concatenate([way * second * early**3 / 6, way * second * early**2 / 2])
+    times = np.asarray(found["time"])
+    rows = times > begin + early
+    fine = solve_ivp(
+        slope, (begin + early, last), start, "Radau", times[rows], rtol=1e-11, atol=1e-16
+    )
+    size = max(1.0, float(np.max(np.abs(fine.y[:2]))))
+    assert np.max(np.abs(found["A.s"][rows] - fine.y[0])) < 1e-10 * size
+    assert np.max(np.abs(r * np.asarray(found["A.theta"])[rows] - fine.y[1])) < 1e-10 * size
+    assert (np.asarray(found["A.s"])[~rows] == 0.0).all()
+
+
 FIVE_BAR = f"""{HEAD}name: five-bar
 links:
   a: {{mass: 1, center_of_mass: [-0.25, 0.5, 0], inertia: {{xx: 0.1, yy: 0.1, zz: 0.1}}}}

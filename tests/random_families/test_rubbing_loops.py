@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 
 import pytest
+from oracle.dynamics.rubbing import Rubbed, Undecided
 from random_families.rubbing_loops import judge, rubbing_loop
+
+import mechkin_cli as mk
 
 COUNT = 30 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
@@ -25,3 +28,15 @@ def test_no_motion_with_friction_creeps_or_is_lost(seed: int) -> None:
     text = rubbing_loop(seed)
     if text is not None:
         assert not judge(text, motion_alone=True).fault
+
+
+def test_a_ball_whose_friction_feeds_itself_jams() -> None:
+    """Its normal load grows without bound, by the dense equations, too."""
+    text = rubbing_loop(401)
+    assert text is not None
+    with pytest.raises((Undecided, ArithmeticError)):
+        Rubbed(text, "run").run()
+    found = mk.loads(text).respond("run")
+    (error,) = [d for d in found.diagnostics if d.severity == "error"]
+    assert error.code == "friction-undecided"
+    assert "friction of J3 feeds itself" in error.message

@@ -66,7 +66,7 @@ class Rubbed:
         for each in rubbings(data):
             joint = self.response.mechanism.joints[each.joint]
             radius = float(each.lengths.get("radius", 0))
-            lead = float(joint.lead) / (2 * np.pi) if joint.type == "H" else 0.0
+            lead = float(joint.lead or 0) / (2 * np.pi)
             at_rest, sliding = float(each.at_rest), float(each.sliding)
             self.rubs.append(Rub(each.joint, joint.type, at_rest, sliding, radius, lead))
         self.sense: list[float] = [1.0] * len(self.rubs)
@@ -213,7 +213,8 @@ class Rubbed:
                 continue
             slip = self._slip_rate(state, k)
             single = len(slip) == 1
-            found.append(self.sense[k] * slip[0] if single else np.linalg.norm(slip) - _ENDS)
+            size = float(np.linalg.norm(slip))
+            found.append(self.sense[k] * float(slip[0]) if single else size - _ENDS)
         return found
 
     # events

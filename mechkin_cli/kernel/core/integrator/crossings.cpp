@@ -182,10 +182,10 @@ void March::pass(const Flags& mask, const std::vector<int>& which) {
     if (!mask[i]) continue;
     const std::size_t k = (std::size_t)which[i] * lanes + i;
     const bool moves = states_.kinds[which[i]].moves, is_kink = states_.kinds[which[i]].kink || moves;
-    if (moves)
-      states_.motion.move(i, which[i], states_.time[i], states_.y.data());
-    else
+    if (!moves)
       states_.turn(k, states_.switch_end[k]);
+    else if (states_.motion.move(i, which[i], states_.time[i], states_.y.data()))
+      go_implicit(i);
     ++control_[i].passed[which[i]];
     ++control_[i].met[which[i]];
     anew[i] = is_kink;

@@ -107,12 +107,13 @@ class Motion {
     (void)time;
   }
   // A switch that moves was met at the chart's origin: the lane is in the next piece, whose rates are asked for at once.
-  // v and w may be changed there (a rate that comes to rest), of that lane alone.
-  virtual void move(int lane, int which, double time, double* y) {
+  // v and w may be changed there (a rate that comes to rest), of that lane alone. True: from there on the motion is stiff.
+  virtual bool move(int lane, int which, double time, double* y) {
     (void)lane;
     (void)which;
     (void)time;
     (void)y;
+    return false;
   }
 };
 

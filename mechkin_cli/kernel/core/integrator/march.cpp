@@ -250,7 +250,13 @@ void March::rewiden(int lane) {
   c.room *= 1.0 + c.room_growth;
   c.room_growth *= 2.0;
   c.was_refused = false;
-  if (c.implicit || states_.settings.method != MethodChoice::AUTOMATIC || !explicit_.is_stiff(lane)) return;
+  if (explicit_.is_stiff(lane)) go_implicit(lane);
+}
+
+// The implicit method takes over for good, where it may.
+void March::go_implicit(int lane) {
+  LaneControl& c = control_[lane];
+  if (c.implicit || states_.settings.method != MethodChoice::AUTOMATIC) return;
   c.implicit = true;
   states_.report[lane].stiff = true;
   states_.report[lane].stiff_from = states_.time[lane];

@@ -54,6 +54,7 @@ class March {
   void move_on(const Flags& mask);
   void settle_ignored(int lane);
   void rewiden(int lane);
+  void go_implicit(int lane);
   void finish(int lane, LaneEnd end, int which = -1);
   double least(int lane) const;
 

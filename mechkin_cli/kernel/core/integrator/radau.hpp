@@ -22,6 +22,7 @@ class Radau : public Method {
   // What one lane's Newton iteration works with; vectors over (u, v), stages by their transforms.
   struct Lane {
     bool has_jacobian = false;
+    bool is_doubtful = false, differs = false;  // Jacobians: to be checked by shorter probes; one was another by them
     std::vector<double> jacobian;  // (v', w') by (u, v), row-major
     SmallLu<double> real;
     SmallLu<Complex> complex;
@@ -36,6 +37,7 @@ class Radau : public Method {
   };
 
   void differentiate(LaneStates& s, Flags* mask);
+  Flags differentiate_column(LaneStates& s, int column, double probe, Flags* open);
   void factorise(LaneStates& s, Flags* mask);
   void iterate(LaneStates& s, Flags* mask);
   bool ask_stages(LaneStates& s, Flags* mask);
@@ -48,7 +50,7 @@ class Radau : public Method {
   double size_of(const LaneStates& s, int lane, const std::vector<double>& error) const;
   void solve(const Lane& l, double* u, double* v) const;
   void solve(const Lane& l, Complex* u, Complex* v) const;
-  void fail(LaneStates& s, int lane, Flags* mask) const;
+  void fail(LaneStates& s, int lane, Flags* mask);
 
   const int n_, q_, lanes_;
   const long entries_;

@@ -11,6 +11,8 @@ using namespace radau;
 namespace {
 
 constexpr double PROBE = 0x1p-26;  // of a difference, in parts of 1 or of the largest rate
+constexpr double SHORTER = 0x1p-10, LEAST_PROBE = 0x1p-46;  // of it, where the derivative changes within it
+constexpr double ROUGH = 1e-3, NOISE = 1e-10;  // changes that are none, in parts of a derivative; of the rates it comes from
 constexpr double STALLED = 0.03;   // tolerances: changes below it that do not shrink do a step no harm
 constexpr double ROUNDING = 2.220446049250313e-16;
 
@@ -21,48 +23,75 @@ double newton_limit(double tolerance) {
 
 }  // namespace
 
-void Radau::fail(LaneStates& s, int lane, Flags* mask) const {
+void Radau::fail(LaneStates& s, int lane, Flags* mask) {
+  // the next try has a Jacobian that is checked
+  if (!lane_[lane].is_doubtful) lane_[lane].is_doubtful = true, lane_[lane].has_jacobian = false;
   s.fault[lane] = NOT_SOLVED;
   s.reached[lane] = 1.0;
   (*mask)[lane] = 0;
 }
 
-// The rates' derivatives where lanes do not have them, by differences; the step is turned where it leads to a fault.
+// A column of the rates' derivatives in the open lanes, by a difference over this probe, which is turned where it leads to a
+// fault; lanes that have one both ways are returned. Open stay doubtful ones without a column before, or with another, as
+// that of friction is if the probe is longer than the slip.
+Flags Radau::differentiate_column(LaneStates& s, int column, double probe, Flags* open) {
+  Flags waiting = *open;
+  for (double sign : {1.0, -1.0}) {
+    Flags here = waiting;
+    if (!any(here)) break;
+    place_ = s.y;
+    for (int i = 0; i < lanes_; ++i) {
+      double& x = place_[(long)column * lanes_ + i];
+      const double before = x;
+      x += sign * probe * (column < n_ ? 1.0 : s.speed[i]);
+      shift_[i] = x - before;
+    }
+    s.evaluate(s.time.data(), place_.data(), false, &here, probe_.data(), switches_.data());
+    for (int i = 0; i < lanes_; ++i) {
+      if (!here[i]) continue;
+      waiting[i] = 0;
+      bool is_same = probe < PROBE;
+      for (int k = 0; k < n_ + q_; ++k) {
+        const long at = (long)(n_ + k) * lanes_ + i;
+        const double slope = (probe_[at] - s.slope[at]) / shift_[i];
+        const double noise = NOISE * std::max(std::fabs(probe_[at]), std::fabs(s.slope[at])) / std::fabs(shift_[i]);
+        const double known = lane_[i].jacobian[(std::size_t)k * 2 * n_ + column];
+        is_same = is_same && std::fabs(slope - known) <= ROUGH * std::fabs(slope) + noise;
+      }
+      lane_[i].differs = lane_[i].differs || (probe < PROBE && !is_same);
+      (*open)[i] = !is_same && lane_[i].is_doubtful;
+      for (int k = 0; k < n_ + q_ && !is_same; ++k) {
+        const long at = (long)(n_ + k) * lanes_ + i;
+        lane_[i].jacobian[(std::size_t)k * 2 * n_ + column] = (probe_[at] - s.slope[at]) / shift_[i];
+      }
+    }
+  }
+  for (int i = 0; i < lanes_; ++i)
+    if (waiting[i]) (*open)[i] = 0;
+  return waiting;
+}
+
+// The rates' derivatives where lanes do not have them.
 void Radau::differentiate(LaneStates& s, Flags* mask) {
   Flags lacking(lanes_);
   for (int i = 0; i < lanes_; ++i) lacking[i] = (*mask)[i] && !lane_[i].has_jacobian;
   if (!any(lacking)) return;
+  for (Lane& l : lane_) l.differs = false;
   for (int column = 0; column < 2 * n_; ++column) {
-    Flags waiting = lacking;
-    for (double sign : {1.0, -1.0}) {
-      Flags here = waiting;
-      if (!any(here)) break;
-      place_ = s.y;
+    Flags open = lacking;
+    for (double probe = PROBE; any(open) && probe >= LEAST_PROBE; probe *= SHORTER) {
+      const Flags waiting = differentiate_column(s, column, probe, &open);
       for (int i = 0; i < lanes_; ++i) {
-        double& x = place_[(long)column * lanes_ + i];
-        const double before = x;
-        x += sign * PROBE * (column < n_ ? 1.0 : s.speed[i]);
-        shift_[i] = x - before;
-      }
-      s.evaluate(s.time.data(), place_.data(), false, &here, probe_.data(), switches_.data());
-      for (int i = 0; i < lanes_; ++i) {
-        if (!here[i]) continue;
-        waiting[i] = 0;
-        for (int k = 0; k < n_ + q_; ++k) {
-          const long at = (long)(n_ + k) * lanes_ + i;
-          lane_[i].jacobian[(std::size_t)k * 2 * n_ + column] = (probe_[at] - s.slope[at]) / shift_[i];
-        }
-      }
-    }
-    for (int i = 0; i < lanes_; ++i)
-      if (waiting[i]) {
+        if (!waiting[i] || probe < PROBE) continue;
         s.reached[i] = 1.0;
         (*mask)[i] = lacking[i] = 0;
       }
+    }
   }
   for (int i = 0; i < lanes_; ++i) {
     if (!(*mask)[i]) continue;
     lane_[i].has_jacobian = true;
+    if (lacking[i]) lane_[i].is_doubtful = lane_[i].differs;
     s.fault[i] = 0;
   }
 }

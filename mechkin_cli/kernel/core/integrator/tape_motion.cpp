@@ -90,9 +90,10 @@ void TapeMotion::row(const unsigned char* mask, const long* row, const double*, 
   }
 }
 
-void TapeMotion::move(int lane, int which, double, double* y) {
+bool TapeMotion::move(int lane, int which, double, double* y) {
   ++moved_[which * shape_.lanes + lane];
   for (int k = shape_.freedoms; k < 2 * shape_.freedoms; ++k) y[k * shape_.lanes + lane] *= shape_.bounce;
+  return false;
 }
 
 bool TapeMotion::event(int lane, int which, bool rising, double time) {

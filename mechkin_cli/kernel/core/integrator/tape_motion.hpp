@@ -42,7 +42,7 @@ class TapeMotion : public Motion {
   void row(const unsigned char* lanes, const long* row, const double* time, const double* y, bool inside) override;
   bool event(int lane, int which, bool rising, double time) override;
 
-  void move(int lane, int which, double time, double* y) override;
+  bool move(int lane, int which, double time, double* y) override;
 
   // The first y.
   const std::vector<double>& start() const { return start_; }

@@ -22,18 +22,14 @@ constexpr double NO_START = 1e-9, GOES = 10.0;
 // Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
 constexpr double NO_SLIP = 1e-14;
 
-Matrix inertia_of(const Packed& inertia, int n, int lanes, int lane) {
-  Matrix m(n, n);
-  for (int k = 0; k < n * n; ++k) m.a[k] = inertia[(std::size_t)k * lanes + lane];
-  return m;
-}
-
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
   return sum;
 }
 
+// What friction can hold, in parts of the largest wrench without it, from which on it feeds itself.
+constexpr double JAMS = 1e3;
 // What friction can hold, in parts of the largest wrench, below which it does not matter how exactly.
 constexpr double LEAST_LIMIT = 1e-6;
 constexpr double LEAST = 1e-300;
@@ -63,7 +59,7 @@ void ChartedMotion::begin_slips() {
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
   s.started.assign((std::size_t)n * lanes_, NAN);
   s.pushed.assign((std::size_t)n * lanes_, 1);
-  s.fastest.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
+  s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
   for (int l = 0; l < lanes_; ++l) {
@@ -194,11 +190,17 @@ void ChartedMotion::arm(const Stage& found, int lane) {
   }
 }
 
+Matrix ChartedMotion::inertia_matrix(const Stage& found, int lane) const {
+  Matrix m(plan_.charts, plan_.charts);
+  for (int k = 0; k < plan_.charts * plan_.charts; ++k) m.a[k] = at(found.inertia, k, lane);
+  return m;
+}
+
 // Takes the slips of joints out of the rates v of a chart, by the impulses that stop them; as many as are independent.
 // Where nothing is left to move and nothing is driven, the rates are zero.
 int ChartedMotion::hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v) {
   const int n = plan_.charts;
-  const LeastSquares inertia(inertia_of(found->inertia, n, lanes_, lane));
+  const LeastSquares inertia(inertia_matrix(*found, lane));
   std::vector<std::vector<double>> rows, answers;
   std::vector<double> change((std::size_t)n, 0.0);
   double largest = 0.0;
@@ -273,9 +275,15 @@ void ChartedMotion::evaluate_here(int lane, const std::vector<double>& v, Stage*
   stand_still(found, lane);
 }
 
+// Whether what friction can hold at the end of the last step is far more than all forces without friction make of it.
+bool ChartedMotion::feeds_itself(int lane, int k) const {
+  return at(end_.slip.limit, k, lane) > JAMS * at(end_.slip.level, 0, lane);
+}
+
 std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& report) const {
   if (!plan_.frictions) return {};
-  const int k = report.which - plan_.law.kinks - edges();
+  // what was met most often is what ends a lane only where it is held
+  const int k = report.end == LaneEnd::HELD ? report.which - plan_.law.kinks - edges() : -1;
   if (k >= 0 && k < plan_.frictions) return {k};
   if (k >= 0 && k < slip_switches()) return sticking(lane);
   if (report.fault & STAGE_FRICTION && report.fault != NOT_FINITE) return slips_.doubtful[lane];
@@ -283,7 +291,8 @@ std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& rep
   if (report.end != LaneEnd::STUCK || report.fault) return starting;
   for (int f = 0; f < plan_.frictions; ++f) {
     const std::size_t at = (std::size_t)f * lanes_ + lane;
-    if (slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at] && rubs(lane, f)) starting.push_back(f);
+    const bool starts = slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at];
+    if (rubs(lane, f) && (starts || feeds_itself(lane, f))) starting.push_back(f);
   }
   return starting;
 }

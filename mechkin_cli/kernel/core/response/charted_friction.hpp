@@ -19,6 +19,7 @@ struct SlipMemory {
   std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
   std::vector<double> started;       // frictions x lanes: s: when a slip of one direction was let go, NaN once it goes
   std::vector<double> fastest;       // lanes: the largest rate of a chart so far
+  std::vector<double> duration;      // lanes: of the motion, s
   std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go
   std::vector<unsigned char> measured;  // lanes: joints have carried a load by which forces are measured
   std::vector<unsigned char> rests;  // lanes: what sticks leaves nothing to move

@@ -95,7 +95,7 @@ class ChartedMotion : public Motion {
   bool event(int lane, int which, bool rising, double time) override;
   int event_at_start(int lane) override;
   void touch(int lane, int which, double time) override;
-  void move(int lane, int which, double time, double* y) override;
+  bool move(int lane, int which, double time, double* y) override;
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
 
@@ -157,9 +157,11 @@ class ChartedMotion : public Motion {
   double held_size(int lane, int k) const;
   void write_slip_switches(const Stage& found, int lane, double* switches);
   void look_for_ways(const Places& places, const Rates& rates);
+  bool feeds_itself(int lane, int k) const;
   void tell_undecided(const Stage& found, int lane);
   std::vector<int> sticking(int lane) const;
   void arm(const Stage& found, int lane);
+  Matrix inertia_matrix(const Stage& found, int lane) const;
   int hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v);
   void hold_sticking(int lane);
   void stand_still(Stage* found, int lane) const;
@@ -188,6 +190,7 @@ class ChartedMotion : public Motion {
   void list_ways(int lane, const std::vector<double>& v);
   double margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided);
   void settle(int lane, int event, std::vector<double>* v);
+  bool give_rates(int lane, std::vector<double>* v);
   bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
   bool is_rounding(const MotionStop& stop, int lane, double value, double speed) const;

@@ -33,6 +33,7 @@ void ChartedMotion::sizes(const unsigned char* lanes, double* size) {
     for (int k = 1; k <= works(); ++k) size[k * lanes_ + l] = std::max(size[k * lanes_ + l], energy + coming);
     if (plan_.frictions && at(end_.slip.level, 0, l) > 0.0) slips_.measured[l] = 1;
     const double duration = size[l] > 0.0 ? SLOWEST / size[l] : 0.0;
+    if (plan_.frictions) slips_.duration[l] = duration;
     for (int k = 0; k < plan_.frictions; ++k) {
       const double held = HELD * duration * held_size(l, k);
       for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)

@@ -11,6 +11,9 @@ constexpr double AT_REST = 1e-9;
 // Forces of what sticks, in parts of what it can hold and of the largest wrench, that are rounding; accelerations, in parts
 // of those by the largest wrench, likewise.
 constexpr double JUST_HELD = 1e-9, NO_FORCE = 1e-12;
+// A slip in several directions that begins without an acceleration: accelerations, in parts of that by its friction, that are
+// none; and what it begins with, in parts of what that would make of it over the duration, and of what the rates give.
+constexpr double NO_START = 1e-9, GIVEN = 1e-12, BESIDE_RATES = 1e-11;
 
 }  // namespace
 
@@ -186,11 +189,41 @@ void ChartedMotion::settle(int lane, int event, std::vector<double>* v) {
   evaluate_here(lane, *v, &trial_);
 }
 
+// A slip in several directions that begins at the limit of its friction, where nothing jumps, has neither a rate nor an
+// acceleration, and no step tells its direction: it is given a rate in the one found for it, of which its direction depends stiffly. Of the stage in trial_, as v.
+bool ChartedMotion::give_rates(int lane, std::vector<double>* v) {
+  const int n = plan_.charts;
+  const LeastSquares inertia(inertia_matrix(trial_, lane));
+  bool given = false;
+  for (int k = 0; k < plan_.frictions; ++k) {
+    if (slip_columns(k) == 1 || sense(lane, k) == 0.0 || !rubs(lane, k)) continue;
+    const double by_friction = at(trial_.slip.limit, k, lane) * at(trial_.slip.answer, k, lane);
+    const double unit = lever(trial_, lane, k) * slips_.fastest[lane];
+    if (slip_size(trial_.slip.rate, lane, k) > AT_REST * unit || along_sense(trial_, lane, k) > NO_START * by_friction) continue;
+    std::vector<double> row(n, 0.0);
+    for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
+      for (int i = 0; i < n; ++i)
+        row[i] += at(slips_.aim, c, lane) * at(trial_.slip.row, (long)c * n + i, lane);
+    const std::vector<double> answer = inertia.solve(row);
+    double square = 0.0;
+    for (int i = 0; i < n; ++i) square += row[i] * answer[i];
+    if (!(square > 0.0)) continue;
+    const double rate = std::max(GIVEN * by_friction * slips_.duration[lane], BESIDE_RATES * unit);
+    for (int i = 0; i < n; ++i) (*v)[i] += rate / square * answer[i];
+    given = true;
+  }
+  if (!given) return false;
+  evaluate_here(lane, *v, &trial_);
+  hold_rates(&trial_, lane, sticking(lane), v->data());
+  return true;
+}
+
 // The rates and accelerations at a chart's origin become those of what goes on from there.
-void ChartedMotion::move(int lane, int which, double, double* y) {
+bool ChartedMotion::move(int lane, int which, double, double* y) {
   std::vector<double> v;
   for (int i = 0; i < plan_.charts; ++i) v.push_back(y[(long)(plan_.charts + i) * lanes_ + lane]);
   settle(lane, which - plan_.law.kinks - edges(), &v);
+  const bool is_stiff = !slips_.blocked[lane] && give_rates(lane, &v);
   for (int i = 0; i < plan_.charts; ++i) y[(long)(plan_.charts + i) * lanes_ + lane] = v[i];
   evaluate_here(lane, v, &trial_);
   for (int c = 0; c < plan_.columns; ++c) {
@@ -202,4 +235,5 @@ void ChartedMotion::move(int lane, int which, double, double* y) {
     const std::size_t e = (std::size_t)k * lanes_ + lane;
     end_.slip.told[e] = trial_.slip.told[e];
   }
+  return is_stiff;
 }

@@ -13,6 +13,9 @@
 
 namespace {
 
+// Slips in several directions, in parts of what the links' rates would give, whose direction is rounding.
+constexpr double NO_DIRECTION = 1e-12;
+
 // What friction makes of a stage: lanes without an answer, the power that it takes, and the efforts of driven inputs.
 struct Slid {
   Mask undecided;
@@ -61,7 +64,7 @@ inline void aim_slips(const Plan& p, const Workspace& w, const Slips& s, const S
       s.unit[begin] = select(sticks, Pack(1.0), given.sense[k]) * s.frame[begin];
     } else {
       const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
-      const Mask begins = speed <= Pack(JOINT_AT_REST) * lever * rates;
+      const Mask begins = speed <= Pack(NO_DIRECTION) * lever * rates;
       const Pack per = Pack(1.0) / select(begins, Pack(1.0), speed);
       Wrench along = zero_wrench();
       for (int c = begin; c < end; ++c) along += select(begins, given.aim[c], per * s.rate[c]) * s.frame[c];
