@@ -25,6 +25,18 @@ CONDITION_RATES_UNCLEAR: Final = 1e6
 """Above it a row's rates may be rounding: condition times distance from a dead centre may be as
 little as 0.2, and rows that stand at one close up to 1e-7 beside it."""
 
+CONDITION_FEW_DIGITS: Final = 1e5
+"""Above it a row's rates, accelerations or forces may keep fewer than `FEW_DIGITS`: rounding goes
+with its square, and a difference of two accelerations may lose more. How many they have is then
+measured in double-double."""
+
+FEW_DIGITS: Final = 6
+"""Digits of rates, accelerations and forces, in parts of the largest of their kind in the row,
+below which a message tells them."""
+
+DIGITS_OF_PLACES: Final = 9
+"""The same of positions, in rad and parts of the size."""
+
 DEAD_CENTRE_LOST: Final = 0.1
 """Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
 centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""
