@@ -280,9 +280,8 @@ def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) 
         return []
     try:
         wide = _in_double_double(session, rows, ask, numbers)
-    except (TraceLost, LookupError, ValueError):
-        # of numbers that are not in a text, or in a way that no tape holds, nothing is measured
-        return []
+    except (TraceLost, LookupError, ValueError) as lost:
+        return [_not_measured_note(numbers, batch.condition, lost)]
     off = _parts_apart(wide.states, batch.states[:, numbers], largest=1.0)
     digits = {"positions": _digits(off, wide.good)}
     for name, slots in _kinds(session, ask).items():
@@ -353,6 +352,23 @@ def _digits(parts: Floats, known: Bools) -> NDArray[np.int64]:
     """Whole digits that such parts leave (rows,): none where they are not known."""
     limits = np.array([float(f"1e-{digit}") for digit in range(1, 17)])[:, None]
     return np.where(known, np.count_nonzero(parts <= limits, axis=0), 0)
+
+
+def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Exception) -> Diagnostic:
+    """Of rows whose numbers are not in a text, or in it in a way that no tape holds."""
+    first = numbers[0] + 1
+    where = (
+        f"row {first}" if numbers.size == 1 else f"{numbers.size} rows, the first is row {first},"
+    )
+    return Diagnostic(
+        "few-digits",
+        "note",
+        f"{where} may have few digits of rates, accelerations and forces; how many could not be "
+        f"measured: {lost}",
+        measured=f"condition {condition[numbers].max():.2g}",
+        limit=f"{CONDITION_FEW_DIGITS:g}",
+        hint="their parts that are wrong are about 1e-16 of the condition's square",
+    )
 
 
 def _few_digits_note(

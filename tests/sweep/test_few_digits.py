@@ -9,6 +9,8 @@ from errors.test_references import crank_of
 from oracle import mp
 
 import mechkin_cli as mk
+from mechkin_cli.sweep import dead_centre
+from mechkin_cli.tape import TraceLost
 
 PLACES = ["0", "10", "39.93", "39.931180949", "39.9311809496", "39.93118094965"]
 """Down to 2e-11 degrees before a dead centre."""
@@ -51,3 +53,14 @@ def test_the_worst_row_is_named():
     (note,) = [d for d in r.result.diagnostics if d.code == "few-digits"]
     assert note.severity == "warning"
     assert note.message.startswith("3 rows have few digits, the first is row 4; fewest has row ")
+
+
+def test_what_is_not_measured_is_said(monkeypatch: pytest.MonkeyPatch):
+    def lost(*_: object) -> None:
+        raise TraceLost("a number that no tape holds")
+
+    monkeypatch.setattr(dead_centre, "_in_double_double", lost)
+    r = analysis(PLACES)
+    (note,) = [d for d in r.result.diagnostics if d.code == "few-digits"]
+    assert "could not be measured: a number that no tape holds" in note.message
+    assert note.limit == "100000"
