@@ -39,7 +39,7 @@ class Status(IntEnum):
     ok = (
         0,
         "position, rates, forces",
-        "solved; the position is right to nine digits or more.",
+        "solved; the position is right to eight digits or more.",
     )
     near_singular = (
         1,

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from mechkin_cli.plan.plan import build_plan as build_plan, plan_records as plan_records
     from mechkin_cli.plan.programs import kink_laws as kink_laws
     from mechkin_cli.plan.records import (
-        PLACING as PLACING,
         Demand as Demand,
         FrictionState as FrictionState,
         PassageEnd as PassageEnd,
@@ -44,6 +43,6 @@ __getattr__, __dir__ = lazy_names(
         "needs_all_links",
         "plan": "build_plan plan_records",
         "programs": "kink_laws",
-        "records": "Demand FrictionState PLACING PassageEnd RowFlag TrackEnd flatten",
+        "records": "Demand FrictionState PassageEnd RowFlag TrackEnd flatten",
     },
 )

@@ -69,9 +69,6 @@ _CONSTANTS = {
 }
 """The arguments of each call that are constants; the others are structure."""
 
-PLACING = ("add_tree_joint", "add_closing_joint", "add_hung_links")
-"""The calls whose constants place links."""
-
 
 PlanRecord = tuple[str, tuple[Any, ...]]
 """A call of the kernel's `PlanBuilder` and its arguments; `units` is its constructor, with length

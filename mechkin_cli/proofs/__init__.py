@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         input_bounds as input_bounds,
         inside_boxes as inside_boxes,
         is_angle_of_place as is_angle_of_place,
+        position_bounds as position_bounds,
         reason_against as reason_against,
         reason_unknown as reason_unknown,
     )
@@ -33,6 +34,6 @@ __getattr__, __dir__ = lazy_names(
         "dead_centre": "DeadCentreProof are_one",
         "enclose": "Enclosure",
         "rows": "Gap SweepProofs bounds certify dead_centre_enclosure enclosures input_bounds "
-        "inside_boxes is_angle_of_place reason_against reason_unknown",
+        "inside_boxes is_angle_of_place position_bounds reason_against reason_unknown",
     },
 )

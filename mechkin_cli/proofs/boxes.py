@@ -103,8 +103,8 @@ class Boxes(NamedTuple):
         return Boxes(self.proven[places], radius, self.contraction[places], self.beyond[places])
 
 
-_MEASURED = 1.0 + 1.0 / 1024.0
-"""Above what a distance in double-double may be off."""
+MEASURED = 1.0 + 1.0 / 1024.0
+"""Above what a distance in double-double may be off, and what sums of bounds lose by rounding."""
 
 
 class Nodes(NamedTuple):
@@ -177,7 +177,7 @@ def _off_the_text(session: Session) -> Floats:
     pairs = ((own.values, precise.values), (own.reduced, precise.reduced))
     off = [distance(text[:, 0], text[:, 1], mine) for mine, text in pairs]
     largest: Floats = np.maximum(*off).max(axis=1, initial=0.0, keepdims=True)
-    return largest * _MEASURED
+    return largest * MEASURED
 
 
 def distance(high: Floats, low: Floats, other: Floats) -> Floats:

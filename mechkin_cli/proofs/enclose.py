@@ -23,6 +23,11 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
+# what boxes hold, by which they are drawn together: a zero of as many equations as there are
+# unknowns, or a position at which all of them hold
+_SOLVED, _CLOSED = 1, 2
+
+
 class Enclosure(NamedTuple):
     """Numbers that are off high + low by no more than a radius; nothing is known where it is
     infinite. All of the same shape."""
@@ -107,6 +112,7 @@ def enclose(
     wanted: Iterable[Wanted],
     *,
     turned: Floats | None = None,
+    closed: bool = False,
 ) -> Mapping[str, Enclosure]:
     """Enclosures of quantities in SI (width, rows) by name.
 
@@ -116,6 +122,7 @@ def enclose(
 
     Args:
         turned: the cut joints' angles as following has them (turn slots, rows).
+        closed: every closing equation holds at the positions, also those that are not solved for.
     """
     wanted = tuple(wanted)
     demand = demand_of(session.problem.mechanism, wanted)
@@ -133,7 +140,7 @@ def enclose(
         states=np.ascontiguousarray(positions.states),
         inputs=_rows(inputs.inputs),
         radius=positions.radius,
-        contract=1,
+        contract=_CLOSED if closed else _SOLVED,
         rates=_rows(inputs.rates) if demand & Demand.VELOCITY else None,
         accelerations=_rows(inputs.accelerations) if demand & Demand.ACCELERATION else None,
         jerks=_rows(inputs.jerks) if demand & Demand.JERK else None,
@@ -159,6 +166,30 @@ def enclose(
     return enclosures
 
 
+def enclose_positions(positions: Positions, inputs: Floats, *, closed: bool) -> Enclosure:
+    """The positions by columns (columns, rows), in rad and the kernel's lengths; of orientations
+    the increments that turn that of the boxes' middles to them.
+
+    Args:
+        positions: boxes that hold them.
+        inputs: as in `EnclosedInputs` (inputs, 3, rows).
+        closed: as in `enclose`.
+    """
+    columns, rows = positions.radius.shape
+    found = np.empty((3 * columns, rows))
+    _kernel.enclose(
+        positions.plan,
+        low=_part(positions.constants, 1),
+        radii=_part(positions.constants, 2),
+        states=np.ascontiguousarray(positions.states),
+        inputs=_rows(inputs),
+        radius=np.ascontiguousarray(positions.radius),
+        contract=_CLOSED if closed else _SOLVED,
+        position=found,
+    )
+    return Enclosure(*found.reshape(columns, 3, rows).transpose(1, 0, 2))
+
+
 def enclose_derivatives(
     positions: Positions, inputs: Floats, number: int
 ) -> tuple[Enclosure, Enclosure]:
@@ -181,7 +212,7 @@ def enclose_derivatives(
         states=np.ascontiguousarray(positions.states),
         inputs=_rows(inputs),
         radius=np.ascontiguousarray(positions.radius),
-        contract=1,
+        contract=_SOLVED,
         rates=_rows(_point(rates)),
         accelerations=_rows(_point(np.zeros_like(rates))),
         first=first,

@@ -6,14 +6,16 @@ quantities of proven rows and dead centres: which can be, and their bounds in th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.exact import PI
 from mechkin_cli.mechanism import DERIVED_KINDS, LEDGER_KINDS, Problem, Wanted, is_angle
 from mechkin_cli.proofs.boxes import (
     FULL_TURN,
+    MEASURED,
     Boxes,
     Enclosed,
     Nodes,
@@ -24,14 +26,22 @@ from mechkin_cli.proofs.boxes import (
     prove_tubes,
 )
 from mechkin_cli.proofs.dead_centre import DeadCentreProof, bridge, prove_dead_centre
-from mechkin_cli.proofs.enclose import EnclosedInputs, Enclosure, Positions, enclose
-from mechkin_cli.record import dataclass, replace
+from mechkin_cli.proofs.enclose import (
+    EnclosedInputs,
+    Enclosure,
+    Positions,
+    enclose,
+    enclose_positions,
+)
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.session import Session, input_unit
+from mechkin_cli.tape import DoubleDoubles
 from mechkin_cli.verdict import Proof
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.plan import Layout
     from mechkin_cli.session import Ending
     from mechkin_cli.show import Bools, Floats
 
@@ -253,6 +263,90 @@ def enclosures(
         name: Enclosure(high, low, np.where(known, radius, np.inf))
         for name, (high, low, radius) in over_boxes.items()
     }
+
+
+class PositionBounds(NamedTuple):
+    """Bounds of how far rows in doubles are from the file's positions, arrays over the rows.
+
+    Attributes:
+        error: the largest of all states and coordinates, in rad and the kernel's lengths, of
+            orientations the angle; nan where nothing is proven.
+        beyond: as `Boxes.beyond`: above 0 `error` is the distance to the zero of the equations
+            solved for.
+    """
+
+    error: Floats
+    beyond: Floats
+
+
+def position_bounds(
+    session: Session,
+    states: Floats,
+    solved: Bools,
+    coordinates: Mapping[Wanted, Floats],
+    turned: Floats,
+) -> PositionBounds:
+    """How far rows can be from the one position that is proven to be near each.
+
+    Args:
+        session: the mechanism, driven along the rows.
+        states: of the rows in doubles (states, rows).
+        solved: the rows in question (rows,).
+        coordinates: values of joint coordinates in SI (rows,), with their whole turns.
+        turned: as in `enclosures`.
+    """
+    error, rows = np.full(solved.size, np.nan), session.inputs
+    enclosed, inputs = _enclosed(session)
+    if not enclosed.of_text:
+        return PositionBounds(error, np.zeros(solved.size))
+    boxes = prove_boxes(enclosed, Nodes.of(session, rows.values, rows.reduced, states))
+    proven = boxes.proven & solved & _are_inside(session, inputs)
+    for closed in (True, False):
+        part = proven & ((boxes.beyond == 0.0) == closed)
+        if not part.any():
+            continue
+        positions = Positions(enclosed.plan, enclosed.constants, states, boxes.radius)
+        places = enclose_positions(positions, inputs.inputs, closed=closed)
+        off = [_off_places(session.layout, states, places)]
+        found = enclose(session, positions, inputs, coordinates, turned=turned, closed=closed)
+        off += [_off(session, q, values, found[q.name]) for q, values in coordinates.items()]
+        error[part] = np.max(off, axis=0)[part]
+    error *= MEASURED
+    return PositionBounds(np.where(np.isfinite(error), error, np.nan), boxes.beyond)
+
+
+def _off_places(layout: Layout, states: Floats, places: Enclosure) -> Floats:
+    """The largest that a state can be off the enclosed places (rows,)."""
+    largest = np.zeros(states.shape[1])
+    for carrier in layout.carriers:
+        kind, row, column = carrier.part.type, carrier.state, carrier.column
+        if kind.is_ball:
+            turn = [
+                np.abs(places.high[c]) + places.about_high[c] for c in range(column, column + 3)
+            ]
+            # tan(angle / 2) is half the increments' length, and a quaternion is a unit to rounding
+            angle = np.sqrt(turn[0] ** 2 + turn[1] ** 2 + turn[2] ** 2)
+            w, x, y, z = states[row : row + 4]
+            length = np.abs((w * w + x * x) + (y * y + z * z) - 1.0)
+            largest = np.maximum(largest, angle + length + tolerances.ENCLOSURE_ROUNDING)
+            continue
+        for number in range(len(kind.freedoms)):
+            c = column + number
+            off = distance(places.high[c], places.low[c], states[row + number])
+            largest = np.maximum(largest, off + places.radius[c])
+    return largest
+
+
+def _off(session: Session, wanted: Wanted, values: Floats, found: Enclosure) -> Floats:
+    """How far a coordinate in SI, or converted to the file's unit, can be off (rows,): in rad, in
+    the kernel's lengths."""
+    true: Any = DoubleDoubles(found.high[0], found.low[0])
+    unit = 1.0 if is_angle_of_place(wanted) else session.layout.length
+    if is_angle_of_place(wanted):
+        turns = np.rint((values - found.high[0]) / FULL_TURN)
+        true = true + turns * DoubleDoubles.of_fraction(2 * PI)
+    off = distance(true.high, true.low, values) + found.radius[0]
+    return np.asarray((off + tolerances.ENCLOSURE_ROUNDING * np.abs(values)) / unit)
 
 
 def dead_centre_enclosure(proof: DeadCentreProof, wanted: Wanted) -> Enclosure:

@@ -27,13 +27,22 @@ import numpy as np
 
 from mechkin_cli import assembly
 from mechkin_cli.assembly import PlacesBefore, at_unit_rate, continued_start, left_for, unit_rates
-from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.plan import Demand, demand_of
-from mechkin_cli.session import Ask, PreciseConstants, RowInputs, precise_inputs
+from mechkin_cli.session import (
+    Ask,
+    KernelInputs,
+    PreciseConstants,
+    RowInputs,
+    precise_inputs,
+)
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
+    CONDITION_FEW_DIGITS,
     DEAD_CENTRE_LOST,
+    DIGITS_OF_PLACES,
+    FEW_DIGITS,
     GROWS_WITHOUT_BOUND,
     ON_FOLD,
     REACTION_ROUNDING,
@@ -249,6 +258,144 @@ def _comes_to_rest(rates: Floats | None, row: int) -> bool:
 def _slots(slots: Mapping[str, slice], quantities: Sequence[Wanted]) -> list[int]:
     own = [slots[quantity.name] for quantity in quantities]
     return [column for slot in own for column in range(slot.start, slot.stop)]
+
+
+# How many digits rows have whose condition may leave few.
+
+
+def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) -> list[Diagnostic]:
+    """Says how many digits positions, rates, accelerations and forces have, measured in
+    double-double, where they are few.
+
+    Args:
+        session: the mechanism as it is driven.
+        rows: its rows, closed and judged.
+        batch: the run that closed them.
+        ask: of that run.
+    """
+    assert batch.condition is not None
+    bad = ~(batch.condition <= CONDITION_FEW_DIGITS)
+    numbers = np.flatnonzero(rows.reached & bad & np.isin(rows.status, _WITH_RATES))
+    if not numbers.size:
+        return []
+    try:
+        wide = _in_double_double(session, rows, ask, numbers)
+    except (TraceLost, LookupError, ValueError) as lost:
+        return [_not_measured_note(numbers, batch.condition, lost)]
+    off = _parts_apart(wide.states, batch.states[:, numbers], largest=1.0)
+    digits = {"positions": _digits(off, wide.good)}
+    for name, slots in _kinds(session, ask).items():
+        assert wide.outputs is not None
+        assert batch.outputs is not None
+        own = batch.outputs[:, numbers]
+        apart = [_parts_apart(wide.outputs[slot], own[slot]) for slot in slots]
+        digits[name] = _digits(np.max(apart, axis=0), wide.good)
+    few = np.zeros(numbers.size, dtype=bool)
+    for name, found in digits.items():
+        few |= found < (DIGITS_OF_PLACES if name == "positions" else FEW_DIGITS)
+    if not few.any():
+        return []
+    return [_few_digits_note(numbers, few, digits, batch.condition)]
+
+
+_WITH_RATES = (Status.ok, Status.near_singular)
+
+
+def _in_double_double(
+    session: Session, rows: SweepRows, ask: Ask, numbers: NDArray[np.intp]
+) -> Batch:
+    """Some rows repeated with the numbers of the text.
+
+    Raises:
+        TraceLost, LookupError, ValueError: these cannot be followed.
+    """
+    precise = session.precise
+    of_text = precise_inputs(precise, session)
+    orders = (of_text.values, of_text.rates, of_text.accelerations, of_text.jerks)
+    inputs = KernelInputs(*orders, of_text.reduced, of_text.whole)
+    given = inputs.at(rows.states, rows.turns, of_text.time, of_text.constraint_rates)
+    outputs = precise.outputs(session, ask.readout.wanted) if ask.readout else None
+    constants = PreciseConstants(precise.constants(session), outputs)
+    return session.run(
+        given.at(numbers), ask._replace(demand=ask.demand & ~Demand.CONDITION), constants
+    )
+
+
+def _kinds(session: Session, ask: Ask) -> dict[str, list[list[int]]]:
+    """The outputs of rates, accelerations and forces, those of one dimension together; without
+    forces that double-double does not know better: of friction, and of loads that tables give."""
+    problem, found = session.problem, dict[str, dict[object, list[int]]]()
+    lost = problem.mechanism.frictions or any(law.curve for law in problem.load_laws)
+    for quantity in ask.readout.wanted if ask.readout else ():
+        demand = demand_of(problem.mechanism, [quantity])
+        if demand & Demand.FORCES:
+            name = "" if lost else "forces"
+        elif demand & (Demand.ACCELERATION | Demand.JERK):
+            name = "jerks" if demand & Demand.JERK else "accelerations"
+        else:
+            name = "rates" if demand & Demand.VELOCITY else ""
+        if name:
+            own = found.setdefault(name, {}).setdefault(quantity.dimension, [])
+            own += _slots(ask.readout.slots, [quantity])  # type: ignore[union-attr]
+    return {name: list(slots.values()) for name, slots in found.items()}
+
+
+def _parts_apart(wide: Floats, own: Floats, largest: float = 0.0) -> Floats:
+    """How far doubles (numbers, rows) are from double-doubles (numbers, 2, rows), in parts of the
+    largest number of the row (rows,), which is `largest` at least; 0 where all are zero."""
+    off = np.abs((wide[:, 0] - own) + wide[:, 1]).max(axis=0)
+    size = np.maximum(np.abs(wide[:, 0]).max(axis=0), largest)
+    return np.asarray(np.where(size > 0.0, off / np.where(size > 0.0, size, 1.0), off))
+
+
+def _digits(parts: Floats, known: Bools) -> NDArray[np.int64]:
+    """Whole digits that such parts leave (rows,): none where they are not known."""
+    limits = np.array([float(f"1e-{digit}") for digit in range(1, 17)])[:, None]
+    return np.where(known, np.count_nonzero(parts <= limits, axis=0), 0)
+
+
+def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Exception) -> Diagnostic:
+    """Of rows whose numbers are not in a text, or in it in a way that no tape holds."""
+    first = numbers[0] + 1
+    where = (
+        f"row {first}" if numbers.size == 1 else f"{numbers.size} rows, the first is row {first},"
+    )
+    return Diagnostic(
+        "few-digits",
+        "note",
+        f"{where} may have few digits of rates, accelerations and forces; how many could not be "
+        f"measured: {lost}",
+        measured=f"condition {condition[numbers].max():.2g}",
+        limit=f"{CONDITION_FEW_DIGITS:g}",
+        hint="their parts that are wrong are about 1e-16 of the condition's square",
+    )
+
+
+def _few_digits_note(
+    numbers: NDArray[np.intp],
+    few: Bools,
+    digits: Mapping[str, NDArray[np.int64]],
+    condition: Floats,
+) -> Diagnostic:
+    rows = np.flatnonzero(few)
+    worst = rows[np.argmin(np.min([found[rows] for found in digits.values()], axis=0))]
+    row = numbers[worst] + 1
+    if rows.size == 1:
+        where = f"row {row} has few digits"
+    else:
+        where = f"{rows.size} rows have few digits, the first is row {numbers[rows[0]] + 1}"
+        where += f"; fewest has row {row}"
+    told = ", ".join(f"{name} {found[worst]}" for name, found in digits.items())
+    return Diagnostic(
+        "few-digits",
+        "warning",
+        f"{where}: {told}, as measured in double-double, in parts of the largest of each kind in "
+        "the row",
+        measured=f"condition {condition[row - 1]:.2g}",
+        hint="mechkin analyze --errors measures every cell; drive another coordinate there, or end "
+        "the sweep before",
+        numbers=tuple(Number(f"digits of {n}", float(f[worst])) for n, f in digits.items()),
+    )
 
 
 def _note(rows: SweepRows) -> Diagnostic:

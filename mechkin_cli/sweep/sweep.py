@@ -200,7 +200,7 @@ def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row:
             rows.states = batch.states
         else:
             rows.states[:, rows.reached] = batch.states[:, rows.reached]
-        judge_condition(session, rows, batch)
+        judge_condition(session, rows, batch, ask)
         _judge_inputs(session, rows)
         if rows.dead_centres and ask.readout is not None:
             on_states = ask._replace(iterations=0)
@@ -255,17 +255,23 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
     return failed | rows.reached & turned
 
 
-def judge_condition(session: Session, rows: SweepRows, batch: Batch) -> None:
-    """Verdicts by condition."""
+def judge_condition(
+    session: Session, rows: SweepRows, batch: Batch, ask: Ask | None = None
+) -> None:
+    """Verdicts by condition, and how many digits the rows of a sweep have where it may leave few:
+    `ask` is what the batch answers, None of a response."""
     condition = batch.condition
-    if condition is None or rates_are_clear(condition).all():
+    if condition is None or (condition <= tolerances.CONDITION_FEW_DIGITS).all():
         return
-    judged = rows.reached & (rows.status == Status.ok)
-    rows.status[judged] = by_condition(condition[judged])
-    from mechkin_cli.sweep.dead_centre import judge_dead_centres
+    from mechkin_cli.sweep.dead_centre import few_digits_notes, judge_dead_centres
 
-    judge_dead_centres(session, rows, condition)
-    rows.diagnostics += condition_notes(rows, condition)
+    if not rates_are_clear(condition).all():
+        judged = rows.reached & (rows.status == Status.ok)
+        rows.status[judged] = by_condition(condition[judged])
+        judge_dead_centres(session, rows, condition)
+        rows.diagnostics += condition_notes(rows, condition)
+    if ask is not None:
+        rows.diagnostics += few_digits_notes(session, rows, batch, ask)
 
 
 def _judge_inputs(session: Session, rows: SweepRows) -> None:

@@ -27,6 +27,18 @@ CONDITION_RATES_UNCLEAR: Final = 1e6
 """Above it a row's rates may be rounding: condition times distance from a dead centre may be as
 little as 0.2, and rows that stand at one close up to 1e-7 beside it."""
 
+CONDITION_FEW_DIGITS: Final = 1e5
+"""Above it a row's rates, accelerations or forces may keep fewer than `FEW_DIGITS`: rounding goes
+with its square, and a difference of two accelerations may lose more. How many they have is then
+measured in double-double."""
+
+FEW_DIGITS: Final = 6
+"""Digits of rates, accelerations and forces, in parts of the largest of their kind in the row,
+below which a message tells them."""
+
+DIGITS_OF_PLACES: Final = 9
+"""The same of positions, in rad and parts of the size."""
+
 DEAD_CENTRE_LOST: Final = 0.1
 """Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
 centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""
@@ -179,21 +191,11 @@ zero: what doubles leave there is 1e-16 of what cancelled, what double-doubles l
 
 # --- the bound of a row (analysis.sweep.error_bound) ---------------------------------------------
 
-ERROR_PROBE: Final = 1e-13
-"""Relative size of the changes with which a row's sensitivity is measured: a thousand roundings, so
-that rounding is a thousandth of what is seen, and small enough that up to a condition of 1e6 a row
-moves by less than a tenth of its distance to a dead centre."""
-
-ERROR_PROBES: Final = 3
-"""Samples of the sensitivity: the largest of three is a tenth of the true one once in a thousand
-times, of two once in a hundred."""
-
-ERROR_FACTOR: Final = 16.0
-"""Roundings of a row's constants that count for all the roundings of closing it."""
-
-ERROR_MOVE: Final = 1e-3
-"""A row that such changes move farther (rad, length units) has no bound: it is nearer to a dead
-centre than the sensitivity at its place tells."""
+APART_BY_CLOSURE: Final = 2.0
+"""Of an overconstrained loop that does not close exactly, positions at which its equations are no
+larger than b together are within condition times b of each other, to first order; b is 1e-15, so
+that twice as much holds all orders, the 1 % of the condition, and that sizes are told by a power of
+two."""
 
 # --- a response repeated (analysis.errors.marching) ----------------------------------------------
 
@@ -249,8 +251,9 @@ units: a multiple of a step, a unit and a whole number of turns taken off are le
 roundings."""
 
 ENCLOSURE_ROUNDING: Final = 2.0**-50
-"""Part of a quantity, its whole turns and its radius that is added to the radius: all are converted
-to the file's units, by six roundings at most."""
+"""Part of a quantity, its whole turns and its radius that is added to the radius, and of a
+coordinate that is added to its error bound: all are converted to the file's units, by six roundings
+at most."""
 
 SAME_BOX: Final = 2.0**-44
 """Distance (rad, length units, parts of either) added to the radii of two boxes before they are

@@ -79,13 +79,14 @@ void enclose(const FrozenPlan& plan, const nb::kwargs& keywords) {
   r.turned = given.read("turned", turn_slots(p, *kernel_unit(2)));
   r.whole = given.read("whole", p.inputs);
   r.time = given.read("time", 3);
+  r.position = given.write("position", 3L * p.columns);
   r.velocities = given.write("first", 3L * p.columns);
   r.second = given.write("second", 3L * p.columns);
   r.equations = given.write("equations", 3 * equations);
   r.derivatives = given.write("derivatives", 3 * equations * p.columns);
   r.sides = given.write("sides", 3L * p.closings);
   r.forces = given.integer("forces", 0, 1, 0);
-  r.contract = given.integer("contract", 0, 1, 0);
+  r.box = (EnclosedBox)given.integer("contract", 0, 2, 0);
   const EnclosingUnit& unit = enclosing_unit((int)given.integer("lanes", 0, 8, 0));
   const OutputList* const outputs = outputs_of(given, plan);
   const std::optional<OutputList> output_low = part_of(given, "output_low", outputs);

@@ -17,21 +17,22 @@ inline void set_unknown(const Plan& p, Workspace& w, const Box& box, int column,
   to = {accurate_sum(middle, off), radius};
 }
 
-// Draws the block's own unknowns together; those of the blocks before are.
+// Draws the block's own unknowns together; those of the blocks before are. Of more equations than unknowns, which all hold
+// at the position, as many are taken.
 inline void contract_block(const Plan& p, Workspace& w, const Box& box, const Solving& s, int index) {
   const Block& b = p.block[index];
-  const int n = b.size, *const unknown = p.unknown + b.column_begin;
+  const int n = b.size, rows = b.rows, *const unknown = p.unknown + b.column_begin;
   const BlockPlace at = place_of_block(p, index);
   const auto middle = [&](int c) { return p.column_state[c] < 0 ? DoubleDouble(0.0) : w.q[p.column_state[c]].midpoint; };
   for (int u = 0; u < n; ++u) set_unknown(p, w, box, unknown[u], middle(unknown[u]), 0.0, 0.0);
   close_enclosed_block(p, w, box, index);
-  Pack *const equations = s.room, *const image = equations + n;
-  for (int i = 0; i < n; ++i) equations[i] = w.right[i];
+  Pack *const equations = s.room, *const image = equations + rows;
+  for (int i = 0; i < rows; ++i) equations[i] = w.right[i];
 
   for (int u = 0; u < n; ++u) set_unknown(p, w, box, unknown[u], middle(unknown[u]), 0.0, box.radius[unknown[u]]);
   close_enclosed_block(p, w, box, index);
   enclosed_derivatives(p, w, box, index, s.derivatives);
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < rows; ++i)
     for (int u = 0; u < n; ++u) w.jacobian[at.inverse + i * n + u] = s.derivatives[i * p.columns + unknown[u]];
   const EnclosedMatrix f = matrix_of(p, w, s, index);
   invert_block(f, s, s.inverse + at.inverse);

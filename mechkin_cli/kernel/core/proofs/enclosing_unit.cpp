@@ -130,8 +130,9 @@ void enclose_positions(const Plan& p, const EnclosingRequest& r, Memory& m, cons
   Workspace& w = m.w;
   read_box(p, r, m, in);
   for (int b = 0; b < p.blocks; ++b) {
-    // of more equations than unknowns the box holds those of the proof, which are not told
-    if (r.contract && p.block[b].rows == p.block[b].size) contract_block(p, w, m.box, m.solving, b);
+    // of more equations than unknowns it holds a zero of those of the proof, which are not told
+    const bool holds = r.box == EnclosedBox::CLOSED || (r.box == EnclosedBox::SOLVED && p.block[b].rows == p.block[b].size);
+    if (holds) contract_block(p, w, m.box, m.solving, b);
     close_enclosed_block(p, w, m.box, b);
     put_position(p, r, m, b, out);
     if (!r.derivatives) continue;
@@ -165,6 +166,7 @@ void enclose_pack(const Plan& p, const EnclosingRequest& r, Memory& m, const Loo
     for (int b = 0; b < p.blocks; ++b) prepare_block(p, w, m.solving, b);
   if (r.rates) enclose_motion(p, r, m, in);
   for (int c = 0; c < p.columns; ++c) {
+    if (r.position) out.to(r.position).put(c, p.column_state[c] < 0 ? m.box.turn[c] : w.q[p.column_state[c]]);
     if (r.velocities && r.rates) out.to(r.velocities).put(c, w.rate[c]);
     if (r.second && r.accelerations) out.to(r.second).put(c, w.acceleration[c]);
   }

@@ -5,6 +5,10 @@ template <class Number>
 struct PlanOf;
 struct OutputsView;
 
+// What boxes hold, and which blocks are so drawn together: none; a zero of as many equations as there are unknowns, the
+// blocks that have no more; a position at which every equation holds, all of them.
+enum class EnclosedBox { GIVEN, SOLVED, CLOSED };
+
 // Numbers are high and low part of a midpoint and a radius, [(3 * k + part) * rows + row]; a part that is not finite says that
 // nothing is known.
 struct EnclosingRequest {
@@ -12,7 +16,7 @@ struct EnclosingRequest {
   const double* states;         // states x rows: the box's middle; an orientation needs no unit length
   const double* inputs;         // inputs x 3 x rows, instead of their states
   const double* radius;         // columns x rows, may be null: of the box about it (ProvingRequest::radius)
-  bool contract;                // whether the box holds the position, about which it is drawn together
+  EnclosedBox box;              // what the box is known to hold
   const double* rates;          // inputs x 3 x rows, may be null: no velocities
   const double* accelerations;  // inputs x 3 x rows, may be null: no accelerations
   const double* jerks;          // inputs x 3 x rows, may be null: no third derivatives
@@ -24,6 +28,7 @@ struct EnclosingRequest {
   const OutputsView* wanted;        // may be null
   const OutputsView *wanted_low, *wanted_radii;  // those parts of its constants in the same places; null: zero
   double* outputs;              // slots x 3 x rows
+  double* position;             // columns x 3 x rows, may be null: unknowns drawn together; an orientation's increments
   double* velocities;           // columns x 3 x rows, may be null
   double* second;               // columns x 3 x rows, may be null
   double* equations;            // equations of all blocks x 3 x rows, may be null
