@@ -59,7 +59,8 @@ def _end(session: Session, followed: Followed, rows: SweepRows, every_row: bool)
     """Goes on where the inputs turn back at a dead centre or a branch point; says which branch
     points were passed, at which places the inputs turn back, and what ended the branch, if it
     ended. `rows` are in the order in which they were followed."""
-    turning = _turning(np.ascontiguousarray(session.inputs.values[:, rows.numbers]))
+    values = np.ascontiguousarray(session.inputs.values[:, rows.numbers])
+    turning = _turning(values)
     if not (turning.size or followed.crossings or followed.end != TrackEnd.FINISHED):
         return
     from mechkin_cli.sweep import branch_end
@@ -73,7 +74,9 @@ def _end(session: Session, followed: Followed, rows: SweepRows, every_row: bool)
         way = onward
         within = turning[(turning > first) & (turning < first + way.reached - 1)]
         ends = [
-            way._replace(reached=row + 1 - first, end=TrackEnd.STALLED, ending=None)
+            way._replace(
+                reached=row + 1 - first, end=TrackEnd.STALLED, inputs=values[:, row], ending=None
+            )
             for row in unclear_rows(session, rows, within)
         ]
         ends += [way] if way.end != TrackEnd.FINISHED else []
@@ -97,7 +100,7 @@ def _end(session: Session, followed: Followed, rows: SweepRows, every_row: bool)
         rows.diagnostics.append(branch_end.crossing_note(session, passed))
     rest = rows.part(slice(first, None))
     if way.end != TrackEnd.FINISHED and not rest.reached.all():
-        path = np.ascontiguousarray(session.inputs.values[:, rest.numbers])
+        path = np.ascontiguousarray(values[:, first:])
         branch_end.explain_end(session, path, way, rest)
 
 

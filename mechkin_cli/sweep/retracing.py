@@ -93,13 +93,14 @@ def retraced(
     last = first + followed.reached - 1
     earlier = np.flatnonzero(rows.reached[: last + 1])
     ending = followed.ending
-    about = values[:, last] if ending is None else ending.inputs
+    about = np.asarray(followed.inputs if ending is None else ending.inputs)
     base = _last_clear(values, earlier, about)
     if base is None:
         return None
     beside = earlier[earlier > base]
     if ending is None and beside.size:
-        about = values[:, beside[np.argmax(_distance(values[:, beside], values[:, base]))]]
+        places = np.concatenate([values[:, beside], about[:, None]], axis=1)
+        about = places[:, np.argmax(_distance(places, values[:, base]))]
     start = _Place(values[:, base], _closed(session, rows, base), rows.turns[:, base])
     place = _singular_place(session, start, about)
     if place is None or not (place.is_dead_centre or session.problem.assembly.straight):
