@@ -11,6 +11,7 @@ if TYPE_CHECKING:
         at_unit_rate as at_unit_rate,
         condition_at as condition_at,
         left_for as left_for,
+        meant_branch as meant_branch,
         unit_rates as unit_rates,
     )
     from mechkin_cli.assembly.home import (
@@ -23,15 +24,13 @@ if TYPE_CHECKING:
         wrapped as wrapped,
     )
     from mechkin_cli.assembly.near import (
+        NEAR as NEAR,
         AssemblyStart as AssemblyStart,
-        distances_of as distances_of,
-        is_unclear as is_unclear,
         nothing_found as nothing_found,
     )
     from mechkin_cli.assembly.start import (
         HOME as HOME,
         MAY_BE_RIGID as MAY_BE_RIGID,
-        NEAR as NEAR,
         choose_start as choose_start,
         continued_start as continued_start,
         mode_letter as mode_letter,
@@ -41,11 +40,10 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "fold": "PlacesBefore at_unit_rate condition_at left_for unit_rates",
+        "fold": "PlacesBefore at_unit_rate condition_at left_for meant_branch unit_rates",
         "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
         "wrapped",
-        "near": "AssemblyStart distances_of is_unclear nothing_found",
-        "start": "HOME MAY_BE_RIGID NEAR choose_start continued_start mode_letter "
-        "state_at_first_row",
+        "near": "AssemblyStart NEAR nothing_found",
+        "start": "HOME MAY_BE_RIGID choose_start continued_start mode_letter state_at_first_row",
     },
 )

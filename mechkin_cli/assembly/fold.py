@@ -17,12 +17,14 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import name_modes
 from mechkin_cli.assembly.near import (
+    NEAR,
     AssemblyStart,
     distances_home,
     distances_near,
     distances_of,
     in_order,
     is_unclear,
+    nearer_clearly,
     unclear,
 )
 from mechkin_cli.plan import Demand, TrackEnd
@@ -117,14 +119,9 @@ def judged_off_fold(session: Session, start: AssemblyStart) -> AssemblyStart:
 
 
 def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> AssemblyStart:
-    branches = left_for(session, 0, state) if session.problem.assembly.near else []
-    if len(branches) < 2:
+    branch = meant_branch(session, _branches(session, state))
+    if branch is None:
         return start
-    off_fold = np.stack([branch.states[:, 0] for branch in branches], axis=1)
-    distances, _ = distances_of(session, branches[0].inputs[:, 0], off_fold)
-    if is_unclear(*sorted(distances)):
-        return start
-    branch = branches[int(np.argmin(distances))]
     path = np.concatenate([branch.inputs, session.inputs.values[:, :1]], axis=1)
     followed = session.follow(path, branch.states[:, 0], every_row=True)
     if followed.end != TrackEnd.FINISHED:
@@ -137,8 +134,69 @@ def _judged_alone(session: Session, start: AssemblyStart, state: Floats) -> Asse
     return replace(start, state=state, how=how)
 
 
+def _branches(session: Session, state: Floats) -> list[PlacesBefore]:
+    return left_for(session, 0, state) if session.problem.assembly.near else []
+
+
+def meant_branch(session: Session, branches: list[PlacesBefore]) -> PlacesBefore | None:
+    """The one of two branches that meet in a fold that `near` means; None where it is silent."""
+    if len(branches) < 2:
+        return None
+    off_fold = np.stack([branch.states[:, 0] for branch in branches], axis=1)
+    nearer = nearer_clearly(session, branches[0].inputs[:, 0], off_fold)
+    return None if nearer is None else branches[nearer]
+
+
+def next_to_fold(session: Session) -> AssemblyStart | None:
+    """The assembly at the first row where that is a dead centre which a search cannot tell from
+    places on a motion: found a little off it, where it is clear, and followed back."""
+    inputs = np.ascontiguousarray(session.inputs.values[:, 0])
+    found: list[tuple[float, float, Floats]] = []
+    for number in range(inputs.size):
+        for way in (1.0, -1.0):
+            place = inputs.copy()
+            place[number] += way * BEFORE_DEAD_CENTRE[0]
+            modes = name_modes(session, place, thorough=False)
+            if modes.number == 0:
+                continue
+            near, home = distances_of(session, place, modes.found.states)
+            for i in range(modes.number):
+                state = _back_on_fold(session, place, modes.found.states[:, i])
+                if state is not None:
+                    found.append((near[i], home[i], state))
+        if found:
+            break
+    if not found:
+        return None
+    best = in_order([one[0] for one in found], [one[1] for one in found])[0]
+    how = f"followed from beside a dead centre, 1 of {len(found)} found there"
+    return AssemblyStart(found[best][2], NEAR, how, off=found[best][0])
+
+
+def _back_on_fold(session: Session, place: Floats, state: Floats) -> Floats | None:
+    """The first row's state on the branch of an assembly at a place beside it, where it closes."""
+    first = np.ascontiguousarray(session.inputs.values[:, :1])
+    path = np.concatenate([place[:, None], first], axis=1)
+    back = session.follow(path, np.ascontiguousarray(state), every_row=True)
+    guess = back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
+    if guess is None and back.ending is not None and back.ending.is_dead_centre:
+        guess = back.ending.state
+    if guess is None:
+        return None
+    ask = Ask(iterations=tolerances.FOLD_ITERATIONS)
+    batch = session.run(RowInputs(first, np.ascontiguousarray(guess[:, None])), ask)
+    return np.ascontiguousarray(batch.states[:, 0]) if batch.good[0] else None
+
+
 def _judged_at(session: Session, start: AssemblyStart, row: int) -> AssemblyStart:
     assert start.state is not None
+    branch = meant_branch(session, _branches(session, start.state))
+    if branch is not None:
+        path = np.stack([branch.inputs[:, 0], session.inputs.values[:, row]], axis=1)
+        onward = session.follow(path, branch.states[:, 0])
+        if onward.end == TrackEnd.FINISHED:
+            how = f"{start.how}; at a fold, where near tells its branches apart"
+            return replace(start, state=onward.state, how=how, row=row)
     modes = name_modes(session, session.inputs.reduced[:, row], thorough=False)
     if modes.number == 0:
         return start

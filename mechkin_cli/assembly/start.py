@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly.fold import judged_off_fold
+from mechkin_cli.assembly.fold import judged_off_fold, next_to_fold
 from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
 from mechkin_cli.assembly.near import (
+    NEAR,
     AssemblyStart,
     NearestAssembly,
     box_about,
@@ -55,9 +56,6 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.show import Floats
 
-
-NEAR = "near"
-"""In place of the letter of an assembly that was found without all others."""
 
 HOME = "home"
 """In place of the letter of an assembled drawing."""
@@ -153,7 +151,10 @@ def _choose_start(session: Session) -> AssemblyStart:
             return _noted_if_far(session, path[:, 0], start)
     modes = name_modes(session, path[:, 0], thorough=wanted.mode is not None)
     if modes.number == 0:
-        return AssemblyStart(None, "", "", [nothing_found(session, modes.found)])
+        beside = next_to_fold(session) if modes.found.free and wanted.mode is None else None
+        if beside is None:
+            return AssemblyStart(None, "", "", [nothing_found(session, modes.found)])
+        return _noted_if_far(session, path[:, 0], beside) if wanted.near else beside
     if wanted.mode is not None:
         return _by_name(modes, wanted.mode)
     home = distances_home(session, modes.points)

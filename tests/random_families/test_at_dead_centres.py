@@ -11,10 +11,7 @@ from random_families.at_dead_centres.judge import judge
 LINKAGES = 25 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
-TURNING = [family for family in FAMILIES if family.endswith(("touches", "touches-far", "ends"))]
-
-
-@pytest.mark.parametrize("family", TURNING)
+@pytest.mark.parametrize("family", FAMILIES)
 def test_rows_at_and_beside_dead_centres(family: str) -> None:
     cases = [case for number in range(LINKAGES) if (case := FAMILIES[family](number))]
     judged = [judge(case) for case in cases]
