@@ -6,6 +6,14 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.assembly.fold import (
+        PlacesBefore as PlacesBefore,
+        at_unit_rate as at_unit_rate,
+        condition_at as condition_at,
+        left_for as left_for,
+        meant_branch as meant_branch,
+        unit_rates as unit_rates,
+    )
     from mechkin_cli.assembly.home import (
         NamedModes as NamedModes,
         is_cyclic as is_cyclic,
@@ -16,33 +24,26 @@ if TYPE_CHECKING:
         wrapped as wrapped,
     )
     from mechkin_cli.assembly.near import (
+        NEAR as NEAR,
         AssemblyStart as AssemblyStart,
-        distances_of as distances_of,
-        is_unclear as is_unclear,
         nothing_found as nothing_found,
     )
     from mechkin_cli.assembly.start import (
         HOME as HOME,
         MAY_BE_RIGID as MAY_BE_RIGID,
-        NEAR as NEAR,
-        PlacesBefore as PlacesBefore,
-        at_unit_rate as at_unit_rate,
         choose_start as choose_start,
-        condition_at as condition_at,
         continued_start as continued_start,
-        left_for as left_for,
         mode_letter as mode_letter,
         state_at_first_row as state_at_first_row,
-        unit_rates as unit_rates,
     )
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "fold": "PlacesBefore at_unit_rate condition_at left_for meant_branch unit_rates",
         "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
         "wrapped",
-        "near": "AssemblyStart distances_of is_unclear nothing_found",
-        "start": "HOME MAY_BE_RIGID NEAR PlacesBefore at_unit_rate choose_start condition_at "
-        "continued_start left_for mode_letter state_at_first_row unit_rates",
+        "near": "AssemblyStart NEAR nothing_found",
+        "start": "HOME MAY_BE_RIGID choose_start continued_start mode_letter state_at_first_row",
     },
 )

@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
+NEAR = "near"
+"""In place of the letter of an assembly that was found without all others."""
+
+
 def far_notes(session: Session, inputs: Floats, state: Floats) -> list[Diagnostic]:
     """A warning where an assembly (states,) lies far from what `near` names."""
     problem = session.problem
@@ -104,6 +108,28 @@ def distances_near(problem: Problem, coordinates: Mapping[str, Floats]) -> list[
             total += miss * miss
         distances.append(sqrt(total))
     return distances
+
+
+def nearer_clearly(session: Session, inputs: Floats, states: Floats) -> int | None:
+    """Which of two assemblies (states, 2) lies where `near` points from between them; None where it
+    names nothing, or nothing that tells them apart.
+
+    What it names may be far from both: it tells them apart where its distances from them differ by
+    a good part of their own distance.
+    """
+    problem = session.problem
+    if not problem.assembly.near:
+        return None
+    coordinates, _ = probe_of(session).read(inputs, states)
+    one, other = distances_near(problem, coordinates)
+    total = 0.0
+    for name in problem.assembly.near:
+        first, second = (float(value) for value in coordinates[name])
+        miss = _miss(problem, name, first, second)
+        total += miss * miss
+    if abs(one - other) <= tolerances.NEAR_SIDE * sqrt(total):
+        return None
+    return 0 if one < other else 1
 
 
 def distances_home(session: Session, points: Floats) -> list[float]:
@@ -288,8 +314,10 @@ def nothing_found(
 
 def _missed(assemblies: Assemblies) -> str:
     if assemblies.free:
-        text = f"{assemblies.free} of {assemblies.starts} random starts closed the loops, all where"
-        return f"{text} they still move with the inputs held, or in a singular position"
+        return (
+            f"of {assemblies.starts} random starts those that closed the loops all ended where "
+            "they still move with the inputs held, or in a singular position"
+        )
     if assemblies.complete:
         return "its equations have no real root"
     best = f"the best to {assemblies.closest:.2g} of the size"

@@ -190,6 +190,7 @@ def follow_way(
     *,
     every_row: bool = False,
     straight: bool = False,
+    turn: Floats | None = None,
 ) -> Followed:
     """Follows the branch along a way, with the turns of cut joints, and gives its rows alone;
     arguments as those of `follow`."""
@@ -199,6 +200,7 @@ def follow_way(
         start,
         every_row=every_row,
         turns=True,
+        turn=turn,
         straight=straight,
         course=way.course,
     )

@@ -345,18 +345,26 @@ class Session:
         )
 
     def follow_rows(
-        self, start: Floats, row: int = 0, step: int = 1, *, every_row: bool = False
+        self,
+        start: Floats,
+        row: int = 0,
+        step: int = 1,
+        *,
+        every_row: bool = False,
+        turn: Floats | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) at a row along the rows from there on, or
-        with step -1 back from there, with the turns of angles; between the rows the inputs follow
-        their laws."""
+        with step -1 back from there, with the turns of angles, which are `turn` at the row where
+        they are known; between the rows the inputs follow their laws."""
         if self.route is None:
             inputs, rows = self.inputs, slice(row, None, step)
             path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
-            return self.follow(path, start, every_row=every_row, turns=True, whole=whole)
+            return self.follow(path, start, every_row=every_row, turns=True, turn=turn, whole=whole)
         straight = self.problem.assembly.straight
         way = self._path(row, step)
-        return follow_along(self.plan, way, start, every_row=every_row, straight=straight)
+        return follow_along(
+            self.plan, way, start, every_row=every_row, straight=straight, turn=turn
+        )
 
     @remembered
     def _path(self, row: int, step: int) -> FollowedPath:

@@ -28,6 +28,7 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
+    from mechkin_cli.sweep.retracing import Touched
 
 
 NEAR_SINGULAR = "a singular position lies next to that place; sweep from its other side"
@@ -67,11 +68,9 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
         rows.diagnostics.append(_lost_note(session, followed, path, rows))
 
 
-def crossing_note(session: Session, followed: Followed) -> Diagnostic:
-    """The branch points that the rows passed straight on."""
-    places = [
-        input_numbers(session.problem, session.layout, inputs) for _, inputs in followed.crossings
-    ]
+def crossing_note(session: Session, passed: Iterable[Floats]) -> Diagnostic:
+    """The branch points that the rows passed straight on, by their inputs."""
+    places = [input_numbers(session.problem, session.layout, inputs) for inputs in passed]
     return passed_straight_on("branch", places)
 
 
@@ -91,24 +90,27 @@ _TURNED_BACK = {
 """What the inputs may come to where they turn back: code, words, hint."""
 
 
-def retraced_notes(session: Session, touched: Sequence[tuple[int, PassageEnd]]) -> list[Diagnostic]:
-    """The rows at which the inputs come to a dead centre or a branch point and turn back."""
+def retraced_notes(session: Session, touched: Sequence[Touched]) -> list[Diagnostic]:
+    """The places at which the inputs come to a dead centre or a branch point and turn back."""
     notes = []
-    for kind, (code, place, hint) in _TURNED_BACK.items():
-        rows = [row for row, other in touched if other == kind]
-        if not rows:
+    for kind, (code, name, hint) in _TURNED_BACK.items():
+        there = [place for place in touched if place.kind == kind]
+        if not there:
             continue
         places = [
-            input_numbers(session.problem, session.layout, session.inputs.values[:, row])
-            for row in rows[:MOST_SHOWN]
+            input_numbers(session.problem, session.layout, place.inputs)
+            for place in there[:MOST_SHOWN]
         ]
-        shown = ", ".join(str(row + 1) for row in rows[:MOST_SHOWN])
-        more = f" and {len(rows) - MOST_SHOWN} more" if len(rows) > MOST_SHOWN else ""
+        shown = ", ".join(
+            f"{'at' if place.is_row else 'behind'} row {place.row + 1}"
+            for place in there[:MOST_SHOWN]
+        )
+        more = f" and {len(there) - MOST_SHOWN} more" if len(there) > MOST_SHOWN else ""
         note = Diagnostic(
             code,
             "note",
-            f"at row{'s' * (len(rows) > 1)} {shown}{more} the inputs come to {place} and turn "
-            "back; the rows behind it retrace the branch",
+            f"{shown}{more} the inputs come to {name} and turn back; the rows behind it retrace "
+            "the branch",
             measured="; ".join(_words(numbers) for numbers in places),
             hint=hint,
             numbers=tuple(number for numbers in places for number in numbers),

@@ -108,15 +108,8 @@ def _chosen(
         nearest = seen[np.argmin(np.abs(seen - row))]
         return [branches[0 if along[nearest] > 0.0 else 1]]
     # a variant's branch is the base's, which `near` names where the base stands
-    if not session.problem.assembly.near or continued_start(session) is not None:
-        return branches
-    states = np.stack([branch.states[:, 0] for branch in branches], axis=1)
-    distances, _ = assembly.distances_of(session, branches[0].inputs[:, 0], states)
-    return (
-        branches
-        if assembly.is_unclear(*sorted(distances))
-        else [branches[int(np.argmin(distances))]]
-    )
+    meant = None if continued_start(session) else assembly.meant_branch(session, branches)
+    return branches if meant is None else [meant]
 
 
 def _products(direction: Floats, states: Floats) -> Floats:

@@ -12,20 +12,19 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Problem, Wanted
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import PassageEnd, TrackEnd, needs_all_links
+from mechkin_cli.plan import TrackEnd, needs_all_links
 from mechkin_cli.record import replace
 from mechkin_cli.session import ORIENTATION, turn_count
 from mechkin_cli.structure import SolverGraph
 from mechkin_cli.sweep.rows import SweepRows
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
-
-
-Touched = tuple[int, PassageEnd]
-"""A row at which the inputs turn back, and what they come to there."""
+    from mechkin_cli.sweep.retracing import Touched
 
 
 def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = False) -> SweepRows:
@@ -33,126 +32,86 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
 
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
-    values = session.inputs.values
-    count = values.shape[1]
+    count = session.inputs.values.shape[1]
     if start.state is None:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
     first = _first_row(session, start, every_row)
     if first is not None:
-        followed, touched = _follow_and_retrace(session, first, 0, 1, every_row)
+        followed = session.follow_rows(first, every_row=every_row)
         rows = SweepRows.followed(followed)
-        _explain(session, values, followed, rows, touched)
+        _end(session, followed, rows, every_row)
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for step in (-1, 1):
-            onward = slice(start.row, None, step)
-            followed, touched = _follow_and_retrace(
-                session, start.state, start.row, step, every_row
-            )
-            part = rows.part(onward)
+            followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
+            part = rows.part(slice(start.row, None, step))
             part.take(followed, 0)
             part.section *= step
-            rows.nodes += followed.steps
-            path = np.ascontiguousarray(values[:, onward])
-            _explain(session, path, followed, part, touched)
+            _end(session, followed, part, every_row)
+            rows.nodes += part.nodes + followed.steps
     _count_from_first(session, rows)
     return rows
 
 
-def _follow_and_retrace(
-    session: Session, state: Floats, row: int, step: int, every_row: bool
-) -> tuple[Followed, list[Touched]]:
-    """The rows from a row on, or with step -1 back from it, and the singular places at which the
-    inputs turn back there: behind them the branch is retraced."""
-    followed = session.follow_rows(state, row, step, every_row=every_row)
+def _end(session: Session, followed: Followed, rows: SweepRows, every_row: bool) -> None:
+    """Goes on where the inputs turn back at a dead centre or a branch point; says which branch
+    points were passed, at which places the inputs turn back, and what ended the branch, if it
+    ended. `rows` are in the order in which they were followed."""
+    values = np.ascontiguousarray(session.inputs.values[:, rows.numbers])
+    turning = _turning(values)
+    if not (turning.size or followed.crossings or followed.end != TrackEnd.FINISHED):
+        return
+    from mechkin_cli.sweep import branch_end
+    from mechkin_cli.sweep.retracing import retraced, unclear_rows
+
     touched: list[Touched] = []
-    if session.route is not None:
-        return followed, touched
-    onward = slice(row, None, step)
-    values, inputs = session.inputs.values[:, onward], session.inputs
-    reduced, whole = inputs.reduced[:, onward], inputs.whole[:, onward]
-    while followed.end != TrackEnd.FINISHED and 2 <= followed.reached < values.shape[1]:
-        turn = followed.reached - 1
-        before = _turned_back(values, turn)
-        if before is None:
+    passed: list[Floats] = []
+    first, way = 0, followed
+    onward: Followed | None = followed
+    while onward is not None:
+        way = onward
+        within = turning[(turning > first) & (turning < first + way.reached - 1)]
+        ends = [
+            way._replace(
+                reached=row + 1 - first, end=TrackEnd.STALLED, inputs=values[:, row], ending=None
+            )
+            for row in unclear_rows(session, rows, within)
+        ]
+        ends += [way] if way.end != TrackEnd.FINISHED else []
+        tried = (retraced(session, rows, end, first, every_row=every_row) for end in ends)
+        found = next((one for one in tried if one is not None), None)
+        if found is None:
             break
-        guess = np.ascontiguousarray(followed.guess[:, before, None])
-        closed = session.close(np.ascontiguousarray(reduced[:, before, None]), guess)
-        if not closed.good[0]:
-            break
-        start = np.ascontiguousarray(closed.states[:, 0])
-        kind = _singular_place(session, reduced[:, [before, turn]], start)
-        if kind is None:
-            break
-        rest = [before, *range(turn + 1, values.shape[1])]
-        turns = None if followed.turns is None else followed.turns[:, before].copy()
-        again = session.follow(
-            np.ascontiguousarray(reduced[:, rest]),
-            start,
-            every_row=every_row,
-            turns=True,
-            turn=turns,
-            whole=np.ascontiguousarray(whole[:, rest]),
-        )
-        if again.reached < 2:
-            break
-        followed = _joined(followed, again, turn)
-        touched.append((row + step * turn, kind))
-    return followed, touched
+        place, onward, behind = found
+        touched.append(place)
+        # a branch point at which the inputs turn back is not passed
+        passed += [
+            inputs
+            for row, inputs in way.crossings
+            if first + row < behind and not place.is_at(inputs)
+        ]
+        first = behind
+    if first < rows.numbers.size:
+        passed += [inputs for _, inputs in way.crossings]
+    rows.diagnostics += branch_end.retraced_notes(session, touched)
+    if passed:
+        rows.diagnostics.append(branch_end.crossing_note(session, passed))
+    rest = rows.part(slice(first, None))
+    if way.end != TrackEnd.FINISHED and not rest.reached.all():
+        path = np.ascontiguousarray(values[:, first:])
+        branch_end.explain_end(session, path, way, rest)
 
 
-def _singular_place(session: Session, way: Floats, start: Floats) -> PassageEnd | None:
-    """Whether a way (inputs, 2) from the states (states,) at its first place comes to a dead centre
-    or to a branch point at its second, as far as following shows that goes on; None: to neither."""
-    came = way[:, 1] - way[:, 0]
-    ahead = came / float(np.abs(came).max())
-    far, near = tolerances.BEFORE_DEAD_CENTRE
-    beyond = np.stack([way[:, 0], way[:, 1] + far * ahead], axis=1)
-    followed = session.follow(beyond, start, every_row=True)
-    places = [] if followed.ending is None else [(followed.ending.kind, followed.ending.inputs)]
-    places += [(PassageEnd.BRANCH_POINT, inputs) for _, inputs in followed.crossings]
-    for kind, inputs in places:
-        named = kind in (PassageEnd.DEAD_CENTRE, PassageEnd.BRANCH_POINT)
-        if named and float(np.abs(inputs - way[:, 1]).max()) <= near:
-            return kind
-    return None
-
-
-def _turned_back(values: Floats, turn: int) -> int | None:
-    """The last row before `turn` with other inputs, if the inputs (inputs, rows) go back from
-    `turn` the way they came from there; else None."""
-    other = np.flatnonzero((values[:, :turn] != values[:, turn, None]).any(axis=0))
-    if not other.size:
-        return None
-    before = int(other[-1])
-    came, goes = values[:, turn] - values[:, before], values[:, turn + 1] - values[:, turn]
-    farthest = int(np.argmax(np.abs(came)))
-    part = -float(goes[farthest] / came[farthest])
-    aside = float(np.abs(goes + part * came).max())
-    goes_back = part > 0.0 and aside <= tolerances.SAME_LINE * float(np.abs(goes).max())
-    return before if goes_back else None
-
-
-def _joined(followed: Followed, again: Followed, turn: int) -> Followed:
-    """What was followed up to the row `turn`, and then from the row before it back."""
-    for name in ("guess", "turns"):
-        array, more = getattr(followed, name), getattr(again, name)
-        if array is not None and more is not None:
-            array[:, turn + 1 :] = more[:, 1:]
-    followed.limit[turn + 1 :] = again.limit[1:]
-    # a branch point at which the inputs turn back is not passed
-    passed = [(number, inputs) for number, inputs in followed.crossings if number < turn]
-    passed += [(number + turn, inputs) for number, inputs in again.crossings]
-    return again._replace(
-        guess=followed.guess,
-        limit=followed.limit,
-        turns=followed.turns,
-        reached=turn + again.reached,
-        steps=followed.steps + again.steps,
-        crossings=tuple(passed),
-    )
+def _turning(values: Floats) -> NDArray[np.intp]:
+    """The numbers of the rows at which the inputs (inputs, rows) turn back."""
+    moved = np.flatnonzero((values[:, 1:] != values[:, :-1]).any(axis=0))
+    along = np.zeros(max(moved.size - 1, 0))
+    for value in values:
+        way = value[moved + 1] - value[moved]
+        along = along + way[1:] * way[:-1]
+    return moved[1:][along < 0.0]
 
 
 def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Floats | None:
@@ -164,22 +123,6 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
         return None
     back = session.follow_rows(start.state, start.row, -1, every_row=every_row)
     return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
-
-
-def _explain(
-    session: Session, path: Floats, followed: Followed, rows: SweepRows, touched: Sequence[Touched]
-) -> None:
-    """Says which branch points were passed, at which places the inputs turn back (`touched`), and
-    what ended the branch, if it ended."""
-    if not (followed.crossings or touched or followed.end != TrackEnd.FINISHED):
-        return
-    from mechkin_cli.sweep import branch_end
-
-    rows.diagnostics += branch_end.retraced_notes(session, touched)
-    if followed.crossings:
-        rows.diagnostics.append(branch_end.crossing_note(session, followed))
-    if followed.end != TrackEnd.FINISHED and not rows.reached.all():
-        branch_end.explain_end(session, path, followed, rows)
 
 
 def _count_from_first(session: Session, rows: SweepRows) -> None:

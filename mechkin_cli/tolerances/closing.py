@@ -220,6 +220,10 @@ letters, so that rounding cannot change it."""
 NEAR_RUNNER_UP: Final = 1.2
 """Ratio of distances below which the nearest assembly is not clearly the one that was meant."""
 
+NEAR_SIDE: Final = 0.5
+"""Part of the distance of two branches next to a dead centre by which what is named must be nearer
+to one of them: all of it where it lies on their line, none where it lies at the dead centre."""
+
 NEAR_FAR: Final = 0.5
 """Distance (rad, parts of the size) of a named coordinate from the assembly taken above which the
 name is said to be missed: half a radian is more than a reading of a drawing leaves open."""

@@ -47,6 +47,13 @@ BEFORE_DEAD_CENTRE: Final = (1e-4, 1e-6)
 """Distances of two places before a dead centre (rad, sizes): what grows as the root of the inverse
 does so tenfold between them, and both are far above rounding."""
 
+TURNED_BACK: Final = 1e-12
+"""Distance beyond a dead centre (rad, sizes; parts of inputs larger than 1) that is rounding: rows
+as far beyond it turn back at it."""
+
+BESIDE_CORRECTION: Final = 1e-7
+"""Correction of a row next to a dead centre: the root of a rounding, by which its place is off."""
+
 OFF_FOLD: Final = 0.5
 """Part of the distance from a fold by which its parabola may miss a branch: it misses by the square
 of the distance, a hundredth, in parts of the size."""

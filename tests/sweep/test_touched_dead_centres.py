@@ -125,3 +125,98 @@ def test_a_parallelogram_that_turns_back_in_line_stays_one_and_says_branch_point
     turns = [row for row in range(1, len(values) - 1) if values[row] == end]
     (note,) = (one for one in analysis.diagnostics if one.code == "branch-point-touched")
     assert len(note.numbers) == len(turns)
+
+
+LAWS = {
+    "polynomial": "{{law: polynomial, coefficients: [0, '4*({end!r} m)/(1 s)', "
+    "'-4*({end!r} m)/(1 s^2)']}}",
+    "sine": "{{with: '{end!r} m*sin(180 deg*time/(1 s))', drive: own}}",
+    "square": "{{with: '{end!r} m*sin(180 deg*time/(1 s))^2', drive: own}}",
+}
+"""Each comes to its end in the middle of every second, and goes back."""
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("seed", range(8))
+def test_a_law_comes_to_a_dead_centre_between_rows_or_at_one(seed: int, law: str) -> None:
+    rng = random.Random(3000 + seed)
+    crank, rod = float(rng.randint(1, 40)) / 8, float(rng.randint(41, 99)) / 8
+    angle = rng.uniform(0.3, 2.8)
+    x = crank * math.cos(angle) + math.sqrt(rod**2 - (crank * math.sin(angle)) ** 2)
+    end = rng.choice([rod + crank, rod - crank]) - x
+    text = SLIDER_CRANK.format(
+        ax=crank * math.cos(angle), ay=crank * math.sin(angle), x=x, values="[0]"
+    )
+    seconds = 2 if law == "square" else 1
+    count = rng.randint(5, 12)
+    motion = f"{{time: {{from: 0, to: {seconds}, count: {count}}}, inputs: {{S.s: "
+    text = text[: text.index("motion:")] + f"motion: {motion}{LAWS[law].format(end=end)}}}}}\n"
+    analysis = mk.loads(text).analyze(["O.theta"])
+    turned_back = 0
+    for value, theta, status in zip(
+        analysis["S.s"], analysis["O.theta"], analysis["row.status"], strict=True
+    ):
+        if abs(value - end) < 1e-12:
+            assert status in ("dead-centre", "beyond-dead-centre")
+            continue
+        assert status == "ok"
+        s = x + value
+        cosine = (crank**2 + s**2 - rod**2) / (2 * crank * s)
+        assert abs(theta - math.degrees(math.acos(cosine) - angle)) < 1e-6
+        turned_back += 1
+    assert turned_back >= count - 2 * seconds
+    assert "dead-centre-touched" in [one.code for one in analysis.diagnostics]
+
+
+@pytest.mark.parametrize("beyond", [1e-6, 1e-3])
+def test_a_law_that_goes_beyond_a_dead_centre_between_rows_is_lost(beyond: float) -> None:
+    text = SLIDER_CRANK.format(ax=0.6, ay=0.8, x=0.6 + math.sqrt(8.36), values="[0]")
+    end = 4 - 0.6 - math.sqrt(8.36) + beyond
+    motion = f"{{time: {{from: 0, to: 1, count: 6}}, inputs: {{S.s: {LAWS['sine'].format(end=end)}"
+    analysis = mk.loads(text[: text.index("motion:")] + f"motion: {motion}}}}}\n").analyze()
+    assert analysis["row.status"].tolist() == ["ok"] * 3 + ["beyond-dead-centre"] * 3
+
+
+FIVE_BAR = """format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{one: {{}}, rod: {{}}, other: {{}}, two: {{}}}}
+joints:
+  A: {{type: R, links: [ground, one], point: [0, 0]}}
+  E: {{type: R, links: [ground, two], point: [{d!r}, 0]}}
+  B: {{type: R, links: [one, rod], point: [0, {r!r}]}}
+  D: {{type: R, links: [two, other], point: [{d!r}, {r!r}]}}
+  C: {{type: R, links: [rod, other], point: [{x!r}, {y!r}]}}
+points: {{c: {{link: rod, at: [{x!r}, {y!r}]}}}}
+motion: {{inputs: {{A.theta: {{values: {first}}}, E.theta: {{values: {second}}}}}}}
+"""
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_two_cranks_come_to_a_dead_centre_and_turn_anywhere(seed: int) -> None:
+    """Where both rods lie in line the tips are as far apart as these are long."""
+    rng = random.Random(4000 + seed)
+    d, r, rod = 1.0, rng.uniform(0.3, 0.5), rng.uniform(0.55, 0.62)
+    lean = math.asin((2 * rod - d) / (2 * r))
+    first, second = [0.0], [0.0]
+    for _ in range(2):
+        first += [lean, rng.uniform(-0.1, 0.8) * lean]
+        second += [-lean, -rng.uniform(-0.1, 0.8) * lean]
+    text = FIVE_BAR.format(
+        d=d, r=r, x=d / 2, y=r + math.sqrt(rod * rod - d * d / 4), first=first, second=second
+    )
+    analysis = mk.loads(text).analyze(["c.position"])
+    for row, (u, v) in enumerate(zip(first, second, strict=True)):
+        status = analysis["row.status"][row]
+        if u == lean:
+            assert status in ("dead-centre", "beyond-dead-centre")
+            continue
+        assert status == "ok"
+        b = np.array([-r * math.sin(u), r * math.cos(u)])
+        e = np.array([d - r * math.sin(v), r * math.cos(v)])
+        way = e - b
+        half = math.hypot(*way) / 2
+        up = np.array([-way[1], way[0]]) / (2 * half)
+        known = (b + e) / 2 + math.sqrt(rod * rod - half * half) * up
+        found = np.array([analysis[f"c.position.{axis}"][row] for axis in "xy"])
+        assert np.abs(found - known).max() < 1e-9
