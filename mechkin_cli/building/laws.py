@@ -524,7 +524,10 @@ class Following:
             if used == name:
                 message, hint = f"{name} follows itself", "name the inputs that it follows"
             elif used in coordinates - self.orders.keys() - sections.keys():
-                message, hint = f"{used} is not an input", f"inputs are {', '.join(self.orders)}"
+                message, inputs = f"{used} is not an input", ", ".join(self.orders)
+                hint = (
+                    f"inputs are {inputs}" if inputs else "drive it, too; there are no other inputs"
+                )
             else:
                 continue
             if not self.fields.is_refused(used):

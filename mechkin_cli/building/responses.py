@@ -289,6 +289,7 @@ class _ResponseBuilder:
         path: Path = ("responses", name)
         timed = self._timed(path, section)
         driven = build_inputs(self.fields, timed, self.joints, self.per_row) or MotionInputs((), 1)
+        self._check_ties(path, driven)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         start = build_start(self.fields, path, section, self.joints)
@@ -326,6 +327,26 @@ class _ResponseBuilder:
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
+
+    def _check_ties(self, path: Path, driven: MotionInputs) -> None:
+        """Notes ties of the sweep's inputs that the response would leave out."""
+        motion = self.problem.motion
+        names = {f"{item.joint}.{item.coordinate}" for item in driven.inputs}
+        for tie in motion.constraints:
+            tied, leader = (
+                f"{item.joint}.{item.coordinate}"
+                for item in (motion.inputs[tie.input], motion.inputs[tie.leader])
+            )
+            if tied in names:
+                continue
+            text = (
+                f"{tied} is tied to {leader} under motion:, and this response would move it freely"
+            )
+            hint = (
+                f"drive both, {tied} by {{with: ..., drive: tie}}, or write drive: own under "
+                "motion: if they are not connected"
+            )
+            self.fields.error("tie-left-out", path, text, hint)
 
     def _timed(self, path: Path, section: written.Response) -> Written:
         """The driven coordinates as written, with the moments of the rows."""

@@ -1,0 +1,98 @@
+"""Whole files that once were answered wrong, lost or in silence, each against what is right."""
+
+from __future__ import annotations
+
+from math import acos, cos, degrees, hypot, radians, sin, sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+
+HERE = Path(__file__).parent
+
+
+def _load(name: str) -> mk.Model:
+    return mk.load(HERE / name)
+
+
+FALL = sqrt(0.8)
+"""When what falls from 5 m with g = 10 passes 1 m."""
+
+STOPS = {
+    "plain": FALL,
+    "iff": FALL,
+    "iff1": FALL,
+    "cond": FALL,
+    "andd": FALL,
+    "window": FALL,
+    "kink": FALL,
+    "flo": sqrt(2 * (5 - 3) / 10),  # the floor falls to 2 where s passes 3
+    "flo25": sqrt(2 * (5 - 3) / 10),
+    "sgn": 1.0,
+    "kink2": sqrt(2 * (5 - 1.001) / 10),
+    "kink3": sqrt(2 * (5 - 1.0000001) / 10),
+}
+
+
+@pytest.mark.parametrize("name", STOPS)
+def test_stops_at_jumps(name: str) -> None:
+    rows = _load("stops_that_jump.yaml").respond(name, tables=[])
+    end = STOPS[name]
+    assert rows["row.status"][-1] == "ok"
+    assert rows["time"][-1] == pytest.approx(end, abs=1e-9)
+    assert rows["P.s"][-1] == pytest.approx(5 - 5 * end * end, abs=1e-8)
+
+
+def test_an_arm_with_friction_in_all_its_joints_moves_on() -> None:
+    model = _load("friction_hangs.json")
+    rows = model.respond(tables=[])
+    assert set(rows["row.status"]) == {"ok"}
+
+
+def test_ten_parallelograms_pass_where_all_lie_flat() -> None:
+    rows = _load("ten_parallelograms.yaml").analyze()
+    assert set(rows["row.status"]) == {"ok"}
+    last = rows.tables["t"].columns[-1]
+    assert np.abs(np.asarray(last.values) - rows["A0.theta"]).max() < 1e-12
+
+
+def test_a_touched_dead_centre_is_left_on_the_same_branch() -> None:
+    rows = _load("touched_dead_centre.yaml").analyze()
+    # the crank of 3 is drawn upright, the rod of 5 ends at (4 + s, 0)
+    right = [degrees(acos((9 + (4 + s) ** 2 - 25) / (6 * (4 + s)))) - 90 for s in (0, 2, 4, 2, 0)]
+    assert np.abs(rows["O.theta"] - np.array(right)).max() < 1e-6
+    assert [d.code for d in rows.diagnostics if d.severity == "error"] == []
+
+
+def test_rates_that_are_not_given_are_told() -> None:
+    model = _load("no_rate.yaml")
+    assert "no-rate" in [d.code for d in model.analyze().diagnostics]
+
+
+def test_the_transmission_angle_of_a_plane_four_bar() -> None:
+    rows = _load("transmission_angle.yaml").analyze()
+    rod, rocker = hypot(80, 90), hypot(10, 90)
+    for theta, angle in zip(rows["A.theta"], rows["D.theta.transmission_angle"], strict=True):
+        x, y = 40 * cos(radians(theta)), 40 * sin(radians(theta))
+        base = hypot(110 - x, y)
+        inside = degrees(acos((rod**2 + rocker**2 - base**2) / (2 * rod * rocker)))
+        assert min(inside, 180 - inside) == pytest.approx(min(angle, 180 - angle), abs=1e-9)
+
+
+def test_one_mistake_in_the_inputs_is_one_error() -> None:
+    with pytest.raises(mk.InvalidFile) as refused:
+        _load("inputs_of_two_lengths.yaml")
+    assert len(refused.value.diagnostics) == 1
+    assert "equally many rows" in refused.value.diagnostics[0].message
+
+
+def test_no_response_leaves_a_tie_out() -> None:
+    with pytest.raises(mk.InvalidFile, match=r"B.theta is tied to A.theta under motion:"):
+        _load("geared_shafts.yaml")
+
+
+def test_a_tie_to_what_is_not_driven_says_what_to_do() -> None:
+    with pytest.raises(mk.InvalidFile, match="drive it, too; there are no other inputs"):
+        _load("gears_spun_up.yaml")
