@@ -176,7 +176,7 @@ def files_line(folder: Path, written: Sequence[Path], removed: Sequence[str]) ->
     """Where the files are, how many of each kind, and those of the run before that went."""
     kinds = Counter(file.suffix.removeprefix(".") for file in written)
     counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-    gone = f"; removed of the run before: {listed(removed)}" if removed else ""
+    gone = f"; removed from the run before: {listed(removed)}" if removed else ""
     return _line("files", f"{folder} ({counts}){gone}")
 
 
