@@ -240,7 +240,10 @@ def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
     if balances:
         names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
-    result = analyze(session.packed(packing), names)
+    # the table of a file that has none shows rates, too
+    shown = _read_by(session, tuple(table for table in layouts if table.name == SWEEP))
+    unasked = {*shown} - {*(options.quantities or ())}
+    result = analyze(session.packed(packing), names, unasked=unasked)
     systems = chosen(model.built.coefficients, options.tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
     analysis = analysis if mode is None else known_mode(analysis)

@@ -36,7 +36,7 @@ from mechkin_cli.units import MOMENT
 from mechkin_cli.verdict import CONDITION_LIMITS, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
 
     from mechkin_cli.mechanism import Joint, Mechanism, Problem, Wanted
     from mechkin_cli.session import Session
@@ -216,14 +216,17 @@ _WITHOUT_RATES = {"per_acceleration", "dynamic_transmission_angle", "actuation"}
 """Kinds of forces that depend on no rate."""
 
 
-def unrated_notes(problem: Problem, asked: Sequence[Wanted]) -> list[Diagnostic]:
-    """Names the inputs whose rates the file leaves out, where quantities asked for, loads or masses
-    need them."""
+def unrated_notes(
+    problem: Problem, asked: Sequence[Wanted], unasked: Collection[str]
+) -> list[Diagnostic]:
+    """Names the inputs whose rates the file leaves out, where loads, masses or quantities need
+    them, other than rates that are shown `unasked`."""
     unrated, mechanism = problem.motion.unrated, problem.mechanism
     if not unrated:
         return []
     by_rates = Demand.VELOCITY | Demand.FORCES
-    rates = [q.name for q in asked if demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY]
+    shown = [q for q in asked if q.name not in unasked]
+    rates = [q.name for q in shown if demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY]
     needs = [f"{listed(rates)} {'is' if len(rates) == 1 else 'are'} as at rest"] if rates else []
     forces = [q for q in asked if q.kind not in _WITHOUT_RATES]
     if any(demand_of(mechanism, [q]) & by_rates == by_rates for q in forces):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,13 +106,21 @@ def rest_on_reactions(problem: Problem, asked: Sequence[Wanted]) -> bool:
     )
 
 
-def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool = True) -> Result:
+def analyze(
+    session: Session,
+    quantities: Iterable[str] = (),
+    *,
+    verdicts: bool = True,
+    unasked: Collection[str] = (),
+) -> Result:
     """Runs the sweep of a session's problem and reads the quantities asked for.
 
     Args:
         session: the problem in the kernel.
         quantities: names out of `problem.quantities()`.
         verdicts: compute each row's condition, and its power error where forces are computed.
+        unasked: those of the quantities that a run shows of its own accord: no rate of theirs is
+            missed.
 
     Raises:
         KeyError: an unknown quantity.
@@ -136,7 +144,7 @@ def analyze(session: Session, quantities: Iterable[str] = (), *, verdicts: bool 
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
     failed = any(d.severity == "error" for d in result.row_states.diagnostics)
     if result.solved.any() and not failed:
-        result.row_states.diagnostics += unrated_notes(session.problem, asked)
+        result.row_states.diagnostics += unrated_notes(session.problem, asked, unasked)
     return result
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import mechkin_cli as mk
-from mechkin_cli.assembly.start import at_unit_rate, choose_start
+from mechkin_cli.assembly import at_unit_rate, choose_start
 
 STEWART = Path(__file__).parents[2] / "mechanisms" / "classics" / "stewart.yaml"
 

@@ -19,7 +19,7 @@ import pytest
 from cli import files
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.writers import write_files
+from mechkin_cli.tables.writers import LISTING, write_files
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 MECHKIN = [sys.executable, "-P", "-m", "mechkin_cli"]
@@ -32,7 +32,9 @@ def found(folder: Path) -> dict[str, bytes]:
 
 def debris(folder: Path) -> list[str]:
     return [
-        path.name for path in folder.iterdir() if path.name.startswith(".") or path.is_symlink()
+        path.name
+        for path in folder.iterdir()
+        if (path.name.startswith(".") and path.name != LISTING) or path.is_symlink()
     ]
 
 
@@ -169,6 +171,7 @@ def test_the_second_of_two_runs_says_so(tmp_path: Path) -> None:
     )
     assert first.wait() == 0
     assert sorted(path.name for path in (tmp_path / "here").iterdir()) == [
+        LISTING,
         "rows.csv",
         "sweep.csv",
         "sweep.md",

@@ -66,16 +66,22 @@ def as_read(one: Precise, stem: str) -> list[tuple[Any, Any]]:
             pytest.skip(f"the oracle does not read {error}")
         length, mass, _ = (oracle.mpf(x.numerator) / x.denominator for x in known.units._base)
         pairs: list[tuple[Any, Any]] = []
+
+        def from_datum(place: Any) -> list[Any]:
+            datum = one.problem.mechanism.datum
+            return [x * length - oracle.mpf(d) for x, d in zip(place, datum, strict=True)]
+
         for name, link in known.links.items():
             own = one.problem.mechanism.links[name]
             pairs.append((own.mass, link.mass * mass))
-            pairs += zip(own.center_of_mass, (x * length for x in link.mass_centre), strict=True)
+            if link.mass:
+                pairs += zip(own.center_of_mass, from_datum(link.mass_centre), strict=True)
         for name, joint in known.joints.items():
             drawn = one.problem.mechanism.joints[name]
             frames = (drawn.on_first, drawn.on_second)
             if drawn.type.has_point:
                 for frame, point in zip(frames, joint.points, strict=True):
-                    pairs += zip(frame.o, (x * length for x in point), strict=True)
+                    pairs += zip(frame.o, from_datum(point), strict=True)
             if joint.type in ALONG_Z:
                 for frame, axis in zip(frames, joint.axes, strict=True):
                     pairs += zip(frame.z, axis, strict=True)

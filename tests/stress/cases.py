@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -74,7 +75,7 @@ def drawn_at(shift: Sequence[float]) -> str:
         for key in keys[:-1]:
             container = container[key]
         coarse = np.round(place * 2.0**24) / 2.0**24
-        container[keys[-1]] = [repr(float(x)) for x in coarse + np.asarray(shift, float)]
+        container[keys[-1]] = [f"{Decimal(float(x)):f}" for x in coarse + np.asarray(shift, float)]
     return to_text(data)
 
 
