@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,6 +106,13 @@ def _positions(found: Found, truth: Truth) -> tuple[Rows, Rows, Rows]:
         if quantity.other is not None:
             elsewhere = np.fmin(elsewhere, _apart(found, quantity, quantity.other) / scale)
     return error, bare, elsewhere
+
+
+def misses(found: Found, truth: Truth) -> Rows:
+    """The largest errors of positions (mechanisms, rows) as bounds of rows measure them: in rad and
+    parts of the power of two next to the size."""
+    unit = 2.0 ** np.rint(np.log2(truth.size))
+    return _positions(found, replace(truth, size=unit))[1]
 
 
 def _apart(found: Found, quantity: Quantity, right: DoubleDouble) -> Rows:
