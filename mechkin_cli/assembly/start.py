@@ -57,7 +57,10 @@ if TYPE_CHECKING:
 
 
 HOME = "home"
-"""In place of the letter of an assembled drawing."""
+"""The assembly that is drawn, under any letter."""
+
+MOST_LETTERS = 26
+"""Modes whose letters a message lists."""
 
 MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (write expressions)"
 
@@ -142,7 +145,8 @@ def _continued(continued: Continued) -> AssemblyStart:
 def _choose_start(session: Session) -> AssemblyStart:
     # an assembly is the same whole turns of an input away
     path, wanted = session.inputs.reduced, session.problem.assembly
-    if not wanted.near and wanted.mode is None and is_home_assembled(session):
+    as_drawn = wanted.mode == HOME or (not wanted.near and wanted.mode is None)
+    if as_drawn and is_home_assembled(session):
         return _from_home(session)
     if wanted.near and wanted.mode is None:
         start = _from_near(session, path[:, 0])
@@ -281,10 +285,17 @@ def _by_name(modes: NamedModes, name: str) -> AssemblyStart:
         "no-such-mode",
         "error",
         f"there is no mode {name[:LONGEST_NAME]} at the first row",
-        measured=f"modes {', '.join(modes.letters.values())}",
+        measured=f"modes {_letters(list(modes.letters.values()))}",
         hint="take one of these",
     )
     return AssemblyStart(None, name, "", [diagnostic])
+
+
+def _letters(letters: list[str]) -> str:
+    if len(letters) <= MOST_LETTERS:
+        return ", ".join(letters)
+    first = ", ".join(letters[:MOST_LETTERS])
+    return f"{first}, ... {letters[-1]}, {len(letters)} of them"
 
 
 def _nearest(

@@ -100,7 +100,7 @@ SET = Word(
 )
 MODE = Word(
     "mode",
-    "Assembly mode at the first row.",
+    "Assembly mode at the first row: its letter, or home for the one drawn.",
     ("--mode",),
     "text",
     "NAME",

@@ -248,7 +248,8 @@ class Model(Listed):
             quantities: names and expressions to compute besides what the tables read; None: no
                 others.
             tables: names of the tables wanted; None: all, [] none.
-            mode: assembly mode at the first row instead of the file's choice.
+            mode: assembly mode at the first row instead of the file's choice: its letter, or
+                home for the one drawn.
             closed_at: cut joints to use (the answers do not depend on them).
             lanes: rows computed side by side, 2, 4 or 8; 0: the most the machine can.
             threads: how many split the rows; 0: all cores. Answers depend on neither.
@@ -281,7 +282,8 @@ class Model(Listed):
             name: of the response; None: the only one.
             quantities: names to compute beside what its tables read.
             tables: names of its tables that are wanted; None: all, [] none.
-            mode: assembly mode at the start instead of the file's choice.
+            mode: assembly mode at the start instead of the file's choice: its letter, or home
+                for the one drawn.
             lanes: width of the kernel's packs, 0 for the widest (no answer depends on it).
             threads: how many split the rows, 0 for all cores where that pays (nor on this).
 
@@ -300,7 +302,8 @@ class Model(Listed):
 
         Args:
             run: `sweep`, or a response; None: all.
-            mode: assembly mode at the first row instead of the file's choice.
+            mode: assembly mode at the first row instead of the file's choice: its letter, or
+                home for the one drawn.
 
         Raises:
             InvalidFile: a run cannot be solved as it is driven.
@@ -351,7 +354,8 @@ class Model(Listed):
         Args:
             path: of the page.
             run: `sweep` or a response alone; None: all runs of the file.
-            mode: assembly mode at the first row instead of the file's choice.
+            mode: assembly mode at the first row instead of the file's choice: its letter, or
+                home for the one drawn.
             modes: show the other assembly modes, too.
 
         Returns:

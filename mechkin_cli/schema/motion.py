@@ -244,7 +244,8 @@ class AssemblySection(Section):
     """Take the mode nearest to these coordinates; left out, an assembled drawing, else the nearest
     to the drawing."""
     mode: Text | None = None
-    """Take the mode of this letter, as `mechkin modes` names it; left out, as `near` says."""
+    """Take the mode of this letter, as `mechkin modes` names it, or the one drawn: `home`; left
+    out, as `near` says."""
     turns: Annotated[WholeNumber, Limits(ge=0, le=1000)] = 1
     """Turns of helical joints to either side within which modes are looked for."""
     at_branch_points: Literal["straight"] | None = None

@@ -154,7 +154,8 @@ class Response(Section):
     near: dict[Coordinate, AngleOrLength] = NOTHING
     """Take the assembly nearest to these coordinates; left out, the file's choice."""
     mode: Text | None = None
-    """Take the assembly mode of this letter at the start; left out, the file's choice."""
+    """Take the assembly mode of this letter at the start, or the one drawn: `home`; left out, the
+    file's choice."""
     efforts: dict[Coordinate, Effort] = NOTHING
     """Force or torque on coordinates: a number, an expression, or a table over the coordinate; they
     add to the loads; left out, none."""

@@ -96,3 +96,12 @@ def test_no_response_leaves_a_tie_out() -> None:
 def test_a_tie_to_what_is_not_driven_says_what_to_do() -> None:
     with pytest.raises(mk.InvalidFile, match="drive it, too; there are no other inputs"):
         _load("gears_spun_up.yaml")
+
+
+def test_the_drawn_mode_and_its_letter_are_one() -> None:
+    model = _load("transmission_angle.yaml")
+    drawn = model.analyze()
+    for mode in ("home", "B"):
+        assert np.abs(model.analyze(mode=mode)["D.theta"] - drawn["D.theta"]).max() < 1e-12
+    with pytest.raises(mk.UsageError, match="there is no mode Z at the first row: modes A, B"):
+        model.analyze(mode="Z")
