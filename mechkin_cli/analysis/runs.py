@@ -241,8 +241,8 @@ def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
         names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     # the table of a file that has none shows rates, too
-    shown = _read_by(session, tuple(table for table in layouts if table.name == SWEEP))
-    unasked = {*shown} - {*(options.quantities or ())}
+    own = tuple(table for table in layouts if table.name == SWEEP)
+    unasked = {*(_read_by(session, own) if own else ())} - {*(options.quantities or ())}
     result = analyze(session.packed(packing), names, unasked=unasked)
     systems = chosen(model.built.coefficients, options.tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)

@@ -333,7 +333,12 @@ def row_notes(
         said = {diagnostic.code for diagnostic in rows.diagnostics}
         from mechkin_cli.sweep.branch_end import input_faults
 
-        notes += [fault for fault in input_faults(session) if fault.code not in said]
+        faults = input_faults(session)
+        notes += [fault for fault in faults if fault.code not in said]
+        if faults:
+            # the condition of what is not driven, or cannot move, says no more
+            unsaid = Status.rank_unclear.label
+            rows.diagnostics[:] = [d for d in rows.diagnostics if d.code != unsaid]
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)

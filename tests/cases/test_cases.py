@@ -98,6 +98,25 @@ def test_a_tie_to_what_is_not_driven_says_what_to_do() -> None:
         _load("gears_spun_up.yaml")
 
 
+def test_a_freedom_left_undriven_in_space_is_the_one_error() -> None:
+    """Five parallel axes: three constraints are redundant, and one freedom is not driven."""
+    places = {"A": [0, 0, 0], "B": [0, 1, 0], "C": [1, 2, 0], "D": [2, 1, 0], "E": [2, 0, 0]}
+    links = ["ground", "a", "b", "c", "d", "ground"]
+    joints = {
+        name: {"type": "R", "links": links[k : k + 2], "point": place, "axis": [0, 0, 1]}
+        for k, (name, place) in enumerate(places.items())
+    }
+    file = {
+        "format": 1,
+        "units": {"length": "m", "angle": "deg"},
+        "links": {link: {} for link in "abcd"},
+        "joints": joints,
+        "motion": {"inputs": {"A.theta": {"from": 0, "to": 140, "step": 10}}},
+    }
+    found = mk.load(file).analyze().diagnostics
+    assert [d.code for d in found if d.severity != "note"] == ["undriven-freedom"]
+
+
 def test_the_drawn_mode_and_its_letter_are_one() -> None:
     model = _load("transmission_angle.yaml")
     drawn = model.analyze()
