@@ -124,7 +124,8 @@ class AnalyzeCommand(NamedTuple):
         Raises:
             UsageError: one is not known.
         """
-        formats = tuple(dict.fromkeys(self.format or USUAL_FORMATS))
+        asked = [name for text in self.format or () for name in text.split(",")]
+        formats = tuple(dict.fromkeys(asked or USUAL_FORMATS))
         for name in formats:
             if name not in WRITERS:
                 cure = f"; for messages write --messages {name}" if name in FORMS else ""

@@ -157,10 +157,10 @@ ANALYZE = Command(
     """,
     (
         FILES,
-        Word("out", "Folder to write to (default: out/STEM).", ("--out",), "folder", "DIR"),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "DIR"),
         Word(
             "format",
-            "{formats}; may be repeated.",
+            "{formats}; several as csv,md.",
             ("--format",),
             "text",
             "FORMAT",
@@ -176,7 +176,7 @@ ANALYZE = Command(
             "Rows computed at a time: 2, 4 or 8; 0: the most the machine can.",
             ("--lanes",),
             "whole",
-            "N",
+            "NUMBER",
             default=0,
         ),
         Word(
@@ -184,7 +184,7 @@ ANALYZE = Command(
             "Threads that split the rows; 0: all cores.",
             ("--threads",),
             "whole",
-            "N",
+            "NUMBER",
             default=0,
         ),
         Word(
@@ -313,7 +313,8 @@ PLOT = Command(
     "plot:plot",
     """Draw curves, coupler curves and polar diagrams of a file.
 
-    Without --y, one picture for each table, as its `plot:` says, in out/STEM/TABLE.svg. --y takes
+    Without --y, one picture for each table, as its `plot:` says, in out/STEM/TABLE.svg; of several
+    with -o x.png in x_TABLE.png. --y takes
     labels of columns, quantities or expressions. Vectors are drawn in a plane: a point's position
     as a coupler curve, a force as a polar diagram. Needs matplotlib: pip install 'mechkin[plot]'.
     """,
@@ -441,7 +442,7 @@ SCHEMA = Command(
     "new:schema",
     """Print the JSON Schema of mechanism files.""",
     (
-        Word("out", "Write to a file instead of stdout.", ("--out",), "path", "FILE"),
+        Word("out", "Write to a file instead of stdout.", ("-o", "--out"), "path", "FILE"),
         Word("check", "Compare with the files in schemas/ (or --out) instead.", ("--check",)),
         Word("study", "Print the schema of study files instead.", ("--study",)),
     ),
@@ -469,7 +470,7 @@ BENCH = Command(
         Word(
             "out",
             "Also write bench.json, bench.csv, bench.md, bench.svg.",
-            ("--out",),
+            ("-o", "--out"),
             "folder",
             "DIR",
         ),

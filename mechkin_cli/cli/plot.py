@@ -58,16 +58,15 @@ def plot(
             analyses = _tables(model, table, run, mode) if not names else {}
             if names:
                 analyses[stem_of(file)] = _run(model, run, mode), None
-            if out is not None and len(analyses) > 1:
-                names_of_tables = ", ".join(analyses)
-                raise UsageError(f"-o is one picture; choose one of {names_of_tables} with --table")
             files = {}
             for name, drawn in analyses.items():
                 tell(f"{shown(file)}: picture of {name}")
                 picture = _picture(drawn, names, x)
-                files[f"{name}.{ending}" if out is None else out.name] = plots.image(
-                    picture, ending
-                )
+                if out is None:
+                    target = f"{name}.{ending}"
+                else:
+                    target = out.name if len(analyses) == 1 else f"{out.stem}_{name}{out.suffix}"
+                files[target] = plots.image(picture, ending)
     except (InvalidFile, UsageError) as error:
         return refusal(file, error)[0]
     _write(file, out, files, quiet)

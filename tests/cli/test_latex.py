@@ -65,7 +65,7 @@ def both(mechkin, write, folder):
     """TeX and CSV of a file's first table."""
 
     def run(yaml: str) -> tuple[str, list[list[str]]]:
-        mechkin("analyze", write("bar.yaml", yaml), "--format", "tex", "--format", "csv")
+        mechkin("analyze", write("bar.yaml", yaml), "--format", "tex,csv")
         out = Path(folder) / "out" / "bar"
         rows = list(csv.reader((out / "drive.csv").read_text(encoding="utf-8").splitlines()))
         return (out / "drive.tex").read_text(encoding="utf-8"), rows

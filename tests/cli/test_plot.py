@@ -22,6 +22,12 @@ def test_a_picture_for_each_table(mechkin, write, folder) -> None:
         assert b"<svg" in (folder / "out/crank" / f"{name}.svg").read_bytes()
 
 
+def test_pictures_of_several_tables_share_the_name_given(mechkin, write, folder) -> None:
+    run = mechkin("plot", write("crank.yaml", PLOTTED), "-o", "pic/a.png")
+    assert (run.code, run.out) == (0, "pic/a_tip.png\npic/a_drive.png\n")
+    assert (folder / "pic/a_tip.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_what_is_named_goes_to_one_picture(mechkin, write, folder) -> None:
     file = write("crank.yaml", PLOTTED)
     run = mechkin("plot", file, "--y", "O.effort, norm(tip.velocity)", "-o", "pic/a.pdf")
@@ -34,7 +40,6 @@ def test_what_is_named_goes_to_one_picture(mechkin, write, folder) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("-o", "a.svg"), "-o is one picture; choose one of tip, drive with --table"),
         (("-o", "a.gif", "--table", "tip"), "a.gif: pictures end in .svg, .png, .pdf"),
         (("--y", "O.efort"), "did you mean O.effort"),
         (("--y", "O.effort", "--table", "tip"), "leave one of them out"),
