@@ -160,12 +160,14 @@ class Mobility(Listed):
 
     def _compared(self) -> str:
         redundant = sum(item.number for item in self.redundant)
-        if not redundant and self.mobility == self.count:
-            return "as Kutzbach's count says"
+        constraints = "one constraint is" if redundant == 1 else f"{redundant} constraints are"
+        if self.mobility == self.count:
+            # what the count allows needs no exact dimensions, whatever the rank is
+            says = "as Kutzbach's count says"
+            return f"{says}, though {constraints} redundant to first order" if redundant else says
         count = f"Kutzbach's count is {self.count}"
         if not redundant or not self.mobility:
             return count
-        constraints = "one constraint is" if redundant == 1 else f"{redundant} constraints are"
         return f"{count}: {constraints} redundant, so it moves only while the dimensions are exact"
 
 

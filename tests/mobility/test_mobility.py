@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 from classics import platforms, rings
 from classics.drawing import Classic
@@ -24,6 +25,21 @@ from mobility.overconstrained import (
 from references import FILE_OF
 
 import mechkin_cli as mk
+
+SQUARE = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+
+
+def table(x: float, y: float) -> str:
+    """A table on four legs of length 1 from the corners of a square, drawn displaced."""
+    z = -((1.0 - x * x - y * y) ** 0.5)
+    lines = ["format: 1", "links: {top: {}, l0: {}, l1: {}, l2: {}, l3: {}}", "joints:"]
+    for k, (a, b) in enumerate(SQUARE):
+        lines.append(f"  A{k}: {{type: S, links: [ground, l{k}], point: [{a}, {b}, 0]}}")
+        lines.append(
+            f"  B{k}: {{type: S, links: [l{k}, top], point: [{a + x!r}, {b + y!r}, {z!r}]}}"
+        )
+    return "\n".join(lines)
+
 
 SCREW_JACK = ring("RHP", [(0, 0, 0), (0, 0, 1), (0, 0, 2)], [Z] * 3, lead=0.1)
 
@@ -168,3 +184,22 @@ def rounded(text: str, digits: int) -> str:
     """A file whose numbers have some digits behind the point."""
     number = re.compile(r"-?\d+\.\d+(e-?\d+)?")
     return number.sub(lambda found: f"{float(found.group()):.{digits}f}", text)
+
+
+@pytest.mark.parametrize("at", [(0.3, 0.2), (-0.4, 0.1), (0.5, -0.6)])
+def test_motion_that_the_count_allows_needs_no_exact_dimensions(at: tuple[float, float]) -> None:
+    """Lines of parallel legs r_k + t l have the rank 3, so that the table twists about l to first
+    order; to second order the stress (1, -1, 1, -1) leaves -8 w_x w_y = -8 s^2 l_x l_y, which
+    blocks the twist s where neither vanishes. Two translations and four spins are left, as many as
+    the count of 6 for any lengths of the legs."""
+    x, y = at
+    line = np.array([x, y, -np.sqrt(1.0 - x * x - y * y)])
+    lines = [np.concatenate([line, np.cross([a, b, 0.0], line)]) for a, b in SQUARE]
+    twists = 6 - int(np.linalg.matrix_rank(lines))
+    found = mk.loads(table(x, y)).mobility()
+    assert (found.count, found.mobility, found.first_order) == (6, 2 + 4, twists + 4)
+    assert sum(item.number for item in found.redundant) == 1
+    assert found.fixed == ()
+    assert found.verdict.endswith(
+        "as Kutzbach's count says, though one constraint is redundant to first order"
+    )
