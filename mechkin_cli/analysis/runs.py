@@ -235,14 +235,15 @@ def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
         session = session.in_mode(mode)
     layouts = chosen_tables(model.built, options.tables, SWEEP)
     balances = chosen(model.built.balances, options.tables)
-    names = wanted_names(session, SWEEP, layouts, options.quantities)
+    named = wanted_names(session, SWEEP, (), options.quantities)
+    names = [*wanted_names(session, SWEEP, layouts, None), *named]
     asked = tuple(names)
     if balances:
         names += read_by(balances, problem)
     refuse_loaded_spin(session, names)
     # the table of a file that has none shows rates, too
     own = tuple(table for table in layouts if table.name == SWEEP)
-    unasked = {*(_read_by(session, own) if own else ())} - {*(options.quantities or ())}
+    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
     result = analyze(session.packed(packing), names, unasked=unasked)
     systems = chosen(model.built.coefficients, options.tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
