@@ -5,7 +5,7 @@ Intervals), with the inputs and constants of the file's text enclosed as well.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -135,11 +135,7 @@ def enclose(
     values = np.full((3 * outputs.slots, rows), np.nan)
     _kernel.enclose(
         positions.plan,
-        low=_part(positions.constants, 1),
-        radii=_part(positions.constants, 2),
-        states=np.ascontiguousarray(positions.states),
-        inputs=_rows(inputs.inputs),
-        radius=positions.radius,
+        **_boxes(positions, inputs.inputs),
         contract=_CLOSED if closed else _SOLVED,
         rates=_rows(inputs.rates) if demand & Demand.VELOCITY else None,
         accelerations=_rows(inputs.accelerations) if demand & Demand.ACCELERATION else None,
@@ -166,6 +162,18 @@ def enclose(
     return enclosures
 
 
+def _boxes(positions: Positions, inputs: Floats) -> dict[str, Any]:
+    """What the kernel is given of boxes: the second and third parts of the constants, the middles
+    and radii, and the inputs (inputs, 3, rows)."""
+    return {
+        "low": _part(positions.constants, 1),
+        "radii": _part(positions.constants, 2),
+        "states": np.ascontiguousarray(positions.states),
+        "inputs": _rows(inputs),
+        "radius": np.ascontiguousarray(positions.radius),
+    }
+
+
 def enclose_positions(positions: Positions, inputs: Floats, *, closed: bool) -> Enclosure:
     """The positions by columns (columns, rows), in rad and the kernel's lengths; of orientations
     the increments that turn that of the boxes' middles to them.
@@ -179,11 +187,7 @@ def enclose_positions(positions: Positions, inputs: Floats, *, closed: bool) -> 
     found = np.empty((3 * columns, rows))
     _kernel.enclose(
         positions.plan,
-        low=_part(positions.constants, 1),
-        radii=_part(positions.constants, 2),
-        states=np.ascontiguousarray(positions.states),
-        inputs=_rows(inputs),
-        radius=np.ascontiguousarray(positions.radius),
+        **_boxes(positions, inputs),
         contract=_CLOSED if closed else _SOLVED,
         position=found,
     )
@@ -207,11 +211,7 @@ def enclose_derivatives(
     first, second = np.empty((3 * columns, places)), np.empty((3 * columns, places))
     _kernel.enclose(
         positions.plan,
-        low=_part(positions.constants, 1),
-        radii=_part(positions.constants, 2),
-        states=np.ascontiguousarray(positions.states),
-        inputs=_rows(inputs),
-        radius=np.ascontiguousarray(positions.radius),
+        **_boxes(positions, inputs),
         contract=_SOLVED,
         rates=_rows(_point(rates)),
         accelerations=_rows(_point(np.zeros_like(rates))),

@@ -137,6 +137,18 @@ class Rubbed:
 
     # equations
 
+    def _bordered(self, held: Array, tensors: Array) -> Array:
+        """Masses and inertias with the rows that hold the links."""
+        m = self.motion
+        n = 6 * m.links
+        matrix = np.zeros((n + len(held), n + len(held)))
+        for k in range(m.links):
+            i = 6 * k
+            matrix[range(i, i + 3), range(i, i + 3)] = m.drawn.mass[k]
+            matrix[i + 3 : i + 6, i + 3 : i + 6] = tensors[k]
+        matrix[n:, :n], matrix[:n, n:] = held, held.T
+        return matrix
+
     def solved(self, time: float, state: Array, aim: dict[int, Array] | None = None) -> Answer:
         """What follows from how the joints slip; `aim` are directions of slips that begin."""
         m = self.motion
@@ -157,12 +169,7 @@ class Rubbed:
         tensors = at.R @ m.drawn.inertia @ at.R.transpose(0, 2, 1)
         force, _ = m._forces(place)
         force[:, 3:] -= np.cross(at.w, np.einsum("kij,kj->ki", tensors, at.w))
-        matrix = np.zeros((n + len(held), n + len(held)))
-        for k in range(m.links):
-            i = 6 * k
-            matrix[range(i, i + 3), range(i, i + 3)] = m.drawn.mass[k]
-            matrix[i + 3 : i + 6, i + 3 : i + 6] = tensors[k]
-        matrix[n:, :n], matrix[:n, n:] = held, held.T
+        matrix = self._bordered(held, tensors)
         going = [k for k in range(len(self.rubs)) if k not in sticks]
         columns = [np.concatenate([force[:-1].ravel(), *right])]
         directions = {}
@@ -309,12 +316,7 @@ class Rubbed:
             if sense == 0.0
         ]
         held = np.vstack(rows)
-        matrix = np.zeros((n + len(held), n + len(held)))
-        for k in range(m.links):
-            i = 6 * k
-            matrix[range(i, i + 3), range(i, i + 3)] = m.drawn.mass[k]
-            matrix[i + 3 : i + 6, i + 3 : i + 6] = tensors[k]
-        matrix[n:, :n], matrix[:n, n:] = held, held.T
+        matrix = self._bordered(held, tensors)
         V = np.hstack([at.v, at.w])[:-1].ravel()
         right = np.concatenate([np.zeros(n), -held @ V])
         change = np.linalg.lstsq(matrix, right, rcond=1e-13)[0][:n]

@@ -14,17 +14,13 @@ from typing import Any, NamedTuple
 
 from oracle import mp
 from random_families.dead_centres.case import (
-    HEAD,
-    ORIGIN,
     Linkage,
     Point,
     decimal,
-    drawn,
-    driven,
     linkage,
-    links,
-    pin,
     plane_four_bar,
+    rssr_of,
+    slider_crank_of,
 )
 
 DIGITS = 50
@@ -77,27 +73,11 @@ def dead_centre_of(case: Linkage, way: int, step: str = "0.004", far: float = 3.
     return None
 
 
-def plane_slider_crank(start: Point, end: Point) -> Linkage:
-    text = HEAD + links("crank", "rod", "slider")
-    text += pin("A", "ground, crank", ORIGIN) + pin("B", "crank, rod", start)
-    text += pin("C", "rod, slider", end) + pin("P", "ground, slider", end, "P", "[1, 0, 0]")
-    return Linkage(text + driven("P.s"), "P.s", "A.theta", "sliding input", (start, end))
-
-
-def plain_rssr(start: Point, end: Point, foot: Point, along: Point) -> Linkage:
-    text = HEAD + links("crank", "coupler", "rocker")
-    text += pin("A", "ground, crank", ORIGIN)
-    text += pin("B", "crank, coupler", start, "S", "") + pin("C", "coupler, rocker", end, "S", "")
-    text += pin("D", "ground, rocker", foot, axis=drawn(along))
-    points = (start, end, foot, along)
-    return Linkage(text + driven("A.theta"), "A.theta", "D.theta", "output circle", points)
-
-
 def short_crank(rng: random.Random) -> Linkage:
     """A slider moves a crank of a thousandth of the rod."""
     x, y = (f"{rng.uniform(-1, 1) / 1000:.6f}" for _ in range(2))
     end = decimal(rng, 1.5), f"{rng.uniform(-5, 5) / 10000:.6f}", "0"
-    return plane_slider_crank((x, y, "0"), end)
+    return slider_crank_of((x, y, "0"), end)
 
 
 def short_rocker(rng: random.Random) -> Linkage:
@@ -220,12 +200,12 @@ def in_line(rng: random.Random) -> Linkage:
         return plane_four_bar(point(*start, zero), point(*end, zero), point(*foot, zero))
     if kind == 1:
         end = (1 + part) * start[0], (1 + part) * start[1]
-        return plane_slider_crank(point(*start, zero), point(*end, zero))
+        return slider_crank_of(point(*start, zero), point(*end, zero))
     end, foot, axis = (tuple(exact(1) for _ in range(3)) for _ in range(3))
     along = exact(1)
     way = [part * (c - d) + along * n for c, d, n in zip(end, foot, axis, strict=True)]
     start = tuple(c + w for c, w in zip(end, way, strict=True))
-    return plain_rssr(point(*start), point(*end), point(*foot), point(*axis))
+    return rssr_of(point(*start), point(*end), point(*foot), point(*axis))
 
 
 def drawn_sweep(number: int, motion: str) -> Sweep | None:

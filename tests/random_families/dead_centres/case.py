@@ -143,10 +143,7 @@ def plane_four_bar(start: Point, end: Point, foot: Point) -> Linkage:
     return Linkage(text + driven("A.theta"), "A.theta", "D.theta", "output circle", points)
 
 
-def rssr(rng: random.Random) -> Linkage:
-    start, end, foot, along = (
-        tuple(decimal(rng, size) for _ in range(3)) for size in (1.5, 1.5, 1.0, 1.0)
-    )
+def rssr_of(start: Point, end: Point, foot: Point, along: Point) -> Linkage:
     text = HEAD + links("crank", "coupler", "rocker")
     text += pin("A", "ground, crank", ORIGIN)
     text += pin("B", "crank, coupler", start, "S", "") + pin("C", "coupler, rocker", end, "S", "")
@@ -155,13 +152,25 @@ def rssr(rng: random.Random) -> Linkage:
     return Linkage(text + driven("A.theta"), "A.theta", "D.theta", "output circle", points)
 
 
-def slider_crank(rng: random.Random) -> Linkage:
-    """Driven at the slider: its dead centres are those of the engine."""
-    start, end = ((decimal(rng, 1.5), decimal(rng, 1.5), "0") for _ in range(2))
+def rssr(rng: random.Random) -> Linkage:
+    start, end, foot, along = (
+        (decimal(rng, size), decimal(rng, size), decimal(rng, size))
+        for size in (1.5, 1.5, 1.0, 1.0)
+    )
+    return rssr_of(start, end, foot, along)
+
+
+def slider_crank_of(start: Point, end: Point) -> Linkage:
     text = HEAD + links("crank", "rod", "slider")
     text += pin("A", "ground, crank", ORIGIN) + pin("B", "crank, rod", start)
     text += pin("C", "rod, slider", end) + pin("P", "ground, slider", end, "P", "[1, 0, 0]")
     return Linkage(text + driven("P.s"), "P.s", "A.theta", "sliding input", (start, end))
+
+
+def slider_crank(rng: random.Random) -> Linkage:
+    """Driven at the slider: its dead centres are those of the engine."""
+    start, end = ((decimal(rng, 1.5), decimal(rng, 1.5), "0") for _ in range(2))
+    return slider_crank_of(start, end)
 
 
 FAMILIES = (four_bar, rssr, slider_crank)
