@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from math import acos, cos, degrees, hypot, radians, sin, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
+from random_families.rubbing_loops import judge
 
 import mechkin_cli as mk
 
@@ -46,9 +49,9 @@ def test_stops_at_jumps(name: str) -> None:
 
 
 def test_an_arm_with_friction_in_all_its_joints_moves_on() -> None:
-    model = _load("friction_hangs.json")
-    rows = model.respond(tables=[])
-    assert set(rows["row.status"]) == {"ok"}
+    found = judge((HERE / "friction_hangs.json").read_text(encoding="utf-8"))
+    assert (found.word, found.fault) == ("ok", "")
+    assert found.error < 1e-9
 
 
 def test_ten_parallelograms_pass_where_all_lie_flat() -> None:
@@ -124,3 +127,14 @@ def test_the_drawn_mode_and_its_letter_are_one() -> None:
         assert np.abs(model.analyze(mode=mode)["D.theta"] - drawn["D.theta"]).max() < 1e-12
     with pytest.raises(mk.UsageError, match="there is no mode Z at the first row: modes A, B"):
         model.analyze(mode="Z")
+
+
+def test_one_folder_holds_one_run(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", HERE / "quick_return.yaml"]
+    own = tmp_path / "notes.txt"
+    own.write_text("mine", encoding="utf-8")
+    for more in ([], ["--set", "r=70 mm", "--format", "tex"]):
+        subprocess.run([*command, "--out", tmp_path, "--quiet", *more], check=True)
+    shown = {path.name for path in tmp_path.iterdir() if not path.name.startswith(".")}
+    assert shown == {"drive.tex", "rows.csv", "notes.txt"}
+    assert own.read_text(encoding="utf-8") == "mine"
