@@ -66,3 +66,22 @@ def test_the_page_names_the_folders_of_the_core() -> None:
     page = (ROOT.parent / "docs/internals.md").read_text(encoding="utf-8")
     folders = {path.name for path in (KERNEL / "core").iterdir() if path.is_dir()}
     assert all(f"`core/{folder}/`" in page for folder in folders), folders
+
+
+LIBM = re.compile(
+    r"std::(?:pow|cbrt|exp|exp2|expm1|log|log2|log10|log1p|hypot"
+    r"|sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh)\("
+)
+"""Functions whose last bits are the library's own, unlike those of square roots."""
+
+
+def test_the_core_calls_no_function_whose_bits_are_the_machines() -> None:
+    assert LIBM.search("std::pow(x, 1.0 / n)")
+    assert not LIBM.search("std::sqrt(x)")
+    core = KERNEL / "core"
+    called = [
+        f"{path.relative_to(core)}: {found.group()}"
+        for path in sorted([*core.rglob("*.cpp"), *core.rglob("*.hpp")])
+        for found in LIBM.finditer(path.read_text(encoding="utf-8"))
+    ]
+    assert called == []

@@ -42,13 +42,20 @@ double inverse_zero(const std::vector<double>& p, const std::vector<double>& m, 
   return before;
 }
 
+// The root of a number that is not negative, by arithmetic alone, which has the same bits on every machine: Newton's method
+// on y^order = x from above, where it falls until it stands.
 double root(double x, int order) {
-  switch (order) {
-    case 1: return x;
-    case 2: return std::sqrt(x);
-    case 3: return std::cbrt(x);
-    case 4: return std::sqrt(std::sqrt(x));
-    default: return std::pow(x, 1.0 / order);
+  if (order == 1 || !(x > 0.0)) return x;
+  if (order == 2) return std::sqrt(x);
+  int power = 0;
+  std::frexp(x, &power);  // x < 2^power
+  double y = std::ldexp(1.0, power > 0 ? (power + order - 1) / order : power / order);
+  for (;;) {
+    double rest = x;
+    for (int k = 1; k < order; ++k) rest /= y;
+    const double next = ((order - 1) * y + rest) / order;
+    if (!(next < y)) return y;
+    y = next;
   }
 }
 
