@@ -79,7 +79,7 @@ def run_block(name: str, seed: int, numbers: Sequence[int]) -> Tally:
 def _rows(found: Found, rows: slice) -> Found:
     values = {name: value[:, rows] for name, value in found.values.items()}
     condition, bound = found.condition[:, rows], found.bound[:, rows]
-    return Found(found.codes[:, rows], condition, bound, values, found.noted)
+    return Found(found.codes[:, rows], condition, bound, values, found.noted, found.unit)
 
 
 def _faults(

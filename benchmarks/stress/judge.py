@@ -31,7 +31,8 @@ class Found:
 
     `codes`, `condition` and `bound` (nan where rows have none) are (mechanisms, rows), as are the
     values by name, angles in degrees and rates in rad/s; `noted` (mechanisms, 1) says of which runs
-    say that they take the mechanism for one whose axes or points coincide.
+    say that they take the mechanism for one whose axes or points coincide, `unit` (mechanisms, 1)
+    in which length bounds of rows are, in m.
     """
 
     codes: NDArray[np.int8]
@@ -39,6 +40,7 @@ class Found:
     bound: Rows
     values: dict[str, Rows]
     noted: Mask
+    unit: Rows
 
 
 @dataclass(frozen=True)
@@ -109,10 +111,12 @@ def _positions(found: Found, truth: Truth) -> tuple[Rows, Rows, Rows]:
 
 
 def misses(found: Found, truth: Truth) -> Rows:
-    """The largest errors of positions (mechanisms, rows) as bounds of rows measure them: in rad and
-    parts of the power of two next to the size."""
-    unit = 2.0 ** np.rint(np.log2(truth.size))
-    return _positions(found, replace(truth, size=unit))[1]
+    """The largest errors of joint coordinates (mechanisms, rows), which bounds of rows are about,
+    in rad and the solver's own unit of length; nan where places of links alone are compared."""
+    coordinates = tuple(q for q in truth.quantities if ".position." not in q.keys[0])
+    if not coordinates:
+        return np.full(found.codes.shape, np.nan)
+    return _positions(found, replace(truth, quantities=coordinates, size=found.unit))[1]
 
 
 def _apart(found: Found, quantity: Quantity, right: DoubleDouble) -> Rows:

@@ -41,7 +41,7 @@ def solve(
     codes = np.full(shape, Status.not_assembled, np.int8)
     condition, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     values = {cell.key: np.full(shape, np.nan) for cell in cells}
-    noted = np.zeros((len(texts), 1), bool)
+    noted, unit = np.zeros((len(texts), 1), bool), np.full((len(texts), 1), np.nan)
     proofs = unasked(*shape, [cell.key for cell in cells])
     refused = {}
     for k, text in enumerate(texts):
@@ -57,10 +57,11 @@ def solve(
             bound[k] = analysis[BOUND]
         for cell in cells:
             values[cell.key][k] = cell.column(analysis[cell.quantity])
+        unit[k] = analysis.result.session.layout.length
         noted[k] = any(note.code in TAKEN for note in analysis.diagnostics)
         if k in proven:
             prove(proofs, k, analysis, cells)
-    return Solved(Found(codes, condition, bound, values, noted), proofs, refused)
+    return Solved(Found(codes, condition, bound, values, noted, unit), proofs, refused)
 
 
 def _run(text: str, names: Sequence[str], *, response: bool) -> Analysis:
