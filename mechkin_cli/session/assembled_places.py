@@ -39,8 +39,8 @@ from mechkin_cli.structure import (
     UnsolvableGraph,
     build_graph,
     connections_of,
+    middle_and_size,
     reduce,
-    unit_of,
     whole_link,
 )
 
@@ -228,9 +228,9 @@ def left_free(mechanism: Mechanism, inputs: Mapping[tuple[str, str], float]) -> 
     whole, names, at = reduce(mechanism), list(inputs), list(inputs.values())
     connections = connections_of(mechanism, whole, names)
     driven = {(name, mechanism.joints[name].freedom_number(c)) for name, c in inputs}
-    unit, found = unit_of(mechanism), []
+    (middle, size), found = middle_and_size(mechanism), []
     for poses in closed_places(mechanism, lambda: solver_graph(mechanism, names), at):
-        rates = Rates(poses, driven, unit)
+        rates = Rates(poses, driven, middle, size)
         still = rates.still(whole.links, connections, {GROUND_NAME})
         if rates.work:
             found.append(set(whole.links) > still)

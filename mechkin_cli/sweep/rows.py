@@ -313,11 +313,11 @@ def error_bound(result: RunRows) -> Floats:
     result.read(wanted)
     values = {q: np.asarray(result.quantity(q.name).value) for q in wanted}
     with np.errstate(all="ignore"):
-        bounds = position_bounds(result.session, rows.states, there, values, rows.turns)
-        bound, open_ = bounds.error, bounds.beyond > 0.0
+        bound, beyond = position_bounds(result.session, rows.states, there, values, rows.turns)
+        open_ = beyond > 0.0
         if (open_ & there).any():
             condition = np.asarray(result.quantity("row.condition").value)
             equations = max(block.equations for block in result.graph.blocks)
-            apart = tolerances.APART_BY_CLOSURE * condition * np.sqrt(equations) * bounds.beyond
+            apart = tolerances.APART_BY_CLOSURE * condition * np.sqrt(equations) * beyond
             bound = np.where(open_, bound + apart, bound)
     return np.where(np.isfinite(bound), bound, np.nan)
