@@ -20,7 +20,7 @@ a cut joint, or the state of one in the tree.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -102,18 +102,9 @@ class Evaluated(Protocol):
         ...
 
 
-class OtherMoments(Protocol):
-    """A sweep in time between its rows."""
-
-    @property
-    def bends(self) -> Floats:
-        """Moments between the rows, in the file's unit, at which the laws of the inputs bend."""
-        ...
-
-    def at(self, written: Floats) -> Evaluated:
-        """The sweep at rising moments within its own, in the file's unit, and at that of its first
-        assembly, which may be none of them."""
-        ...
+OtherMoments = Callable[["Floats"], Evaluated]
+"""Gives a sweep in time at rising moments within its own, in the file's unit, and at that of its
+first assembly, which may be none of them."""
 
 
 class BasisQuantities(NamedTuple):
