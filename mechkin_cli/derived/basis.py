@@ -340,7 +340,7 @@ def _followed(run: BasisQuantities, name: str, reached: NDArray[np.intp]) -> Qua
     joint = layout.mechanism.joints[name]
     reference = layout.joint_reference[name]
     if reference < 0:
-        slot = run.session.turn_slots.closing.get((-1 - reference, ORIENTATION))
+        slot = run.session.structure.closing_slots.get((-1 - reference, ORIENTATION))
         if slot is None:
             return None
         return drawn_quaternion(joint, rows.turns[slot : slot + 4, reached])

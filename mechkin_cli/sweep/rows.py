@@ -1,7 +1,7 @@
 """The rows of a sweep: states, what is known of each row, and continuous angles.
 
 The kernel gives angles within a turn; following the branch counts whole turns
-(`session.turn_slots`).
+(`Structure.closing_slots`, `tree_slots`).
 """
 
 from __future__ import annotations
@@ -235,7 +235,7 @@ def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angle
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
         name, output = quantity.name, slots[quantity.name].start
-        turn = session.turn_slots.of_angle(layout, quantity)
+        turn = session.structure.turn_slot(quantity)
         if name in inputs:
             driven.append((name, output, inputs[name]))
         elif turn is not None:
