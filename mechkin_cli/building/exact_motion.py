@@ -324,7 +324,7 @@ class _Reading:
         table = read_rows(self.fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
         assert table is not None
         assert self.clock is not None
-        curve = joined_curve(*table, joining_of(law))
+        curve = joined_curve(*table, *joining_of(law))
         knots = np.array([as_recorded(x) for x in table[0]])
         piece = np.searchsorted(knots, self.clock.moments, side="right") - 1
         piece = np.clip(piece, 0, knots.size - 1)

@@ -160,7 +160,7 @@ def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Cl
     orders = np.zeros((4, clock.moments.size))
     place = (*path, "file")
     rows = read_rows(fields, place, law.file, TIME, dimension_of(coordinate))
-    curve = None if rows is None else join(fields, place, *rows, joining_of(law))
+    curve = None if rows is None else join(fields, place, *rows, *joining_of(law))
     if curve is None:
         return orders
     note_overshoot(fields, place, curve, None)
@@ -251,7 +251,7 @@ def _pieces_of_rise(
 def _pieces_of_table(fields: Fields, path: Path, law: TableLaw, coordinate: str) -> LawPieces:
     rows = read_rows(fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
     assert rows is not None  # it was read before
-    curve = joined_curve(*rows, joining_of(law))
+    curve = joined_curve(*rows, *joining_of(law))
     last = curve.x.size - 1
 
     def constants(moment: float) -> list[float]:

@@ -29,7 +29,16 @@ from mechkin_cli.expressions import (
     parse,
     scalar,
 )
-from mechkin_cli.mechanism import Curve, Joining, LoadLaw, Varying, Wanted, hint_of, joined_curve
+from mechkin_cli.mechanism import (
+    Curve,
+    Ends,
+    Interpolation,
+    LoadLaw,
+    Varying,
+    Wanted,
+    hint_of,
+    joined_curve,
+)
 from mechkin_cli.record import replace
 from mechkin_cli.schema import JoinedTable, TableValue
 from mechkin_cli.tape import is_finite, is_traced, plain
@@ -112,7 +121,7 @@ class LoadLaws:
         if wanted is None:
             return Varying(0)
         dimensions = wanted.dimension, dimension
-        curve = read_curve(self.fields, path, value.table, *dimensions, joining_of(value))
+        curve = read_curve(self.fields, path, value.table, *dimensions, *joining_of(value))
         if curve is not None:
             place = self.fields.document.place(path)
             self.laws.append(LoadLaw((wanted.name,), place, curve=curve))
@@ -195,7 +204,6 @@ def _one_name(expression: Expression, quantity: Quantity) -> str:
 
 
 CODE = "csv-table"
-SMOOTH = Joining()
 
 
 def read_curve(
@@ -204,7 +212,8 @@ def read_curve(
     file_text: str,
     x_dimension: Dimension,
     y_dimension: Dimension,
-    joining: Joining = SMOOTH,
+    interpolation: Interpolation = "spline",
+    ends: Ends = "not-a-knot",
 ) -> Curve | None:
     """The curve through a table, in SI; None where an error was noted in `fields`.
 
@@ -214,31 +223,38 @@ def read_curve(
         file_text: the path of the CSV file as written.
         x_dimension: dimension of the first column, strictly increasing.
         y_dimension: dimension of the second column.
-        joining: how its points are joined.
+        interpolation: how its points are joined.
+        ends: what holds there.
     """
     rows = read_rows(fields, path, file_text, x_dimension, y_dimension)
     if rows is None:
         return None
     to_si = fields.units.to_si
     x = [plain(to_si(value, x_dimension)) for value in rows[0]]
-    curve = join(fields, path, x, [plain(to_si(value, y_dimension)) for value in rows[1]], joining)
+    y = [plain(to_si(value, y_dimension)) for value in rows[1]]
+    curve = join(fields, path, x, y, interpolation, ends)
     if curve is not None:
         note_overshoot(fields, path, curve, (x_dimension, y_dimension))
     return curve
 
 
-def joining_of(table: JoinedTable) -> Joining:
-    """The way in which the points of a table of the file are joined."""
-    return Joining(table.interpolation, table.ends or "not-a-knot")
+def joining_of(table: JoinedTable) -> tuple[Interpolation, Ends]:
+    """The way in which the points of a table of the file are joined, and what holds at its ends."""
+    return table.interpolation, table.ends or "not-a-knot"
 
 
 def join(
-    fields: Fields, path: Path, x: list[float], y: list[float], joining: Joining
+    fields: Fields,
+    path: Path,
+    x: list[float],
+    y: list[float],
+    interpolation: Interpolation,
+    ends: Ends,
 ) -> Curve | None:
     """The curve through points; None where it is too steep for numbers, which is noted."""
     try:
         with np.errstate(all="ignore"):
-            curve = joined_curve(x, y, joining)
+            curve = joined_curve(x, y, interpolation, ends)
     except ZeroDivisionError:  # two x that are one number in SI
         curve = None
     if curve is not None and all(map(is_finite, curve.coefficients.flat)):

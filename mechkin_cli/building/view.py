@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Vector, is_written
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import dataclass, field
 from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:
@@ -19,12 +19,9 @@ if TYPE_CHECKING:
 Kind = Literal["rod", "plate", "star", "none"]
 
 
-class ShapeSetting(NamedTuple):
-    """The shape of a link: its kind (None: as its points lie), and the points (m, as drawn) that it
-    goes through (None: its joints and named points)."""
-
-    kind: Kind | None = None
-    points: tuple[Vector, ...] | None = None
+ShapeSetting = tuple[Kind | None, tuple[Vector, ...] | None]
+"""The shape of a link: its kind (None: as its points lie), and the points (m, as drawn) that it
+goes through (None: its joints and named points)."""
 
 
 @dataclass(frozen=True)
@@ -103,9 +100,9 @@ class _View:
     def shape(self, link: str, section: ShapeOfLink) -> ShapeSetting:
         """The shape of a link."""
         if section.points is None:
-            return ShapeSetting(section.kind)
+            return section.kind, None
         points = [self._point(link, at, point) for at, point in enumerate(section.points)]
-        return ShapeSetting(section.kind, tuple(point for point in points if point is not None))
+        return section.kind, tuple(point for point in points if point is not None)
 
     def positive(self, key: str, text: str | None, dimension: Dimension) -> float | None:
         """A number above zero; None where the section has none."""

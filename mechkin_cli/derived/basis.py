@@ -20,7 +20,7 @@ a cut joint, or the state of one in the tree.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -102,18 +102,9 @@ class Evaluated(Protocol):
         ...
 
 
-class OtherMoments(Protocol):
-    """A sweep in time between its rows."""
-
-    @property
-    def bends(self) -> Floats:
-        """Moments between the rows, in the file's unit, at which the laws of the inputs bend."""
-        ...
-
-    def at(self, written: Floats) -> Evaluated:
-        """The sweep at rising moments within its own, in the file's unit, and at that of its first
-        assembly, which may be none of them."""
-        ...
+OtherMoments = Callable[["Floats"], Evaluated]
+"""Gives a sweep in time at rising moments within its own, in the file's unit, and at that of its
+first assembly, which may be none of them."""
 
 
 class BasisQuantities(NamedTuple):
@@ -349,7 +340,7 @@ def _followed(run: BasisQuantities, name: str, reached: NDArray[np.intp]) -> Qua
     joint = layout.mechanism.joints[name]
     reference = layout.joint_reference[name]
     if reference < 0:
-        slot = run.session.turn_slots.closing.get((-1 - reference, ORIENTATION))
+        slot = run.session.structure.closing_slots.get((-1 - reference, ORIENTATION))
         if slot is None:
             return None
         return drawn_quaternion(joint, rows.turns[slot : slot + 4, reached])

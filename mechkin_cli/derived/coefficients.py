@@ -323,14 +323,17 @@ def _between(
 ) -> tuple[Floats, Floats]:
     """`count` integrals and their errors (integrands, open intervals); `allowed` (W) for each."""
     problem, between = run.session.problem, run.between
+    course = problem.motion.course
     assert problem.motion.time is not None
+    assert course is not None
     assert between is not None
     written = problem.motion.time.written
+    bends = np.unique(course.at[course.rows < 0])
     second = float(problem.units.to_si(1.0, TIME))
-    low, high, own = _parted(written, np.flatnonzero(open_), between.bends)
+    low, high, own = _parted(written, np.flatnonzero(open_), bends)
 
     def sample(moments: Floats) -> tuple[Floats, Floats]:
-        result = between.at(moments)
+        result = between(moments)
         other = BasisQuantities(result, {}, result.session.inputs)
         time = result.session.problem.motion.time
         assert time is not None

@@ -203,7 +203,7 @@ class ResponseRows(KernelRows):
     def _closing_turns(self) -> tuple[Floats, Floats]:
         """Turns of cut joints (slots, moments) of the run in doubles, at many moments."""
         result = self.result
-        slots = result.row_states.turns.shape[0] - len(result.session.turn_slots.tree)
+        slots = result.row_states.turns.shape[0] - len(result.session.structure.tree_slots)
         assert result.report is not None
         begin, end = result.response.moments.values[0], result.report.time
         if not slots or not end > begin:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.mechanism.curve import (
         Curve as Curve,
-        Joining as Joining,
+        Ends as Ends,
+        Interpolation as Interpolation,
         LoadLaw as LoadLaw,
         joined_curve as joined_curve,
     )
@@ -174,7 +175,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint",
-        "curve": "Curve Joining LoadLaw joined_curve",
+        "curve": "Curve Ends Interpolation LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",

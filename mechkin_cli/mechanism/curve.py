@@ -183,25 +183,21 @@ def _tridiagonal(
 Interpolation = Literal["spline", "monotone", "linear"]
 
 
-class Joining(NamedTuple):
-    """How points are joined; of a linear curve the ends say nothing."""
-
-    interpolation: Interpolation = "spline"
-    ends: Ends = "not-a-knot"
-
-
-def joined_curve(x: Sequence[float], y: Sequence[float], joining: Joining) -> Curve:
-    """The curve through two or more points with strictly increasing x."""
-    if joining.interpolation == "spline":
-        return smooth_curve(x, y, joining.ends)
+def joined_curve(
+    x: Sequence[float], y: Sequence[float], interpolation: Interpolation, ends: Ends
+) -> Curve:
+    """The curve through two or more points with strictly increasing x; of a linear one the ends
+    say nothing."""
+    if interpolation == "spline":
+        return smooth_curve(x, y, ends)
     h = [b - a for a, b in pairwise(x)]
     rises = [(b - a) / step for (a, b), step in zip(pairwise(y), h, strict=True)]
-    if joining.interpolation == "linear":
+    if interpolation == "linear":
         pieces = [(y[i], rise, 0.0, 0.0) for i, rise in enumerate(rises)]
         pieces.append((y[-1], rises[-1], 0.0, 0.0))
     else:
         slopes = _monotone_slopes(h, rises)
-        if joining.ends == "clamped":
+        if ends == "clamped":
             slopes[0] = slopes[-1] = 0.0
         pieces = [_piece(y[i], slopes[i], slopes[i + 1], rises[i], h[i]) for i in range(len(h))]
         _, _, bend, third = pieces[-1]

@@ -272,11 +272,12 @@ class Turned:
     def along(cls, session: Session, followed: Followed) -> Self:
         """From the first place of a path, followed with its turns, to the last."""
         assert followed.turns is not None
-        slots, turns = session.turn_slots, followed.turns[:, -1] - followed.turns[:, 0]
+        structure, turns = session.structure, followed.turns[:, -1] - followed.turns[:, 0]
         tree = followed.guess[:, -1] - followed.guess[:, 0]
-        for state, slot in slots.tree.items():
+        for state, slot in structure.tree_slots.items():
             tree[state] += FULL_TURN * turns[slot]
-        return cls(tree, {angle: float(turns[slot]) for angle, slot in slots.closing.items()})
+        closing = structure.closing_slots.items()
+        return cls(tree, {angle: float(turns[slot]) for angle, slot in closing})
 
     def and_on(self, other: Turned) -> Turned:
         """Along this path and then another one, of the same tree."""

@@ -33,7 +33,7 @@ from mechkin_cli.proofs.enclose import (
     enclose,
     enclose_positions,
 )
-from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.session import Session, input_unit
 from mechkin_cli.tape import DoubleDoubles
 from mechkin_cli.verdict import Proof
@@ -265,28 +265,17 @@ def enclosures(
     }
 
 
-class PositionBounds(NamedTuple):
-    """Bounds of how far rows in doubles are from the file's positions, arrays over the rows.
-
-    Attributes:
-        error: the largest of all states and coordinates, in rad and the kernel's lengths, of
-            orientations the angle; nan where nothing is proven.
-        beyond: as `Boxes.beyond`: above 0 `error` is the distance to the zero of the equations
-            solved for.
-    """
-
-    error: Floats
-    beyond: Floats
-
-
 def position_bounds(
     session: Session,
     states: Floats,
     solved: Bools,
     coordinates: Mapping[Wanted, Floats],
     turned: Floats,
-) -> PositionBounds:
-    """How far rows can be from the one position that is proven to be near each.
+) -> tuple[Floats, Floats]:
+    """How far rows in doubles can be from the one position that is proven to be near each (rows,):
+    the largest of all states and coordinates, in rad and the kernel's lengths, of orientations the
+    angle, nan where nothing is proven; and `Boxes.beyond` (rows,): where that is above 0 the first
+    is the distance to the zero of the equations solved for.
 
     Args:
         session: the mechanism, driven along the rows.
@@ -298,7 +287,7 @@ def position_bounds(
     error, rows = np.full(solved.size, np.nan), session.inputs
     enclosed, inputs = _enclosed(session)
     if not enclosed.of_text:
-        return PositionBounds(error, np.zeros(solved.size))
+        return error, np.zeros(solved.size)
     boxes = prove_boxes(enclosed, Nodes.of(session, rows.values, rows.reduced, states))
     proven = boxes.proven & solved & _are_inside(session, inputs)
     for closed in (True, False):
@@ -312,7 +301,7 @@ def position_bounds(
         off += [_off(session, q, values, found[q.name]) for q, values in coordinates.items()]
         error[part] = np.max(off, axis=0)[part]
     error *= MEASURED
-    return PositionBounds(np.where(np.isfinite(error), error, np.nan), boxes.beyond)
+    return np.where(np.isfinite(error), error, np.nan), boxes.beyond
 
 
 def _off_places(layout: Layout, states: Floats, places: Enclosure) -> Floats:

@@ -140,8 +140,8 @@ class ResponseResult(Result):
         rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
         rows.states, rows.reached, rows.status = own.states, own.reached, own.status
         # cut joints have the same turns; the tree's angles have theirs in the states
-        closing = own.turns[: own.turns.shape[0] - len(self.session.turn_slots.tree)]
-        still = np.zeros((len(session.turn_slots.tree), moving.rows))
+        closing = own.turns[: own.turns.shape[0] - len(self.session.structure.tree_slots)]
+        still = np.zeros((len(session.structure.tree_slots), moving.rows))
         rows.turns = np.concatenate([closing, still])
         return Result(session, self.start, rows)
 

@@ -436,7 +436,7 @@ def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
     rows.states = np.where(reached, moved.states[:, part], 0.0)
     rows.reached, rows.nodes = reached, report.steps
     # no whole turns of the tree's angles, whose states have them
-    tree = np.zeros((len(free.turn_slots.tree), count))
+    tree = np.zeros((len(free.structure.tree_slots), count))
     rows.turns = np.concatenate([moved.turns[:, part], tree])
     status, notes = ending(chosen, free, response, report, np.array(report.last))
     rows.status[~reached] = status

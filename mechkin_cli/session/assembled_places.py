@@ -31,7 +31,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Layout, OutputPlan, Readout, build_plan, home_inputs, home_state
 from mechkin_cli.record import dataclass, field, replace
-from mechkin_cli.session.inputs import TurnSlots
+from mechkin_cli.session.inputs import closing_slots, tree_slots
 from mechkin_cli.session.kernel_run import Ask, RowInputs, run
 from mechkin_cli.structure import (
     Rates,
@@ -39,8 +39,8 @@ from mechkin_cli.structure import (
     UnsolvableGraph,
     build_graph,
     connections_of,
+    middle_and_size,
     reduce,
-    unit_of,
     whole_link,
 )
 
@@ -81,9 +81,23 @@ class Structure:
         return build_plan(self.layout) if self.built is None else self.built
 
     @cached_property
-    def turn_slots(self) -> TurnSlots:
-        """Where the turns of angles stand among `Followed.turns`."""
-        return TurnSlots.of(self.plan)
+    def closing_slots(self) -> Mapping[tuple[int, int], int]:
+        """Rows of the turns of cut joints, as `inputs.closing_slots`."""
+        return closing_slots(self.plan)
+
+    @cached_property
+    def tree_slots(self) -> Mapping[int, int]:
+        """Rows of the whole turns of the tree's angles, as `inputs.tree_slots`."""
+        return tree_slots(self.plan)
+
+    def turn_slot(self, quantity: Wanted) -> int | None:
+        """The row of a joint's angle in `Followed.turns`, None where it has no turns."""
+        layout = self.layout
+        reference = layout.joint_reference[quantity.owner]
+        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
+        if reference < 0:
+            return self.closing_slots.get((-1 - reference, freedom))
+        return self.tree_slots.get(layout.state(layout.edge_number[quantity.owner], freedom))
 
     @remembered
     def readout(self, wanted: tuple[Wanted, ...], points: tuple[Attached, ...]) -> Readout:
@@ -228,9 +242,9 @@ def left_free(mechanism: Mechanism, inputs: Mapping[tuple[str, str], float]) -> 
     whole, names, at = reduce(mechanism), list(inputs), list(inputs.values())
     connections = connections_of(mechanism, whole, names)
     driven = {(name, mechanism.joints[name].freedom_number(c)) for name, c in inputs}
-    unit, found = unit_of(mechanism), []
+    (middle, size), found = middle_and_size(mechanism), []
     for poses in closed_places(mechanism, lambda: solver_graph(mechanism, names), at):
-        rates = Rates(poses, driven, unit)
+        rates = Rates(poses, driven, middle, size)
         still = rates.still(whole.links, connections, {GROUND_NAME})
         if rates.work:
             found.append(set(whole.links) > still)

@@ -127,7 +127,7 @@ def angle_slots(session: Session, names: Mapping[str, slice]) -> list[tuple[int,
         if name in inputs and not of_closing:
             turn: int | None = -2 - inputs[name]
         else:
-            turn = session.turn_slots.of_angle(layout, quantity)
+            turn = session.structure.turn_slot(quantity)
         if turn is not None:
             found.append((slot.start, turn, of_closing))
     return found

@@ -23,10 +23,8 @@ from mechkin_cli.session.kernel_run import RowInputs
 from mechkin_cli.units import ANGLE
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import DrivenInput, Frame, Joint, Problem, Wanted
+    from mechkin_cli.mechanism import DrivenInput, Frame, Joint, Problem
     from mechkin_cli.plan import Layout
     from mechkin_cli.show import Floats
     from mechkin_cli.units import CompoundUnit
@@ -274,32 +272,16 @@ ORIENTATION = -1
 Four = tuple["Floats", "Floats", "Floats", "Floats"]
 
 
-class TurnSlots(NamedTuple):
-    """Rows of `Followed.turns`.
+def closing_slots(plan: Plan) -> dict[tuple[int, int], int]:
+    """The first row of `Followed.turns` of each (cut joint, freedom); freedom `ORIENTATION` of a
+    joint that has no angles."""
+    return {(joint, freedom): slot for joint, freedom, slot, _ in _kernel.closing_turns(plan)}
 
-    Attributes:
-        closing: the first row of each (cut joint, freedom); freedom `ORIENTATION` of a joint
-            that has no angles.
-        tree: the row with the whole turns of each state that is an angle of the tree.
-    """
 
-    closing: Mapping[tuple[int, int], int]
-    tree: Mapping[int, int]
-
-    @classmethod
-    def of(cls, plan: Plan) -> TurnSlots:
-        """Those of a plan."""
-        turns = _kernel.closing_turns(plan)
-        closing = {(joint, freedom): slot for joint, freedom, slot, _ in turns}
-        return cls(closing, dict(_kernel.tree_turns(plan)))
-
-    def of_angle(self, layout: Layout, quantity: Wanted) -> int | None:
-        """The row of a joint's angle, None where it has no turns."""
-        reference = layout.joint_reference[quantity.owner]
-        freedom = layout.mechanism.joints[quantity.owner].type.freedom_of[quantity.coordinate]
-        if reference < 0:
-            return self.closing.get((-1 - reference, freedom))
-        return self.tree.get(layout.state(layout.edge_number[quantity.owner], freedom))
+def tree_slots(plan: Plan) -> dict[int, int]:
+    """The row of `Followed.turns` with the whole turns of each state that is an angle of the
+    tree."""
+    return dict(_kernel.tree_turns(plan))
 
 
 def turn_count(plan: Plan) -> int:

@@ -31,7 +31,6 @@ from mechkin_cli.session.following import (
 )
 from mechkin_cli.session.inputs import (
     KernelInputs,
-    TurnSlots,
     input_unit,
     kernel_inputs,
     turned_quaternion,
@@ -169,11 +168,6 @@ class Session:
         if self.constants is not None:
             plan = plan.with_constants(self.constants)
         return plan if self.size is None else plan.with_size(self.size)
-
-    @property
-    def turn_slots(self) -> TurnSlots:
-        """Where the turns of angles stand among `Followed.turns`."""
-        return self.structure.turn_slots
 
     @cached_property
     def inputs(self) -> KernelInputs:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
         reduce as reduce,
         whole_link as whole_link,
     )
-    from mechkin_cli.structure.rank import Rates as Rates, unit_of as unit_of
+    from mechkin_cli.structure.rank import Rates as Rates, middle_and_size as middle_and_size
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -39,6 +39,6 @@ __getattr__, __dir__ = lazy_names(
         "graph": "Block CutJoint SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
         "is_redundant listed structure_of",
         "network": "connections_of reduce whole_link",
-        "rank": "Rates unit_of",
+        "rank": "Rates middle_and_size",
     },
 )

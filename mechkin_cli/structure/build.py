@@ -33,7 +33,7 @@ from mechkin_cli.structure.network import (
     order_of,
     reduce,
 )
-from mechkin_cli.structure.rank import Rates, unit_of
+from mechkin_cli.structure.rank import Rates, middle_and_size
 from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
 
 Freedom = tuple[int, int]
@@ -374,9 +374,9 @@ def build_graph(
     def assembled() -> Iterator[Rates]:
         joints = mechanism.joints
         driven = {(name, joints[name].freedom_number(c)) for name, c in inputs}
-        unit = unit_of(mechanism)
+        middle, size = middle_and_size(mechanism)
         for poses in assembled_places(mechanism, lambda: _built(mechanism, inputs, None, ())):
-            yield Rates(poses, driven, unit)
+            yield Rates(poses, driven, middle, size)
 
     return _built(mechanism, inputs, closed_at, _Remembered(assembled()))
 

@@ -45,7 +45,6 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
 )
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import SPACE, Connection, GraphComponent, incidence
 from mechkin_cli.tolerances import LOOP_RANK, MOST_SPLIT_LINKS, RANK_WORK
@@ -54,24 +53,13 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-class Scale(NamedTuple):
-    """The point about which moments are taken (m), and the length that is one (m)."""
-
-    centre: Vector
-    length: float
-
-    def place(self, point: Vector) -> Vector:
-        """A point (m) about the centre, in parts of the length."""
-        return scale(1.0 / self.length, subtract(point, self.centre))
-
-
-def unit_of(mechanism: Mechanism) -> Scale:
-    """The middle and the size of a mechanism as drawn."""
+def middle_and_size(mechanism: Mechanism) -> tuple[Vector, float]:
+    """The middle of a mechanism as drawn, in the ground's axes, and its size, both in m."""
     points = [at.vector for _, at in mechanism.joint_points()]
     total = ZERO
     for point in points:
         total = add(total, point)
-    return Scale(scale(1.0 / max(1, len(points)), total), mechanism.box_diagonal())
+    return scale(1.0 / max(1, len(points)), total), mechanism.box_diagonal()
 
 
 class Rates:
@@ -80,13 +68,19 @@ class Rates:
     Args:
         poses: where the drawing's axes and origin (m) stand with each link.
         driven: freedoms (joint, number along its chain) that rest.
-        unit: of lengths in rows.
+        middle: the point about which moments are taken (m).
+        size: the length that is one in rows (m).
     """
 
     def __init__(
-        self, poses: Callable[[str], Frame], driven: Collection[tuple[str, int]], unit: Scale
+        self,
+        poses: Callable[[str], Frame],
+        driven: Collection[tuple[str, int]],
+        middle: Vector,
+        size: float,
     ) -> None:
-        self.poses, self.driven, self.unit = poses, driven, unit
+        self.poses, self.driven = poses, driven
+        self.middle, self.size = middle, size
         self.work = 0
         self._screws: dict[str, Floats] = {}
         self._forces: dict[str, tuple[float, ...]] = {}
@@ -154,8 +148,8 @@ class Rates:
 
     def _chain(self, joint: Joint) -> list[list[float]]:
         """The screws of all freedoms: turns go through the joint's point."""
-        at = self.unit.place(self._point(joint.point))
-        pitch = joint.pitch / self.unit.length
+        at = self._place(self._point(joint.point))
+        pitch = joint.pitch / self.size
         screws: list[list[float]] = []
         parts = iter(joint.parts)
         for step in joint.type.steps:
@@ -204,11 +198,15 @@ class Rates:
         """The force of a constraint without coordinates: its moment, then itself."""
         if c.name not in self._forces:
             point, line = c.constraint.force_line(self._point)
-            self._forces[c.name] = (*cross(self.unit.place(point), line), *line)
+            self._forces[c.name] = (*cross(self._place(point), line), *line)
         return self._forces[c.name]
 
     def _direction(self, at: Attached) -> Vector:
         return self.poses(at.link).vector(at.vector)
+
+    def _place(self, point: Vector) -> Vector:
+        """A point (m) about the middle, in parts of the size."""
+        return scale(1.0 / self.size, subtract(point, self.middle))
 
     def _point(self, at: Attached) -> Vector:
         return add(self.poses(at.link).o, self._direction(at))

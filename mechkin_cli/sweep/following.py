@@ -131,12 +131,12 @@ def _count_from_first(session: Session, rows: SweepRows) -> None:
         return
     first = int(np.argmax(rows.reached))
     # half a turn is +180, whichever side of it rounding has
-    for state, slot in session.turn_slots.tree.items():
+    for state, slot in session.structure.tree_slots.items():
         below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
         turns = rows.turns[slot, first] - (1.0 if below else 0.0)
         if turns:
             rows.turns[slot] -= turns
-    for (_, freedom), slot in session.turn_slots.closing.items():
+    for (_, freedom), slot in session.structure.closing_slots.items():
         if freedom != ORIENTATION:
             beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
             turns = float(np.ceil(beyond / (2.0 * pi)))

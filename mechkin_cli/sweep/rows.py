@@ -1,7 +1,7 @@
 """The rows of a sweep: states, what is known of each row, and continuous angles.
 
 The kernel gives angles within a turn; following the branch counts whole turns
-(`session.turn_slots`).
+(`Structure.closing_slots`, `tree_slots`).
 """
 
 from __future__ import annotations
@@ -235,7 +235,7 @@ def _angles(session: Session, wanted: tuple[Wanted, ...]) -> tuple[Angles, Angle
     inputs = {item.name: number for number, item in enumerate(session.problem.motion.inputs)}
     for quantity in filter(has_turns, wanted):
         name, output = quantity.name, slots[quantity.name].start
-        turn = session.turn_slots.of_angle(layout, quantity)
+        turn = session.structure.turn_slot(quantity)
         if name in inputs:
             driven.append((name, output, inputs[name]))
         elif turn is not None:
@@ -313,11 +313,11 @@ def error_bound(result: RunRows) -> Floats:
     result.read(wanted)
     values = {q: np.asarray(result.quantity(q.name).value) for q in wanted}
     with np.errstate(all="ignore"):
-        bounds = position_bounds(result.session, rows.states, there, values, rows.turns)
-        bound, open_ = bounds.error, bounds.beyond > 0.0
+        bound, beyond = position_bounds(result.session, rows.states, there, values, rows.turns)
+        open_ = beyond > 0.0
         if (open_ & there).any():
             condition = np.asarray(result.quantity("row.condition").value)
             equations = max(block.equations for block in result.graph.blocks)
-            apart = tolerances.APART_BY_CLOSURE * condition * np.sqrt(equations) * bounds.beyond
+            apart = tolerances.APART_BY_CLOSURE * condition * np.sqrt(equations) * beyond
             bound = np.where(open_, bound + apart, bound)
     return np.where(np.isfinite(bound), bound, np.nan)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +23,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows, followed_session
 from mechkin_cli.sweep.friction import judged_by, uncounted_notes
@@ -189,7 +190,7 @@ def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row:
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
     rows = follow_rows(session, start, every_row=every_row)
-    result = Result(session, start, rows, Between.of)
+    result = Result(session, start, rows, motion_between)
     if not rows.reached.any():
         return result
     batch = result.run(ask)
@@ -348,42 +349,36 @@ def row_notes(
     return notes
 
 
-class Between(NamedTuple):
-    """The motion of a result between its rows: `bends` are moments, in the file's unit, at which
-    the laws of its inputs bend or jump."""
+def motion_between(result: Result) -> Callable[[Floats], Result] | None:
+    """Gives the sweep at other moments (`_at`); None where the motion is not known between the
+    rows: without time, and where several inputs move by one motor, whose rates by it are those of
+    the rows."""
+    motion = result.problem.motion
+    if motion.time is None or motion.course is None or motion.constraints:
+        return None
+    return partial(_at, result)
 
-    result: Result
-    bends: Floats
 
-    @classmethod
-    def of(cls, result: Result) -> Between | None:
-        """None where the motion is not known there: without time, and where several inputs move by
-        one motor, whose rates by it are those of the rows."""
-        motion = result.problem.motion
-        if motion.time is None or motion.course is None or motion.constraints:
-            return None
-        return cls(result, np.unique(motion.course.at[motion.course.rows < 0]))
+def _at(result: Result, written: Floats) -> Result:
+    """The sweep at rising moments within its own, in the file's unit, and at that of its first
+    assembly, which may be none of them: rows (moments,) or one more."""
+    from mechkin_cli.session import places_at
 
-    def at(self, written: Floats) -> Result:
-        """The sweep at rising moments within its own, in the file's unit, and at that of its first
-        assembly, which may be none of them: rows (moments,) or one more."""
-        from mechkin_cli.session import places_at
-
-        session, problem, start = self.result.session, self.result.problem, self.result.start
-        time, course = problem.motion.time, problem.motion.course
-        assert time is not None
-        assert course is not None
-        first = time.written[start.row]
-        moments = np.unique(np.concatenate([written, [first]]))
-        motion = problem.motion._replace(
-            inputs=tuple(_inputs(self.result, moments)),
-            rows=moments.size,
-            time=Moments(problem.units.to_si(moments.copy(), TIME), moments),
-        )
-        values = np.stack([item.values for item in motion.inputs])
-        motion = motion._replace(course=places_at(course, moments, values))
-        row = int(np.searchsorted(moments, first))
-        return closed_rows(session.moved(replace(problem, motion=motion)), replace(start, row=row))
+    session, problem, start = result.session, result.problem, result.start
+    time, course = problem.motion.time, problem.motion.course
+    assert time is not None
+    assert course is not None
+    first = time.written[start.row]
+    moments = np.unique(np.concatenate([written, [first]]))
+    motion = problem.motion._replace(
+        inputs=tuple(_inputs(result, moments)),
+        rows=moments.size,
+        time=Moments(problem.units.to_si(moments.copy(), TIME), moments),
+    )
+    values = np.stack([item.values for item in motion.inputs])
+    motion = motion._replace(course=places_at(course, moments, values))
+    row = int(np.searchsorted(moments, first))
+    return closed_rows(session.moved(replace(problem, motion=motion)), replace(start, row=row))
 
 
 def _inputs(result: Result, moments: Floats) -> list[DrivenInput]:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Diagnostic, Number
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Readable
-    from mechkin_cli.view.page import Lengths, Plain, Share, ShownBranch
+    from mechkin_cli.view.page import Lengths, Plain, Share
 
 
 KINDS = {
@@ -110,20 +110,21 @@ class BranchScene:
     """A branch of a run, and what the page has of it.
 
     Attributes:
-        shown: the branch.
+        name: of its assembly mode.
+        analysis: the run in that mode.
         links: names of all links, ground first.
         share: the most rows and poses that are shown.
+        forces: whether arrows of forces may be read.
     """
 
-    def __init__(self, shown: ShownBranch, links: Sequence[str], share: Share) -> None:
-        self.shown = shown
+    def __init__(
+        self, name: str, analysis: Readable, links: Sequence[str], share: Share, *, forces: bool
+    ) -> None:
+        self.name = name
+        self.analysis = analysis
         self.links = links
         self.share = share
-
-    @property
-    def analysis(self) -> Readable:
-        """The analysis of the branch."""
-        return self.shown.analysis
+        self.forces = forces
 
     @cached_property
     def axis(self) -> RunParameter:
@@ -166,10 +167,10 @@ class BranchScene:
         poses = self.poses.copy()
         poses[:, :, :3] = lengths.array(poses[:, :, :3])
         codes = self.analysis.result.status[self.rows]
-        forces = self.shown.forces
         posed = self.rows[self.posed]
+        arrows = arrow_records(self.analysis, posed, self.links, lengths) if self.forces else []
         return {
-            "name": self.shown.name,
+            "name": self.name,
             "own": own,
             "rows": int(self.rows.size),
             "x": packed("f64", self.axis.values[self.rows]),
@@ -177,7 +178,7 @@ class BranchScene:
             "status": {"words": [one.label for one in Status], "codes": packed("u8", codes)},
             "marks": run_marks(self.analysis, self.axis.name, self.axis.values),
             "columns": list(self._columns()),
-            "arrows": arrow_records(self.analysis, posed, self.links, lengths) if forces else [],
+            "arrows": arrows,
         }
 
     @cached_property

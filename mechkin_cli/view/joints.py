@@ -121,7 +121,7 @@ def link_shape(
     mechanism: Mechanism, link: str, size: float, setting: ShapeSetting | None = None
 ) -> Shape:
     """The shape of a link of a mechanism of some `size` (m); what `setting` says goes first."""
-    kind, chosen = (None, None) if setting is None else (setting.kind, setting.points)
+    kind, chosen = setting or (None, None)
     if kind is None and link == GROUND_NAME and chosen is None:
         kind = "none"
     points = drawn_points(mechanism, link) if chosen is None else chosen

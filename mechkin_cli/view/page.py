@@ -25,7 +25,7 @@ from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -164,14 +164,14 @@ Share = tuple[int, int]
 
 def shares(run: ShownRun) -> list[Share]:
     """The share of each branch of a run, in their order: the own branch has most."""
-    own, *others = run.branches
-    columns = sum(len(table.columns) for table in own.analysis.tables)
+    others = len(run.branches) - 1
+    columns = sum(len(table.columns) for table in run.own.tables)
 
     def rows(branches: int) -> int:
         return max(LEAST_ROWS, min(MOST_ROWS, MOST_CELLS // max(branches * columns, 1)))
 
-    poses = min(MOST_POSES, MOST_MODE_POSES // max(len(others), 1))
-    return [(rows(1), MOST_POSES), *[(rows(len(others)), poses)] * len(others)]
+    poses = min(MOST_POSES, MOST_MODE_POSES // max(others, 1))
+    return [(rows(1), MOST_POSES), *[(rows(others), poses)] * others]
 
 
 def thinned(rows: ArrayLike, most: int, keep: ArrayLike = ()) -> Numbers:
@@ -216,7 +216,7 @@ def _units(units: UnitSystem) -> str:
 
 def _assemblies(runs: Sequence[ShownRun]) -> Iterator[str]:
     for run in runs:
-        result = run.branches[0].analysis.result
+        result = run.own.result
         if result.how:
             yield f"{run.title}: the assembly at the first row is {result.how}."
 
@@ -249,7 +249,7 @@ def _bodies(problem: Problem) -> Iterator[str]:
 
 
 def _arrows(runs: Sequence[ShownRun]) -> Iterator[str]:
-    if any(run.branches[0].forces for run in runs):
+    if any(run.forces for run in runs):
         yield (
             "Arrows at joints are what the first link exerts on the second, without the drive; one "
             "with axes behind its name, such as (x, y), has these components alone: redundant "
@@ -312,18 +312,17 @@ class ShownModel(Protocol):
         ...
 
 
-class ShownBranch(NamedTuple):
-    """A run in one assembly mode; `forces`: whether arrows of forces may be read."""
-
-    name: str
-    analysis: Readable
-    forces: bool = True
-
-
 class ShownRun(NamedTuple):
-    """A run of the file with its branches, the file's own one first, and its other tables."""
+    """A run of the file in each of its assembly modes by name, the file's own one first, and its
+    other tables; `forces`: whether arrows of forces may be read."""
 
     name: str
     title: str
-    branches: tuple[ShownBranch, ...]
+    branches: Mapping[str, Readable]
+    forces: bool = True
     tables: tuple[Columns, ...] = ()
+
+    @property
+    def own(self) -> Readable:
+        """The run in the file's own mode."""
+        return next(iter(self.branches.values()))

@@ -37,7 +37,6 @@ from mechkin_cli.view.page import (
     MOST_MODES,
     Lengths,
     ShownAnalysis,
-    ShownBranch,
     ShownRun,
     assumed,
     filled,
@@ -91,8 +90,8 @@ class Scene:
         """The branches of every run."""
         return [
             [
-                BranchScene(one, self.links, share)
-                for one, share in zip(run.branches, shares(run), strict=True)
+                BranchScene(*one, self.links, share, forces=run.forces)
+                for one, share in zip(run.branches.items(), shares(run), strict=True)
             ]
             for run in self.runs
         ]
@@ -106,8 +105,8 @@ class Scene:
         followed = {
             name
             for run in self.runs
-            for branch in run.branches
-            for name in branch.analysis.result.problem.mechanism.links
+            for analysis in run.branches.values()
+            for name in analysis.result.problem.mechanism.links
         }
         return frozenset(self.links) - followed - {GROUND_NAME}
 
@@ -190,7 +189,7 @@ class Scene:
         """Gravity (m/s^2) of the sweep, or else of a response."""
         found = [self.problem.mechanism.gravity]
         for run in self.runs:
-            found.append(run.branches[0].analysis.result.problem.mechanism.gravity)
+            found.append(run.own.result.problem.mechanism.gravity)
         return np.array(next((one for one in found if any(one)), (0.0, 0.0, 0.0)))
 
     def _link(self, name: str, size: float) -> Plain:
@@ -318,10 +317,10 @@ def _shown(analysis: ShownAnalysis, modes: bool, notes: list[Diagnostic]) -> Sho
     forces = _may_read_forces(analysis, notes)
     own = analysis.result.letter if modes else analysis.result.mode
     others = list(_other_modes(analysis, own, notes)) if modes else []
-    branches = [ShownBranch(_OWN_NAMES.get(own, f"mode {own}"), analysis, forces)]
-    branches += [ShownBranch(f"mode {letter}", one, forces) for letter, one in others]
+    branches = {_OWN_NAMES.get(own, f"mode {own}"): analysis}
+    branches |= {f"mode {letter}": one for letter, one in others}
     title = f"sweep of {model.name}" if run == SWEEP else f"response {run}"
-    return ShownRun(run, title, tuple(branches), _other_tables(analysis, notes))
+    return ShownRun(run, title, branches, forces, _other_tables(analysis, notes))
 
 
 def _may_read_forces(analysis: ShownAnalysis, notes: list[Diagnostic]) -> bool:
@@ -381,7 +380,7 @@ def _other_tables(analysis: ShownAnalysis, notes: list[Diagnostic]) -> tuple[Col
 def _left_out(runs: Sequence[ShownRun]) -> Iterator[Diagnostic]:
     """Notes on runs of which not all rows are shown."""
     for run in runs:
-        rows, own = run.branches[0].analysis.rows, shares(run)[0]
+        rows, own = run.own.rows, shares(run)[0]
         if rows > min(own):
             yield Diagnostic(
                 "view-thinned",

@@ -123,10 +123,10 @@ def test_friction_that_turns_round_and_contacts_that_change_sides(count):
 
 def test_what_rows_alone_cannot_tell_is_said(monkeypatch):
     """The balance closes although work and dissipation are both wrong: it says how much."""
-    from mechkin_cli.sweep.sweep import Between
+    from mechkin_cli.sweep import sweep
 
     right = mk.loads(BLOCK.format(count=11)).analyze(NAMES)["row.dissipated"]
-    monkeypatch.setattr(Between, "of", classmethod(lambda cls, result: None))
+    monkeypatch.setattr(sweep, "motion_between", lambda result: None)
     r = mk.loads(BLOCK.format(count=11)).analyze(NAMES)
     size = max(np.abs(r[name]).max() for name in NAMES[:2])
     off = np.abs(r["row.dissipated"] - right) / size

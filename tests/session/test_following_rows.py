@@ -18,7 +18,7 @@ from mechkin_cli.plan.records import Output, OutputCode, TrackEnd, hand_over_out
 from mechkin_cli.session.following import Followed, follow
 from mechkin_cli.session.inputs import (
     ORIENTATION,
-    TurnSlots,
+    closing_slots,
     continuous_angle,
     continuous_signs,
     drawn_quaternion,
@@ -180,9 +180,7 @@ def test_angles_against_small_steps(name: str, coarse: int) -> None:
     setup = closing_case(name)
     path = np.ascontiguousarray(longer_way(setup)[:, ::coarse])
     plan = build_plan(setup.layout)
-    slots = {
-        place: slot for place, slot in TurnSlots.of(plan).closing.items() if place[1] != ORIENTATION
-    }
+    slots = {place: slot for place, slot in closing_slots(plan).items() if place[1] != ORIENTATION}
     assert slots
     code = int(OutputCode.CLOSING)
     records = [Output(code, *place, 0, (0.0, 0.0, 0.0), 1.0) for place in slots]
@@ -207,7 +205,7 @@ def test_signs_against_small_steps(name: str) -> None:
     setup = closing_case(name)
     (closing,) = setup.layout.graph.closings
     joint, plan = closing.joint, build_plan(setup.layout)
-    slot = TurnSlots.of(plan).closing[0, ORIENTATION]
+    slot = closing_slots(plan)[0, ORIENTATION]
     path = np.ascontiguousarray(longer_way(setup))
     fine = dense(path, 100)
     coarse = follow(plan, path, setup.start.state, turns=True)

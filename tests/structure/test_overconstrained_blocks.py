@@ -20,7 +20,7 @@ import mechkin_cli as mk
 from mechkin_cli.mechanism.vectors import GROUND
 from mechkin_cli.session.assembled_places import is_drawn_assembled
 from mechkin_cli.structure.network import connections_of, reduce
-from mechkin_cli.structure.rank import Rates, unit_of
+from mechkin_cli.structure.rank import Rates, middle_and_size
 
 KINDS = ("RRR", "RSR", "SSR", "CSR", "SCR", "SRR")
 UNKNOWNS = {"RRR": 2, "RSR": 2, "SSR": 1, "CSR": 3, "SCR": 3, "SRR": 2}
@@ -197,7 +197,7 @@ def test_inputs_hold_a_mechanism_and_one_less_does_not(path: Path) -> None:
     for left_out in range(-1, len(problem.driven)):
         driven = [name for k, name in enumerate(problem.driven) if k != left_out]
         numbers = {(j, mechanism.joints[j].freedom_number(c)) for j, c in driven}
-        rates = Rates(lambda link: GROUND, numbers, unit_of(mechanism))
+        rates = Rates(lambda link: GROUND, numbers, *middle_and_size(mechanism))
         connections = connections_of(mechanism, whole, driven)
         still = rates.still(set(whole.links), connections, {"ground"})
         assert (still == set(whole.links)) == (left_out < 0), left_out

@@ -16,6 +16,7 @@ from mechkin_cli.view.page import (
     MOST_MODES,
     MOST_POSES,
     MOST_ROWS,
+    ShownRun,
     script_json,
     shares,
     thinned,
@@ -147,8 +148,8 @@ def test_many_columns_and_modes_share_a_page() -> None:
 
 def test_shares_of_many_modes_are_never_nothing() -> None:
     tables = (SimpleNamespace(columns=range(1000)),)
-    branch = SimpleNamespace(analysis=SimpleNamespace(tables=tables))
-    found = shares(SimpleNamespace(branches=(branch,) * 17))
+    branches = dict.fromkeys("ABCDEFGHIJKLMNOPQ", SimpleNamespace(tables=tables))
+    found = shares(ShownRun("sweep", "", branches))
     assert found[0] == (400, MOST_POSES)
     assert set(found[1:]) == {(200, 500)}
 
@@ -194,7 +195,7 @@ def test_modes_are_all_there_is_and_each_once(stem: str) -> None:
 def test_a_mode_asked_for_is_the_own_one() -> None:
     model = mk.load(FILE_OF["rcsr"])
     scene, _ = view_scene(model.analyses(mode="A"))
-    assert [one.name for one in scene.runs[0].branches] == ["mode A", "mode B"]
+    assert list(scene.runs[0].branches) == ["mode A", "mode B"]
 
 
 def test_loops_that_are_not_followed_are_hidden() -> None:
