@@ -28,6 +28,14 @@ MOTION = [
         "equally many rows",
         "O.theta 3, D.s 2",
     ),
+    changed(
+        "motion: {inputs",
+        "motion: {grid: »true, inputs",
+        "grid-inputs",
+        "two inputs with rows of their own, here are 1: O.theta",
+        "give a second one",
+    ),
+    changed("motion: {inputs", "motion: {grid: »2, inputs", "not-a-flag", "true or false"),
     inputs("{O.theta: {values: [0, k*»mm]}}", "expression", "right behind a number: 1 mm"),
 ]
 

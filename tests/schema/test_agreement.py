@@ -45,6 +45,7 @@ EDITORS_ACCEPT = {
     "not-its-link": CROSSING,
     "law-without-time": CROSSING,
     "rows-beside-time": CROSSING,
+    "grid-inputs": CROSSING,
     "row-counts": CROSSING,
     "unknown-label": CROSSING,
     "unknown-link": CROSSING,
