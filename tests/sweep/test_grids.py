@@ -72,7 +72,7 @@ motion:
     names = [*NAMES, "A.effort", "C.theta", "norm(B.force)"]
     one, other = (mk.loads(FIVE_BAR + motion).analyze(names) for motion in (GRID, listed))
     for name in names:
-        np.testing.assert_array_equal(one[name], other[name])
+        np.testing.assert_allclose(one[name], other[name], rtol=1e-13, atol=1e-13)
 
 
 def test_rows_of_the_text_are_those_of_the_doubles() -> None:
@@ -92,6 +92,52 @@ def test_a_grid_may_have_one_line(slow: str) -> None:
     assert proofs.is_one_branch
     np.testing.assert_array_equal(proofs.analysis["A.theta"], [5.0] * 3)
     np.testing.assert_array_equal(proofs.analysis["E.theta"], FAST)
+
+
+WIDE = """\
+motion:
+  grid: true
+  inputs:
+    A.theta: {from: START, to: END, step: 15}
+    E.theta: {from: -90, to: 30, step: 15}
+"""
+
+
+def reach(a: float, e: float) -> float:
+    """How far the outer pins are apart, in parts of the farthest: the loop closes up to 1."""
+    u, v = LEFT + radians(a), RIGHT + radians(e)
+    apart = hypot(BASE + ARM * (cos(v) - cos(u)), ARM * (sin(v) - sin(u)))
+    return apart / (2.0 * COUPLER)
+
+
+@pytest.mark.parametrize(("start", "end"), [(0, 90), (90, 0), (-30, 45), (0, 135), (45, 120)])
+def test_a_line_that_ends_does_not_end_the_others(start: int, end: int) -> None:
+    motion = WIDE.replace("START", str(start)).replace("END", str(end))
+    run = mk.loads(FIVE_BAR + motion).analyze(["A.theta", "E.theta", *NAMES[:2], "row.status"])
+    met = 0
+    for row in range(run.rows):
+        a, e = float(run["A.theta"][row]), float(run["E.theta"][row])
+        if np.isnan(run["p.position.x"][row]):
+            assert run["row.status"][row] == "beyond-dead-centre"
+            assert reach(a, e) > 1.0
+            continue
+        assert reach(a, e) < 1.0
+        place = (run["p.position.x"][row], run["p.position.y"][row])
+        assert place == pytest.approx(five_bar(a, e)[:2], abs=1e-9)
+        met += 1
+    assert 0 < met < run.rows
+    codes = [d.code for d in run.diagnostics if d.severity == "warning"]
+    assert codes == ["dead-centre"]
+
+
+def test_variants_of_a_grid_are_analyses() -> None:
+    motion = WIDE.replace("START", "0").replace("END", "90")
+    text = FIVE_BAR.replace("[-10, 45]", "[-x, 45]")
+    model = mk.loads(f"{text}parameters: {{x: 10 mm}}\n{motion}")
+    varied = model.vary({"x": ["10 mm", "11 mm"]}, ["p.position.x"])["p.position.x"]
+    for values, x in zip(varied, ("10 mm", "11 mm"), strict=True):
+        one = model.with_parameters({"x": x}).analyze(["p.position.x"])["p.position.x"]
+        np.testing.assert_allclose(values, one, rtol=1e-12)
 
 
 TABLE = """\
