@@ -186,7 +186,19 @@ LOADS = [
 
 COLUMNS = [
     column("»O.thetta", "expression", "O.thetta", "O.theta"),
-    column("»O.force", "expression", "vector", "O.force.x, O.force.y, O.force.z or norm(O.force)"),
+    changed(
+        "columns: [O.theta]",
+        "columns: [O.force, »O.force.x]",
+        "label-clash",
+        "'O.force.x' is used twice, once by a component of a vector",
+    ),
+    changed(
+        "columns: [O.theta]",
+        "columns: [O.theta, O.force], plot: {x: »O.force}",
+        "vector-label",
+        "O.force is a vector",
+        "a column: O.force.x, O.force.y, O.force.z",
+    ),
     column(
         "»D.theta.effort",
         "expression",

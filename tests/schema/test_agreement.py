@@ -39,6 +39,7 @@ EDITORS_ACCEPT = {
     "unit": EXPRESSION,
     "name-clash": CROSSING,
     "label-clash": CROSSING,
+    "vector-label": CROSSING,
     "table-clash": CROSSING,
     "same-link": CROSSING,
     "same-point": CROSSING,
