@@ -528,10 +528,8 @@ class Analysis(Listed):
 
 def _components(text: str, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """The columns of a vector (rows, components), by the expressions that give them."""
-    # a vector of a plane has no z
-    return {
-        tables.component_text(text, axis): one for axis, one in zip("xyz", values.T, strict=False)
-    }
+    names = Vector(*values.T).component_texts(text)
+    return dict(zip(names, values.T, strict=True))
 
 
 def _table_frame(table: Columns, pandas: Any) -> Any:

@@ -220,8 +220,10 @@ def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
     the nearest on its other side."""
     if not path.size:
         return [0]
-    distance = np.max(np.abs(path), axis=0)
-    first = int(rows[np.argmin(distance[rows])])
+    away = np.abs(path)
+    distance = np.max(away, axis=0)
+    # of rows whose farthest input is as far off, as on the edge of a grid, the one least off in all
+    first = int(rows[np.lexsort((np.add.reduce(away, axis=0)[rows], distance[rows]))[0]])
     along = sum(one * one[first] for one in path)
     other = np.flatnonzero(along < 0.0)
     return [first, int(other[np.argmin(distance[other])])] if other.size else [first]

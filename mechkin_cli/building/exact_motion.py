@@ -40,6 +40,8 @@ from mechkin_cli.tape import ExactRows, JetNumber, as_recorded, cos, orders_of, 
 from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.mechanism import MotionInputs, ResponseProblem
     from mechkin_cli.schema import ListedTime
     from mechkin_cli.tape import ExactRecorder
@@ -211,10 +213,11 @@ class _Reading:
                 listed = [
                     self.fields.written((*path, "values", i), text, dimension) for i, text in texts
                 ]
-                which = np.arange(self.rows.rows) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
+                which = self._place(name) if len(listed) > 1 else np.zeros(1, dtype=np.intp)
                 value = self.rows.picked(listed, np.resize(which, self.rows.rows))
             else:
-                value = _spaced(self.fields, self.rows, path, item, dimension)
+                place = self._place(name)
+                value = _spaced(self.fields, self.rows, path, item, dimension, place)
             rates = [
                 self.fields.written((*path, key), getattr(item, key), dimension_of(coordinate, k))
                 for k, key in enumerate(("rate", "acceleration", "jerk"), start=1)
@@ -226,6 +229,14 @@ class _Reading:
             self._put(name, self._table(path, item, coordinate))
         elif isinstance(item, PowerLaw):
             self._put(name, self._power_series(path, item, coordinate))
+
+    def _place(self, name: str) -> NDArray[np.intp]:
+        """The place of each row (rows,) among the values of an input."""
+        rows = np.arange(self.rows.rows)
+        if self.motion.grid is None:
+            return rows
+        slow, fast = np.divmod(rows, self.motion.grid[1])
+        return slow if name == self.section.with_rows[0] else fast
 
     def follow(self, sections: Mapping[str, FollowingInput]) -> None:
         """The inputs that follow others, each after those that it follows."""
@@ -354,13 +365,15 @@ def _spaced(
     path: Path,
     section: SweptInput | TimeSection,
     dimension: Dimension,
+    place: NDArray[np.intp] | None = None,
 ) -> Any:
-    """first + i step, or first + i (last - first)/(count - 1)."""
+    """first + i step, or first + i (last - first)/(count - 1), with i the row, or its `place`."""
     first: Any = fields.written((*path, "from"), section.first, dimension)
     last: Any = fields.written((*path, "to"), section.last, dimension)
-    if over.rows == 1:
+    place = np.arange(over.rows) if place is None else place
+    if not place.any():
         return first
-    number: Any = over.given(np.arange(over.rows, dtype=np.float64))
+    number: Any = over.given(place.astype(np.float64))
     if section.count is not None:
         return first + number * (last - first) / float(section.count - 1)
     assert section.step is not None

@@ -468,10 +468,11 @@ class Clock(NamedTuple):
 
 
 class Written(NamedTuple):
-    """Driven coordinates as written in a section, its path, and the moments and clock of their
-    laws."""
+    """Driven coordinates as written in a section, its path, the moments and clock of their laws,
+    and the two inputs of a grid, the slow one first."""
 
     inputs: Mapping[str, InputMotion | HeldCoordinate]
     path: Path
     time: Moments | None = None
     clock: Clock | None = None
+    grid: tuple[str, ...] = ()

@@ -327,7 +327,10 @@ def _sources(
         return Parameter(name, dimension), moving[0].written, {name: itself}
     numbers = np.arange(moving[0].written.size, dtype=np.float64)
     chords = {
-        i.name: _chords(i.written, isinstance(written.inputs[i.name], SweptInput)) for i in moving
+        i.name: _chords(
+            i.written, isinstance(written.inputs[i.name], SweptInput) and not written.grid
+        )
+        for i in moving
     }
     return Parameter("row"), numbers, chords
 

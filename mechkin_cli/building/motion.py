@@ -17,7 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from math import floor, isfinite
+from math import floor, isfinite, prod
 from typing import Final
 
 import numpy as np
@@ -197,7 +197,8 @@ def build_motion(
     if section is None:
         return MotionInputs((), 1)
     errors = fields.error_count
-    written = Written(section.inputs, ("motion", "inputs"))
+    grid = section.with_rows if section.grid else ()
+    written = Written(section.inputs, ("motion", "inputs"), grid=grid)
     if section.time is not None:
         moments, last = spaced_moments(fields, ("motion", "time"), section.time, per_row)
         clock = Clock(moments.written, float(moments.written[0]), last)
@@ -219,9 +220,10 @@ def build_inputs(
     time = written.time
     with np.errstate(all="ignore"):
         orders, following = _orders(fields, written, joints, per_row)
-    rows = time.written.size if time else _row_count(fields, orders)
-    if fields.error_count == errors:
-        has_too_many_rows(fields, written.path, rows, per_row)
+    rows = time.written.size if time else _row_count(fields, written.grid, orders)
+    grid = None
+    if fields.error_count == errors and not has_too_many_rows(fields, written.path, rows, per_row):
+        grid = _all_pairs(orders, written.grid)
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
@@ -243,7 +245,7 @@ def build_inputs(
     if fields.error_count > errors:
         return None
     unrated = () if time else _unrated(fields, written.path, inputs)
-    motion = MotionInputs(inputs, rows, time, unrated=unrated)
+    motion = MotionInputs(inputs, rows, time, unrated=unrated, grid=grid)
     if constraint_rates:
         number = {item.name: k for k, item in enumerate(inputs)}
         pairs = [(number[name], number[leader]) for name, leader in constraint_rates]
@@ -353,7 +355,20 @@ def _values(
     return spaced(fields, path, item, dimension, per_row)
 
 
-def _row_count(fields: Fields, columns: Mapping[str, Floats]) -> int:
+def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int] | None:
+    """Spreads the values of the two inputs of a grid over its rows; how many values each has."""
+    if not grid:
+        return None
+    slow, fast = grid
+    shape = orders[slow].shape[1], orders[fast].shape[1]
+    orders[slow] = np.repeat(orders[slow], shape[1], axis=1)
+    orders[fast] = np.tile(orders[fast], (1, shape[0]))
+    return shape
+
+
+def _row_count(fields: Fields, grid: Sequence[str], columns: Mapping[str, Floats]) -> int:
+    if grid:
+        return prod(columns[name].shape[1] for name in grid if name in columns)
     lengths = {name: orders.shape[1] for name, orders in columns.items() if orders.shape[1] > 1}
     if len(set(lengths.values())) > 1:
         text = "inputs that run together need equally many rows"

@@ -109,17 +109,26 @@ def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[s
 def _table(
     fields: Fields, path: Path, section: written.Table, run: str, sample: ColumnSample
 ) -> TableLayout:
-    columns = []
+    columns: list[ColumnLayout] = []
+    parts: dict[str, tuple[str, ...]] = {}
     for k, column in enumerate(section.columns):
         place: Path = (*path, "columns", k)
         if fields.document.node((*place, "value")) is not None:
             place = (*place, "value")
-        layout = _column(fields, place, column, sample)
-        if layout is not None:
-            columns.append(layout)
+        layouts = _columns(fields, place, column, sample)
+        parts[column.label] = tuple(layout.label for layout in layouts)
+        columns += layouts
+    _refuse_same_labels(fields, path, parts)
     title = section.title or section.name
-    published = _published(section.published)
+    published = _published(section.published, parts)
     x, y = (None, ()) if section.plot is None else (section.plot.x, section.plot.y)
+    y = tuple(part for label in y for part in parts[label])
+    read_by = None if section.published is None else section.published.rows_by
+    for label, place in ((x, ("plot", "x")), (read_by, ("published", "rows_by"))):
+        if label is not None and len(parts.get(label, ())) > 1:
+            text = f"the column {label} is a vector"
+            hint = f"make one of its components a column: {', '.join(parts[label])}"
+            fields.error("vector-label", (*path, *place), text, hint)
     return TableLayout(section.name, title, tuple(columns), published, run, section.summary, x, y)
 
 
@@ -142,28 +151,54 @@ def _refuse_taken(fields: Fields, file: MechanismFile, run: str) -> None:
             fields.error("table-clash", ("tables", i, "name"), text, hint)
 
 
-def _published(section: written.PublishedValues | None) -> PrintedSource | None:
+def _refuse_same_labels(fields: Fields, path: Path, parts: Mapping[str, Sequence[str]]) -> None:
+    """The components of a vector have labels of their own, which no other column may have."""
+    taken: dict[str, int] = {}
+    for k, labels in enumerate(parts.values()):
+        for label in labels:
+            if label in taken:
+                text = f"the label {label!r} is used twice, once by a component of a vector"
+                hint = "leave out the component, or give one of them another label"
+                fields.error("label-clash", (*path, "columns", k), text, hint)
+            taken[label] = k
+
+
+def _published(
+    section: written.PublishedValues | None, parts: Mapping[str, Sequence[str]]
+) -> PrintedSource | None:
+    """The printed values; `parts` are the labels of the columns that each label stands for."""
     if section is None:
         return None
-    remarks = tuple(Remark(r.text, r.columns or (), r.data or ()) for r in section.remarks)
+
+    def labels(remark: written.PrintedRemark) -> tuple[str, ...]:
+        return tuple(part for label in remark.columns or () for part in parts.get(label, (label,)))
+
+    remarks = tuple(Remark(r.text, labels(r), r.data or ()) for r in section.remarks)
     return PrintedSource(section.file, remarks, section.rows_by)
 
 
-def _column(
+def _columns(
     fields: Fields, path: Path, column: written.Column, sample: ColumnSample
-) -> ColumnLayout | None:
+) -> list[ColumnLayout]:
+    """The column, of a vector those of its components; none where an error was noted."""
     try:
         expression = fields.definitions.parse(column.value)
         if column.value.strip() not in sample.texts:
             quantity = expression.evaluate(sample, fields.units)
             if isinstance(quantity.value, Vector):
-                message = "a column holds one number per row, this is a vector"
-                hint = f"write {quantity.value.components_of(column.value)}, each a column"
-                raise ExpressionError(message, 0, hint)
+                texts = quantity.value.component_texts(column.value)
+                labels = quantity.value.component_texts(column.label)
+                if column.label.strip() != column.value.strip():
+                    # a label is words, no expression
+                    labels = tuple(f"{column.label}.{text[-1]}" for text in texts)
+                return [
+                    ColumnLayout(label, fields.definitions.parse(text), column.decimals)
+                    for label, text in zip(labels, texts, strict=True)
+                ]
     except ExpressionError as error:
         fields.expression_error(path, error)
-        return None
-    return ColumnLayout(column.label, expression, column.decimals)
+        return []
+    return [ColumnLayout(column.label, expression, column.decimals)]
 
 
 class ColumnSample:
@@ -452,13 +487,10 @@ class _BalanceBuilder:
                     message = f"one table holds one dimension; {phrases}"
                     raise ExpressionError(message, 0, "make it a balance of its own")
                 dimension = dimension or quantity.dimension
-                stem = text.strip()
                 if isinstance(quantity.value, Vector):
-                    if not stem.replace(".", "").replace("_", "").isalnum():
-                        stem = f"({stem})"
-                    named += [(f"{stem}.{axis}", parse(f"{stem}.{axis}")) for axis in "xyz"]
+                    named += [(one, parse(one)) for one in quantity.value.component_texts(text)]
                 else:
-                    named.append((stem, expression))
+                    named.append((text.strip(), expression))
             except ExpressionError as error:
                 self.fields.expression_error((*path, i), error)
         return tuple(named)

@@ -44,10 +44,20 @@ class Vector:
             >>> Vector(1.0, 2.0, 3.0).components_of("a+b")
             '(a+b).x, (a+b).y, (a+b).z or norm(a+b)'
         """
+        return f"{', '.join(self.component_texts(text))} or norm({text.strip()})"
+
+    def component_texts(self, text: str) -> tuple[str, ...]:
+        """The texts of the components, in order, of the vector that a text is.
+
+        Example:
+            >>> Vector(1.0, 2.0).component_texts("A.force")
+            ('A.force.x', 'A.force.y')
+            >>> Vector(1.0, 2.0, 3.0).component_texts("a+b")
+            ('(a+b).x', '(a+b).y', '(a+b).z')
+        """
         name = text.strip()
         whole = name if name.replace(".", "").isidentifier() else f"({name})"
-        axes = "xyz"[: len(self.components)]
-        return ", ".join(f"{whole}.{axis}" for axis in axes) + f" or norm({name})"
+        return tuple(f"{whole}.{axis}" for axis in "xyz"[: len(self.components)])
 
 
 Value = Scalar | Vector

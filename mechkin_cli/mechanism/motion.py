@@ -70,7 +70,8 @@ class MotionInputs(NamedTuple):
     `course` where inputs move by laws or follow others; `paths` are all inputs as functions of each
     one that others follow (`building.course`). Of `constraints` between inputs `constraint_rates`
     (constraints, rows) are the rates of the input by its leader. `unrated` are the inputs that rest
-    only since the file gives them no rate."""
+    only since the file gives them no rate. `grid`: how many values each of the two inputs has whose
+    pairs are the rows, the slow one first."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
@@ -80,6 +81,7 @@ class MotionInputs(NamedTuple):
     constraints: tuple[InputConstraint, ...] = ()
     constraint_rates: Floats | None = None
     unrated: tuple[str, ...] = ()
+    grid: tuple[int, int] | None = None
 
     @property
     def driven(self) -> list[tuple[str, str]]:

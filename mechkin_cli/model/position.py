@@ -306,7 +306,7 @@ def _pair(result: Result, row: int, places: Floats) -> MotionInputs:
     rates = motion.constraint_rates
     rates = None if rates is None else np.repeat(rates[:, [row]], 2, axis=1)
     return motion._replace(
-        inputs=tuple(inputs), rows=2, time=None, course=None, constraint_rates=rates
+        inputs=tuple(inputs), rows=2, time=None, course=None, constraint_rates=rates, grid=None
     )
 
 

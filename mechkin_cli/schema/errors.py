@@ -162,6 +162,8 @@ def _plain(annotation: Any, limits: Limits) -> core.CoreSchema:
         return core.str_schema(pattern=limits.pattern)
     if annotation is int:
         return core.int_schema(ge=limits.ge, le=limits.le)
+    if annotation is bool:
+        return core.bool_schema(strict=True)
     if origin is Literal:
         return core.literal_schema(list(arguments))
     if origin is tuple:

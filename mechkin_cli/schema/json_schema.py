@@ -216,6 +216,7 @@ BY_KEY: Final[dict[str, Any]] = {
 
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
+    ("MotionSection", "grid"): True,
     ("Column", "value"): "norm(O1.force)",
     ("Crossing", "value"): "O1.theta - O2.theta",
     ("DeadCentre", "dead_centre"): "O4.theta",
@@ -328,7 +329,7 @@ DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = "$schema $id title description $ref type const enum required".split()  # noqa: SIM905
 _NAMED_SECTIONS = ("parameters", "links", "joints", "points", "directions")
 _BY_NAME = ("properties", "patternProperties", "$defs")
-_JSON_TYPES = {str: "string", int: "integer"}
+_JSON_TYPES = {str: "string", int: "integer", bool: "boolean"}
 # JSON Schema has no flag for ignoring case
 _NOT_A_NUMBER = r"^[+-]?\.?([Nn][Aa][Nn]|[Ii][Nn][Ff]([Ii][Nn][Ii][Tt][Yy])?)$"
 
@@ -412,7 +413,7 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
             schema["description"] = _paragraphs(section)[0]
         if field.required:
             required.append(key)
-        elif isinstance(field.default, (str, int)):
+        elif isinstance(field.default, (str, int)) and field.default is not False:
             schema["default"] = field.default
         example = BY_SECTION.get((section.__name__, key), INSTEAD_OF_ANY.get(key))
         if example is None and not has_example(schema, definitions):

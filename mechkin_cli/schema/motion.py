@@ -1,8 +1,9 @@
 """`motion:` - which coordinates are driven, and through which values; `assembly:` - the first row.
 
 Rows of a sweep: n = floor(|to - from|/|step| + 1e-9) + 1, x_i = from + i*step. One input is swept;
-others are held (`at`), follow (`with`) or run in step through equally many values. Or the rows are
-moments of `time`, and inputs move by laws.
+others are held (`at`), follow (`with`) or run in step through equally many values. With `grid` two
+inputs run through all pairs of their values. Or the rows are moments of `time`, and inputs move by
+laws.
 """
 
 from typing import Annotated, Any, ClassVar, Final, Literal
@@ -24,6 +25,7 @@ from mechkin_cli.schema.scalars import (
     CoordinateRate,
     CsvPath,
     Duration,
+    Flag,
     JoinedTable,
     Text,
     WholeNumber,
@@ -213,6 +215,9 @@ InputMotion = Annotated[
 ]
 
 
+_GRID_INPUTS: Final = 2
+
+
 class MotionSection(Section):
     """The driven coordinates. Without inputs the mechanism has one row."""
 
@@ -221,9 +226,18 @@ class MotionSection(Section):
     time: TimeSection | None = None
     """The moments of the rows, for inputs that are given by laws; left out, inputs have rows of
     their own."""
+    grid: Flag = False
+    """`true`: the rows are all pairs of the values of two inputs, the first of which changes once
+    the second has run through all of its own; left out, inputs run in step."""
+
+    @property
+    def with_rows(self) -> tuple[str, ...]:
+        """The inputs that list rows of their own, in the order of the file."""
+        of_rows = (SweptInput, ListedInput)
+        return tuple(name for name, motion in self.inputs.items() if isinstance(motion, of_rows))
 
     def check(self) -> None:
-        """Laws go with `time`, rows of an input's own do not."""
+        """Laws go with `time`, rows of an input's own do not; a grid has two inputs with rows."""
         for name, motion in self.inputs.items():
             has_law = isinstance(motion, tuple(LAWS.values()))
             if has_law and self.time is None:
@@ -233,6 +247,14 @@ class MotionSection(Section):
                 text = f"{name} lists rows of its own beside time:"
                 hint = "give it a law, or remove time"
                 raise refuse("rows-beside-time", text, hint, "inputs", name)
+        count = len(self.with_rows)
+        if self.grid and count != _GRID_INPUTS:
+            names = f": {', '.join(self.with_rows)}" if count else ""
+            text = f"a grid takes two inputs with rows of their own, here are {count}{names}"
+            hint = "give a second one from, to and step, or values; or remove grid"
+            if count > _GRID_INPUTS:
+                hint = "hold the others with at, let them follow with an expression, or remove grid"
+            raise refuse("grid-inputs", text, hint, "grid")
 
 
 class AssemblySection(Section):

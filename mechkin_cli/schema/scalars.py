@@ -84,6 +84,15 @@ def whole_number(value: Any) -> int:
     raise refuse("not-a-whole-number", "expected a whole number", "write digits only, such as 3")
 
 
+def true_or_false(value: Any) -> bool:
+    """The truth in a text or a Python bool."""
+    words = {"true": True, "false": False}
+    text = str(value).strip().lower() if isinstance(value, (str, bool)) else ""
+    if text not in words:
+        raise refuse("not-a-flag", "expected true or false", "write true, or leave the key out")
+    return words[text]
+
+
 def plain_text(value: Any) -> str:
     """A text as written; Python numbers become the text a user would have written."""
     text = value if isinstance(value, str) else _number_text(value)
@@ -105,6 +114,7 @@ def _number_text(value: Any) -> str | None:
 
 Expression = Annotated[str, Rule(expression_text, before=True)]
 WholeNumber = Annotated[int, Rule(whole_number, before=True)]
+Flag = Annotated[bool, Rule(true_or_false, before=True)]
 Text = Annotated[
     str,
     Rule(plain_text, before=True),

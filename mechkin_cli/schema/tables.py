@@ -55,7 +55,8 @@ class Column(Section):
     label: Text
     """Heading of the column."""
     value: AnyDimension
-    """An expression over quantities and parameters; with commas or brackets it stands in quotes."""
+    """An expression over quantities and parameters; with commas or brackets it stands in quotes. A
+    vector becomes a column for each component, with `.x`, `.y`, `.z` behind the label."""
     decimals: Annotated[WholeNumber, Limits(ge=0, le=17)] | None = None
     """Decimals in Markdown, CSV always has all digits; left out, six significant digits of the
     largest value."""

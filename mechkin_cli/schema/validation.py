@@ -241,6 +241,8 @@ def _plain(annotation: Any, limits: Limits) -> Read:
         return _text(limits.pattern)
     if annotation is int:
         return _whole(limits.ge, limits.le)
+    if annotation is bool:
+        return _flag
     origin, arguments = annotation.__origin__, annotation.__args__
     if origin is Literal:
         return _word({value: type(value) for value in arguments})
@@ -275,6 +277,12 @@ def _whole(least: int | None, most: int | None) -> Read:
         return value
 
     return read
+
+
+def _flag(value: Any) -> Any:
+    if type(value) is not bool:
+        raise NotSure
+    return value
 
 
 def _word(words: dict[Any, type]) -> Read:

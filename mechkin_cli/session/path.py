@@ -85,15 +85,18 @@ class Route:
         real = course.rows >= 0
         self.values[:, real] = values[:, course.rows[real]]
 
-    def way(self, row: int, step: int = 1) -> FollowedPath:
-        """From a row on, or with step -1 back from it."""
+    def way(self, row: int, step: int = 1, last: int | None = None) -> FollowedPath:
+        """From a row on, or with step -1 back from it, to the last row or to the end."""
         course = self.course
         first = int(np.flatnonzero(course.rows == row)[0])
+        end = course.rows.size - 1 if step > 0 else 0
+        if last is not None:
+            end = int(np.flatnonzero(course.rows == last)[0])
         if step > 0:
-            chosen, cells = slice(first, None), course.cells[first:]
+            chosen, cells = slice(first, end + 1), course.cells[first:end]
         else:
-            chosen = slice(first, None, -1)
-            cells = course.cells[:first][::-1]
+            chosen = slice(first, end - 1 if end else None, -1)
+            cells = course.cells[end:first][::-1]
         return self._way(course.rows[chosen], course.at[chosen], self.values[:, chosen], cells)
 
     def _way(

@@ -346,25 +346,28 @@ class Session:
         *,
         every_row: bool = False,
         turn: Floats | None = None,
+        last: int | None = None,
     ) -> Followed:
         """Follows the branch through `start` (states,) at a row along the rows from there on, or
-        with step -1 back from there, with the turns of angles, which are `turn` at the row where
-        they are known; between the rows the inputs follow their laws."""
+        with step -1 back from there, to the `last` one or to the end, with the turns of angles,
+        which are `turn` at the row where they are known; between the rows the inputs follow their
+        laws."""
         if self.route is None:
-            inputs, rows = self.inputs, slice(row, None, step)
+            end = None if last is None or last + step < 0 else last + step
+            inputs, rows = self.inputs, slice(row, end, step)
             path, whole = inputs.reduced[:, rows], inputs.whole[:, rows]
             return self.follow(path, start, every_row=every_row, turns=True, turn=turn, whole=whole)
         straight = self.problem.assembly.straight
-        way = self._path(row, step)
+        way = self._path(row, step, last)
         return follow_along(
             self.plan, way, start, every_row=every_row, straight=straight, turn=turn
         )
 
     @remembered
-    def _path(self, row: int, step: int) -> FollowedPath:
-        """The path along all rows from a row on, or with step -1 back."""
+    def _path(self, row: int, step: int, last: int | None) -> FollowedPath:
+        """The path along the rows from a row on, or with step -1 back, to the last."""
         assert self.route is not None
-        return self.route.way(row, step)
+        return self.route.way(row, step, last)
 
     def follow_way(self, way: FollowedPath, start: Floats) -> Followed:
         """Follows the branch through `start` (states,) along a way of all inputs."""

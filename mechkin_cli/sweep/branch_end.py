@@ -68,6 +68,22 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
         rows.diagnostics.append(_lost_note(session, followed, path, rows))
 
 
+def without_repeats(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """The diagnostics of the lines of a grid: the first of each kind, with the number of others."""
+    first: dict[str, Diagnostic] = {}
+    counts: dict[str, int] = {}
+    for one in diagnostics:
+        first.setdefault(one.code, one)
+        counts[one.code] = counts.get(one.code, 0) + 1
+    more = {
+        code: f" (and {count - 1} more such places on the grid)" for code, count in counts.items()
+    }
+    return [
+        one._replace(message=one.message + more[code]) if counts[code] > 1 else one
+        for code, one in first.items()
+    ]
+
+
 def crossing_note(session: Session, passed: Iterable[Floats]) -> Diagnostic:
     """The branch points that the rows passed straight on, by their inputs."""
     places = [input_numbers(session.problem, session.layout, inputs) for inputs in passed]
@@ -242,7 +258,7 @@ def _assembled_again(
     """Where a sweep of one turning input comes to the branch's other end, a whole turn on, before
     its last row."""
     moving = np.flatnonzero((path != path[:, :1]).any(axis=1))
-    if moving.size != 1 or not rows.reached[0]:
+    if moving.size != 1 or not rows.reached[0] or session.problem.motion.grid is not None:
         return None
     number = int(moving[0])
     walker = modes.Walker(session, number, path[:, 0])

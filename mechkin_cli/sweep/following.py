@@ -41,7 +41,7 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     if first is not None:
         followed = session.follow_rows(first, every_row=every_row)
         rows = SweepRows.followed(followed)
-        _end(session, followed, rows, every_row)
+        explain_way(session, followed, rows, every_row)
     else:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         for step in (-1, 1):
@@ -49,13 +49,13 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
             part = rows.part(slice(start.row, None, step))
             part.take(followed, 0)
             part.section *= step
-            _end(session, followed, part, every_row)
+            explain_way(session, followed, part, every_row)
             rows.nodes += part.nodes + followed.steps
-    _count_from_first(session, rows)
+    count_from_first(session, rows)
     return rows
 
 
-def _end(session: Session, followed: Followed, rows: SweepRows, every_row: bool) -> None:
+def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row: bool) -> None:
     """Goes on where the inputs turn back at a dead centre or a branch point; says which branch
     points were passed, at which places the inputs turn back, and what ended the branch, if it
     ended. `rows` are in the order in which they were followed."""
@@ -125,7 +125,7 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
     return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
 
 
-def _count_from_first(session: Session, rows: SweepRows) -> None:
+def count_from_first(session: Session, rows: SweepRows) -> None:
     """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
     if not rows.reached.any():
         return

@@ -64,7 +64,7 @@ class _Singular(NamedTuple):
         return self.kind == PassageEnd.DEAD_CENTRE
 
 
-class _Place(NamedTuple):
+class Place(NamedTuple):
     """A place on the branch: inputs, states, turns and the correction that is left."""
 
     inputs: Floats
@@ -101,7 +101,7 @@ def retraced(
     if ending is None and beside.size:
         places = np.concatenate([values[:, beside], about[:, None]], axis=1)
         about = places[:, np.argmax(_distance(places, values[:, base]))]
-    start = _Place(values[:, base], _closed(session, rows, base), rows.turns[:, base])
+    start = Place(values[:, base], closed(session, rows, base), rows.turns[:, base])
     place = _singular_place(session, start, about)
     if place is None or not (place.is_dead_centre or session.problem.assembly.straight):
         return None
@@ -113,13 +113,13 @@ def retraced(
         numbers = int(rows.numbers[last]), int(rows.numbers[behind])
         if not _stays(session, numbers, start.inputs, place.inputs):
             return None
-    off = _step(session, start, _towards(place.inputs, start.inputs, far))
+    off = straight_to(session, start, _towards(place.inputs, start.inputs, far))
     if off is None:
         return None
     on = None
     if behind < away.size:
-        turned = _step(session, off, _towards(place.inputs, values[:, behind], far))
-        on = None if turned is None else _step(session, turned, values[:, behind])
+        turned = straight_to(session, off, _towards(place.inputs, values[:, behind], far))
+        on = None if turned is None else straight_to(session, turned, values[:, behind])
         if on is None:
             return None
     # where branches cross following has told the rows up to the place
@@ -133,9 +133,9 @@ def retraced(
     )
     if on is None:
         return touched, None, behind
-    step = int(rows.numbers[1] - rows.numbers[0])
+    step, end = int(rows.numbers[1] - rows.numbers[0]), int(rows.numbers[-1])
     again = session.follow_rows(
-        on.state, int(rows.numbers[behind]), step, every_row=every_row, turn=on.turn
+        on.state, int(rows.numbers[behind]), step, every_row=every_row, turn=on.turn, last=end
     )
     part = rows.part(slice(behind, None))
     part.take(again, 0)
@@ -179,14 +179,15 @@ def _towards(inputs: Floats, other: Floats, far: float) -> Floats:
     return inputs + min(1.0, far / float(np.abs(away).max())) * away
 
 
-def _closed(session: Session, rows: SweepRows, row: int) -> Floats:
+def closed(session: Session, rows: SweepRows, row: int) -> Floats:
+    """The states (states,) of one of the rows, closed; its guess where that does not close."""
     inputs = np.ascontiguousarray(session.inputs.reduced[:, [rows.numbers[row]]])
     guess = np.ascontiguousarray(rows.states[:, row, None])
     batch = session.close(inputs, guess)
     return np.ascontiguousarray((batch.states if batch.good[0] else guess)[:, 0])
 
 
-def _step(session: Session, start: _Place, inputs: Floats) -> _Place | None:
+def straight_to(session: Session, start: Place, inputs: Floats) -> Place | None:
     """From a place straight to some inputs; None where the branch does not lead there."""
     if not (inputs != start.inputs).any():
         return start
@@ -198,10 +199,10 @@ def _step(session: Session, start: _Place, inputs: Floats) -> _Place | None:
     state = (batch.states if batch.good[0] else found.guess[:, 1:])[:, 0]
     assert found.turns is not None
     turn = np.ascontiguousarray(found.turns[:, 1])
-    return _Place(inputs, np.ascontiguousarray(state), turn, float(found.limit[1]))
+    return Place(inputs, np.ascontiguousarray(state), turn, float(found.limit[1]))
 
 
-def _singular_place(session: Session, start: _Place, about: Floats) -> _Singular | None:
+def _singular_place(session: Session, start: Place, about: Floats) -> _Singular | None:
     """The dead centre or branch point at which the way from a place to some inputs and a little
     farther on ends, or which it passes, if it lies there."""
     far, near = tolerances.BEFORE_DEAD_CENTRE
@@ -226,7 +227,7 @@ def _put_beside(
     rows: SweepRows,
     values: Floats,
     beside: range,
-    off: _Place,
+    off: Place,
     place: _Singular,
 ) -> bool:
     """Puts the rows beside a singular place into the rows, each followed from a place `off` it; at
@@ -234,12 +235,12 @@ def _put_beside(
     rounding = tolerances.TURNED_BACK * max(1.0, float(np.abs(place.inputs).max(initial=0.0)))
     at_once = rows.reached | (_distance(values, place.inputs) <= rounding)
     section = int(rows.section[max(beside.start - 1, 0)])
-    known: dict[bytes, _Place | None] = {}
+    known: dict[bytes, Place | None] = {}
     for row in beside:
         inputs = np.ascontiguousarray(values[:, row])
         key = inputs.tobytes()
         if key not in known:
-            found = _step(session, off, inputs)
+            found = straight_to(session, off, inputs)
             if found is None and not at_once[row]:
                 return False
             known[key] = found or _at(session, inputs, off, place)
@@ -256,7 +257,7 @@ def _put_beside(
     return True
 
 
-def _at(session: Session, inputs: Floats, off: _Place, place: _Singular) -> _Place | None:
+def _at(session: Session, inputs: Floats, off: Place, place: _Singular) -> Place | None:
     """A place at a dead centre but for rounding; None where it does not close there."""
     if place.state is None:
         return None
@@ -267,7 +268,7 @@ def _at(session: Session, inputs: Floats, off: _Place, place: _Singular) -> _Pla
     path = np.stack([off.inputs, inputs], axis=1)
     came = session.follow(path, off.state, every_row=True, turns=True, turn=off.turn)
     turn = off.turn if came.turn is None else np.asarray(came.turn)
-    return _Place(inputs, np.ascontiguousarray(batch.states[:, 0]), turn)
+    return Place(inputs, np.ascontiguousarray(batch.states[:, 0]), turn)
 
 
 def _stays(session: Session, numbers: tuple[int, int], start: Floats, place: Floats) -> bool:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
         column_of as column_of,
         column_of_numbers as column_of_numbers,
         column_texts as column_texts,
-        component_text as component_text,
         row_words as row_words,
         run_parameter as run_parameter,
         solved_rows as solved_rows,
@@ -112,7 +111,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": "FloatArray RunParameter TableColumn Words column_of column_of_numbers "
-        "column_texts component_text row_words run_parameter solved_rows unique_cells words_of",
+        "column_texts row_words run_parameter solved_rows unique_cells words_of",
         "compare": "compare_files read_committed report stale_in",
         "csv": "COMMITTED_DIGITS csv_bytes",
         "errata": "MARK NAME OVERVIEW_PAGE OverviewRow PAGE PrintedTable against_print "

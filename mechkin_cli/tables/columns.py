@@ -407,7 +407,7 @@ def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:
         raise ExpressionError(
             f"column {layout.label!r} is a vector, a column holds one number per row",
             0,
-            f"write one component of it: {component_text(layout.expression.text, 'x')}",
+            f"write {value.components_of(layout.expression.text)}",
         )
     in_si = np.array(np.broadcast_to(value, (source.rows,)), dtype=np.float64)
     # the conversion may hand back the array itself, so it works on the copy
@@ -426,17 +426,6 @@ def _resolve(name: str, source: TableSource) -> Quantity:
     if name in ROW_NUMBERS:
         return Quantity(getattr(source, name.removeprefix("row.")), DIMENSIONLESS)
     return source.quantity(name)
-
-
-def component_text(text: str, axis: str) -> str:
-    """The expression of a vector's component, in parentheses where it is a sum or the like.
-
-    >>> component_text("pen.position", "x"), component_text("2*pen.position", "y")
-    ('pen.position.x', '(2*pen.position).y')
-    """
-    text = text.strip()
-    bare = text.replace(".", "").replace("_", "").isalnum()
-    return f"{text}.{axis}" if bare else f"({text}).{axis}"
 
 
 class RunParameter(NamedTuple):

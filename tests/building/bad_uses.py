@@ -28,6 +28,14 @@ MOTION = [
         "equally many rows",
         "O.theta 3, D.s 2",
     ),
+    changed(
+        "motion: {inputs",
+        "motion: {grid: »true, inputs",
+        "grid-inputs",
+        "two inputs with rows of their own, here are 1: O.theta",
+        "give a second one",
+    ),
+    changed("motion: {inputs", "motion: {grid: »2, inputs", "not-a-flag", "true or false"),
     inputs("{O.theta: {values: [0, k*»mm]}}", "expression", "right behind a number: 1 mm"),
 ]
 
@@ -178,7 +186,19 @@ LOADS = [
 
 COLUMNS = [
     column("»O.thetta", "expression", "O.thetta", "O.theta"),
-    column("»O.force", "expression", "vector", "O.force.x, O.force.y, O.force.z or norm(O.force)"),
+    changed(
+        "columns: [O.theta]",
+        "columns: [O.force, »O.force.x]",
+        "label-clash",
+        "'O.force.x' is used twice, once by a component of a vector",
+    ),
+    changed(
+        "columns: [O.theta]",
+        "columns: [O.theta, O.force], plot: {x: »O.force}",
+        "vector-label",
+        "O.force is a vector",
+        "a column: O.force.x, O.force.y, O.force.z",
+    ),
     column(
         "»D.theta.effort",
         "expression",

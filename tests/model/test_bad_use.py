@@ -209,19 +209,3 @@ def test_variants_of_inputs_that_others_drive_are_analyses() -> None:
     for number, mass in enumerate(masses):
         one = mk.loads(LED, parameters={"m": f"{mass} kg"}).analyze()["A.effort"]
         assert found["A.effort"][number] == pytest.approx(one, rel=1e-13)
-
-
-@pytest.mark.parametrize(
-    ("column", "words"),
-    [
-        ("A.force", "write A.force.x, A.force.y or norm(A.force), each a column"),
-        ("2*A.force", "write (2*A.force).x, (2*A.force).y or norm(2*A.force), each a column"),
-    ],
-)
-def test_a_vector_in_a_column_is_refused_with_what_fits(column: str, words: str) -> None:
-    with pytest.raises(mk.InvalidFile) as refused:
-        mk.loads(f"{LED}tables: [{{name: t, columns: [{column}]}}]\n")
-    assert words in str(refused.value)
-    for text in words.removeprefix("write ").removesuffix(", each a column").split(" or "):
-        for one in text.split(", "):
-            mk.loads(f"{LED}tables: [{{name: t, columns: ['{one}']}}]\n")

@@ -43,6 +43,8 @@ class Definitions:
         kinds = {"array": self._list, "object": self._mapping, "integer": _whole}
         if isinstance(found.get("type"), str) and found["type"] in kinds:
             return kinds[found["type"]](found)
+        if found.get("type") == "boolean":
+            return "`true`, `false`"
         words = str(found["description"]).partition(":")[0]
         return {"a text for people": "text"}.get(words, words.removeprefix("a "))
 
