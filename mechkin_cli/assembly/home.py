@@ -231,9 +231,9 @@ def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
 
 def _without_turns(session: Session, path: Floats) -> Floats:
     """Inputs (inputs, rows) without the whole turns after which the mechanism stands as drawn; as
-    they are where a thread counts turns."""
+    they are where turns are counted."""
     joints = session.problem.mechanism.joints
-    if any(joint.type.is_threaded for joint in joints.values()):
+    if any(joint.type.counts_turns for joint in joints.values()):
         return path
     cyclic = np.array([is_cyclic(session.problem.mechanism, f"{j}.{c}") for j, c in session.driven])
     turns = np.rint(path / (2.0 * np.pi))

@@ -293,7 +293,7 @@ def nothing_found(
     """Why a mechanism cannot be assembled: which loop does not close."""
     loop, name = _failed_loop(session, assemblies), session.problem.mechanism.name
     hint = "check the dimensions, or start the sweep at another input"
-    if any(joint.type.is_threaded for joint in session.problem.mechanism.joints.values()):
+    if any(joint.type.counts_turns for joint in session.problem.mechanism.joints.values()):
         turns = session.problem.assembly.turns
         hint += f"; threads were searched {turns}.5 turns to either side: assembly: {{turns: N}}"
     if session.is_redundant:

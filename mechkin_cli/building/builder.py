@@ -10,6 +10,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from mechkin_cli.building.couplings import build_couplings, coupled_joints
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -60,6 +61,7 @@ from mechkin_cli.mechanism import (
     Problem,
     Vector,
     Wanted,
+    counted,
     differentiation,
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
@@ -217,6 +219,9 @@ def build_problem(
     is not built again, nor are the motions in time of `moving` responses."""
     points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
+    for coupled in coupled_joints(file.couplings) & joints.keys():
+        joints[coupled] = counted(joints[coupled])
+    couplings = build_couplings(fields, file.couplings, joints)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
         for name, d in file.directions.items()
@@ -233,7 +238,7 @@ def build_problem(
     mechanism = Mechanism(
         name, links, joints, points, directions, drives=drives, plane=fields.plane
     )
-    mechanism = replace(mechanism, datum=fields.origin)
+    mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     # rows of responses have a time
     swept = problem.quantities()

@@ -343,8 +343,10 @@ class _ResponseBuilder:
                 f"{tied} is tied to {leader} under motion:, and this response would move it freely"
             )
             hint = (
-                f"drive both, {tied} by {{with: ..., drive: tie}}, or write drive: own under "
-                "motion: if they are not connected"
+                "write a coupling instead: couplings: {K: {type: linear, terms: {"
+                f"{leader}: ..., {tied}: ...}}}}}}, drive both, "
+                f"{tied} by {{with: ..., drive: tie}}, or write drive: own under motion: if they "
+                "are not connected"
             )
             self.fields.error("tie-left-out", path, text, hint)
 

@@ -27,7 +27,7 @@ from mechkin_cli.mechanism import (
     accelerated,
     quantities_read,
 )
-from mechkin_cli.plan import WRENCH_KINDS, Demand
+from mechkin_cli.plan import REACTION_KINDS, Demand
 from mechkin_cli.structure import listed
 from mechkin_cli.tables import (
     ALL_COLUMNS,
@@ -229,7 +229,7 @@ def _driven(analysis: Analysis) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = analysis.model.problem.mechanism
     freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    count = freedoms - mechanism.space * mechanism.loops
+    count = freedoms - mechanism.space * mechanism.loops - len(mechanism.couplings)
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
@@ -246,9 +246,12 @@ def _loops(analysis: Analysis) -> str:
     graph = analysis.result.graph
     if not graph.closings:
         return "none (open chain)"
-    closed = ", ".join(closing.constraint.label for closing in graph.closings)
+    coupled = ", ".join(c.name for c in graph.closings if c.constraint.terms)
+    closed = ", ".join(c.constraint.label for c in graph.closings if not c.constraint.terms)
+    words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
-    return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
+    loops = analysis.model.problem.mechanism.loops
+    return f"{loops}, {', '.join(filter(None, words))}; {sizes} unknowns"
 
 
 def _rows(analysis: Analysis) -> str:
@@ -350,14 +353,18 @@ def explanation(analysis: Analysis) -> str:
         words = "" if edge.forward else ", passed from its second link to its first"
         words = ", hung between its spheres" if edge.hung else words
         lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, words)}")
-    lines.append("  loops closed at" if graph.closings else "  no loops")
-    for closing in graph.closings:
+    closed = [closing for closing in graph.closings if not closing.constraint.terms]
+    lines.append("  loops closed at" if closed else "  no loops")
+    for closing in closed:
         loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
         count = closing.equations
         equations = f", {count} equation{'s' * (count > 1)}"
         if closing.constraint.words:
             equations += f": {closing.constraint.words}"
         lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
+    coupled = [closing for closing in graph.closings if closing.constraint.terms]
+    lines += ["  coupled by"] * bool(coupled)
+    lines += [f"    {closing.name}, {closing.constraint.words}" for closing in coupled]
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):
@@ -392,7 +399,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
     forces = bool(demand & Demand.FORCES)
     known = problem.quantities()
     asked = [known[name] for name in result.columns if name in known]
-    reactions = any(quantity.kind in WRENCH_KINDS for quantity in asked)
+    reactions = any(quantity.kind in REACTION_KINDS for quantity in asked)
     lines = [
         f"first assembly: {result.how or 'none found'}",
         _positions(analysis),

@@ -44,7 +44,7 @@ from mechkin_cli.mechanism import (
     effort_quantity,
 )
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import WRENCH_KINDS
+from mechkin_cli.plan import REACTION_KINDS
 from mechkin_cli.record import replace
 from mechkin_cli.tolerances import POWER_INTEGRAL
 from mechkin_cli.units import FORCE, POWER, TIME
@@ -87,7 +87,7 @@ def _values(
         unit = joint.unit_of(by[1], session.layout.length)
         inputs = session.inputs.at_unit_acceleration(number)
         other = unloaded(session, at_inputs=at_inputs)
-    reactions = [base for base in bases if base.kind in WRENCH_KINDS]
+    reactions = [base for base in bases if base.kind in REACTION_KINDS]
     shifts = run.result.shifts if reactions else ()
     bases += [REACTION_LEVEL] if shifts else []
     columns = run.result.evaluated(bases, session=other, inputs=inputs)

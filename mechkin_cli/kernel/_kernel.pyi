@@ -94,6 +94,7 @@ class OutputCode(IntEnum):
     FRICTION_POWER = ...
     FRICTION_STATE = ...
     SELF_LOCKING = ...
+    MULTIPLIER = ...
 
 class ContactCode(IntEnum):
     RADIAL = 0
@@ -232,6 +233,13 @@ class PlanBuilder:
         line: Triple,
         slide_sign: float,
         loop: Sequence[tuple[int, float]],
+    ) -> None: ...
+    def add_relation(
+        self,
+        length: bool,
+        terms: Sequence[tuple[int, float, int, int]],
+        factors: Sequence[float],
+        sum: float,
     ) -> None: ...
     def add_place(
         self, reference: int, first: int, second: int, point_on: int, point: Triple, sign: float

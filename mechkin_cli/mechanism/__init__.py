@@ -15,6 +15,8 @@ if TYPE_CHECKING:
         DistanceConstraint as DistanceConstraint,
         InputConstraint as InputConstraint,
         PairConstraint as PairConstraint,
+        Relation as Relation,
+        Term as Term,
     )
     from mechkin_cli.mechanism.curve import (
         Curve as Curve,
@@ -174,13 +176,13 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint",
+        "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint Relation Term",
         "curve": "Curve Ends Interpolation LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
-        "joint": "GROUND_NAME Joint frame_on is_written stop_of",
+        "joint": "GROUND_NAME Joint counted far_link frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal renumbered renumbered_amount varying without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Moments MotionInputs ORDERS "

@@ -12,6 +12,8 @@ kinds in this file. A kind says
   the line of its force (`force_line`);
 - what it counts as: the freedoms that it leaves between its links, and whether a tree may go
   through it instead (`freedoms`, `has_coordinates`);
+- between which coordinates its equation is, where it is one of joints anywhere in the mechanism
+  (`terms`); it is then no edge between two links;
 - which links of its own it places, with which freedoms, and how they spin idly (`links`,
   `own_edges`, `slides`, `hung`, `spin`);
 - what it is called (`label`, `words`).
@@ -45,6 +47,24 @@ from mechkin_cli.tape import largest
 
 JointsAt = Mapping[str, tuple[Joint, ...]]
 """The joints at each link, in order."""
+
+
+class Term(NamedTuple):
+    """A joint's coordinate with its factor: a number, a length per rad (m) or an angle per length
+    (rad/m)."""
+
+    joint: Joint
+    coordinate: str
+    factor: float
+
+
+class Relation(NamedTuple):
+    """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
+    m)."""
+
+    terms: tuple[Term, ...]
+    length: bool
+    total: float = 0.0
 
 
 OwnEdge = tuple[Joint, str, str, bool]
@@ -116,7 +136,7 @@ class Constraint:
         return self.joint.on_first, self.joint.on_second
 
     @property
-    def points(self) -> tuple[Attached, Attached]:
+    def points(self) -> tuple[Attached, ...]:
         """Its points on both links."""
         one, other = self.frames
         return Attached(self.first, one.o), Attached(self.second, other.o)
@@ -140,6 +160,11 @@ class Constraint:
         """A point of the line of its force, and the unit vector along it, where `place` gives the
         points of links."""
         raise NotImplementedError
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """The coordinates that its equation is between; none where it is between two links."""
+        return ()
 
     @property
     def slides(self) -> tuple[Joint, ...]:
@@ -416,12 +441,73 @@ def _distance_at(
     return found if found.first != found.second and found.is_straight else None
 
 
+# Couplings: relations between coordinates of joints anywhere in a mechanism.
+
+
+@dataclass(frozen=True)
+class CouplingConstraint(Constraint):
+    """The sum of some coordinates, each with its factor, is given: a gear, a rack, a differential.
+
+    Its multiplier is a moment (N m), or where the sum is a length a force (N): the effort at each
+    of its coordinates per unit of the factor, on the joint's second link and opposite on its first.
+    Its work at all of them together is zero.
+    """
+
+    own_name: str
+    relation: Relation
+
+    @property
+    def name(self) -> str:
+        """That in the file."""
+        return self.own_name
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """It stands for none."""
+        return ()
+
+    @property
+    def placed(self) -> tuple[str, ...]:
+        """The links of its joints."""
+        ends = (link for term in self.terms for link in (term.joint.first, term.joint.second))
+        return tuple(dict.fromkeys(ends))
+
+    @property
+    def points(self) -> tuple[Attached, ...]:
+        """It holds none."""
+        return ()
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """Those of the relation."""
+        return self.relation.terms
+
+    @property
+    def kind(self) -> str:
+        """A word, no letter of a pair."""
+        return "coupling"
+
+    @property
+    def words(self) -> str:
+        """Its coordinates."""
+        names = dict.fromkeys(f"{term.joint.name}.{term.coordinate}" for term in self.terms)
+        return f"a relation between {', '.join(names)}"
+
+
 def find_constraints(
-    links: Iterable[str], joints: Iterable[Joint], joints_at: JointsAt
+    links: Iterable[str],
+    joints: Iterable[Joint],
+    joints_at: JointsAt,
+    couplings: Mapping[str, Relation],
 ) -> tuple[Constraint, ...]:
-    """What holds the links of a mechanism together and is no single joint."""
+    """What holds the links of a mechanism together and is no single joint: distances, then
+    couplings."""
     size = largest(0.0, *(norm(joint.on_first.o) for joint in joints))
-    return tuple(_distances(links, joints_at, size))
+    related = (
+        CouplingConstraint(relation.terms[0].joint, GROUND_NAME, GROUND_NAME, name, relation)
+        for name, relation in couplings.items()
+    )
+    return (*_distances(links, joints_at, size), *related)
 
 
 # Inputs of one motor: `drive: tie`.

@@ -39,7 +39,8 @@ class Joint(NamedTuple):
     groove); they coincide where all coordinates are zero. U, Ss, Sc and Cp turn about z of the
     first, then about z of the second, and x, square to both, is what coincides. `parts` is the
     same as a chain of elementary displacements. `lead` (H) is the slide per turn in m. `plane`: its
-    links stay in the plane z = 0, and it holds them in that plane alone.
+    links stay in the plane z = 0, and it holds them in that plane alone. `counted`: a coupling goes
+    by its coordinates, so that a turn more is another place.
     """
 
     name: str
@@ -51,11 +52,12 @@ class Joint(NamedTuple):
     parts: tuple[Part, ...]
     lead: float = 0.0
     plane: bool = False
+    counted: bool = False
 
     @property
     def type(self) -> JointType:
         """The joint's row of the joint table."""
-        return joint_type(self.letter, self.plane)
+        return joint_type(self.letter, self.plane, self.counted)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -152,6 +154,12 @@ def frame_on(joint: Joint, link: str) -> Frame:
 def far_link(joint: Joint, link: str) -> str:
     """The link at a joint's other end."""
     return joint.second if joint.first == link else joint.first
+
+
+def counted(joint: Joint) -> Joint:
+    """A joint whose turns are counted: each turn of its chain a part of its own."""
+    parts = tuple(each for part in joint.parts for each in part.counted())
+    return joint._replace(parts=parts, counted=True)
 
 
 # A pair that holds a slide: a plane on the link, square to the slide, keeps a point of its

@@ -15,6 +15,7 @@ from mechkin_cli.mechanism.constraint import (
     Constraint,
     DistanceConstraint,
     InputConstraint,
+    Relation,
     find_constraints,
 )
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
@@ -228,7 +229,7 @@ def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
     known. `plane`: everything stays in the plane z = 0. All places are measured from the
-    `datum` (m), in the ground's axes."""
+    `datum` (m), in the ground's axes. `couplings`: relations between coordinates, by name."""
 
     name: str
     links: Mapping[str, RigidLink]
@@ -241,6 +242,7 @@ class Mechanism:
     frictions: tuple[Rubbing, ...] = ()
     plane: bool = False
     datum: Vector = ZERO
+    couplings: Mapping[str, Relation] = field(default_factory=dict)
 
     @property
     def space(self) -> int:
@@ -264,7 +266,8 @@ class Mechanism:
     @cached_property
     def constraints(self) -> tuple[Constraint, ...]:
         """The constraints that are no single joint."""
-        return find_constraints(self.links, self.joints.values(), self.joints_of)
+        joints = self.joints.values()
+        return find_constraints(self.links, joints, self.joints_of, self.couplings)
 
     @cached_property
     def spins(self) -> tuple[DistanceConstraint, ...]:

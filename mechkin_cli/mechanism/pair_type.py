@@ -27,10 +27,12 @@ class Freedom(NamedTuple):
     """A freedom of an elementary displacement: its motion, and along which axis of the frame.
 
     A thread turns and slides in one; the three turns of a ball have no coordinate of their own.
+    Turns are `counted` where something else goes by their number.
     """
 
     motion: Literal["turn", "slide", "thread", "ball"]
     axis: Literal["x", "y", "z"] = "z"
+    counted: bool = False
 
     @property
     def is_slide(self) -> bool:
@@ -40,7 +42,7 @@ class Freedom(NamedTuple):
     @property
     def is_cyclic(self) -> bool:
         """Whether a full turn of it is the same place again."""
-        return self.motion == "turn"
+        return self.motion == "turn" and not self.counted
 
 
 class Elementary(NamedTuple):
@@ -63,8 +65,13 @@ class Elementary(NamedTuple):
 
     @property
     def is_thread(self) -> bool:
-        """Whether it has a lead, and counts its turns."""
+        """Whether it has a lead."""
         return any(freedom.motion == "thread" for freedom in self.freedoms)
+
+    @property
+    def counts_turns(self) -> bool:
+        """Whether a full turn of it is another place, as of a thread."""
+        return self.is_thread or any(freedom.counted for freedom in self.freedoms)
 
     @property
     def has_axis(self) -> bool:
@@ -78,6 +85,7 @@ class Elementary(NamedTuple):
 
 
 _TURN, _SLIDE, _THREAD = Freedom("turn"), Freedom("slide"), Freedom("thread")
+_COUNTED = Freedom("turn", counted=True)
 _BALL = (Freedom("ball", "x"), Freedom("ball", "y"), Freedom("ball", "z"))
 
 ELEMENTARY = {
@@ -88,8 +96,14 @@ ELEMENTARY = {
     "S": Elementary("S", 4, _BALL, 4),
     "W": Elementary("W", 5, (), 0),
     "L": Elementary("L", 6, (), 0),
+    "T": Elementary("T", 2, (_COUNTED,), 1),
 }
-"""By letter; W keeps two frames together, L hangs a body between two points."""
+"""By letter; W keeps two frames together, L hangs a body between two points, T is a turn that is
+counted: to the kernel a thread without lead."""
+
+
+COUNTED_AS = {"R": ("T",), "C": ("T", "P")}
+"""Displacements in whose place others count the turns."""
 
 
 class Part(NamedTuple):
@@ -111,6 +125,12 @@ class Part(NamedTuple):
         if not self.type.has_axis:
             return Part(self.letter, self.after, self.before, self.drawn)
         return Part(self.letter, self.after.flipped(), self.before.flipped(), self.drawn)
+
+    def counted(self) -> tuple[Part, ...]:
+        """The parts that count its turns; itself where it has none."""
+        first, *rest = COUNTED_AS.get(self.letter, (self.letter,))
+        others = (Part(letter, self.after, self.after) for letter in rest)
+        return self._replace(letter=first), *others
 
     def screws(self, pitch: float) -> tuple[Screw, ...]:
         """The unit screws of its freedoms as drawn on the body before it; `pitch` in m per rad."""
@@ -438,6 +458,11 @@ class JointType:
         return any(ELEMENTARY[letter].is_thread for letter in self.parts)
 
     @cached_property
+    def counts_turns(self) -> bool:
+        """Whether a full turn of some coordinate is another place."""
+        return any(ELEMENTARY[letter].counts_turns for letter in self.parts)
+
+    @cached_property
     def is_ball(self) -> bool:
         """Whether it is a ball and socket, nothing else."""
         return len(self.parts) == 1 and ELEMENTARY[self.parts[0]].is_ball
@@ -446,6 +471,13 @@ class JointType:
     def is_slider(self) -> bool:
         """Whether it is a slide along an axis, nothing else."""
         return len(self.parts) == 1 and self.slides == (True,)
+
+    @cached_property
+    def is_bearing(self) -> bool:
+        """Whether it turns about one axis, and at most slides along it freely."""
+        axes = {coordinate.axis for coordinate in self.named}
+        angles = sum(coordinate.is_angle for coordinate in self.named)
+        return angles == len(axes) == 1 and None not in axes and not self.is_threaded
 
     @cached_property
     def is_guide(self) -> bool:

@@ -11,6 +11,7 @@ from functools import cache
 
 from mechkin_cli.mechanism import pair_type as friction
 from mechkin_cli.mechanism.pair_type import (
+    COUNTED_AS,
     FIRST,
     SECOND,
     Condition,
@@ -288,16 +289,32 @@ def seat_letter(axes: str, plane: bool = False) -> str:
     return f"seat {(_PLANE_SEATS if plane else _SEATS)[len(axes)]}"
 
 
+_AS_COUNTED = {"T": "R"}
+"""An elementary displacement that is no pair of the file format: the pair that it is."""
+
+
 @cache
-def joint_type(letter: str, plane: bool = False) -> JointType:
-    """The entry of a letter; in a plane, that of its links in the plane."""
+def joint_type(letter: str, plane: bool = False, counted: bool = False) -> JointType:
+    """The entry of a letter; in a plane, that of its links in the plane; `counted`: that of a joint
+    whose turns are counted, which closes no loop, since that would lose them."""
+    if counted:
+        own = joint_type(letter, plane)
+        steps = tuple(each for step in own.steps for each in _counted(step))
+        return replace(own, steps=steps, closing=None)
     types = PLANE_JOINT_TYPES if plane else JOINT_TYPES
     kind, _, rest = letter.partition(" ")
+    if letter in _AS_COUNTED:
+        return joint_type(_AS_COUNTED[letter], plane, counted=True)
     if kind == "along":
         return _guide(rest)
     if kind == "seat":
         return replace(types[rest], letter=letter, named=())
     return FREE if letter == FREE.letter else types[letter]
+
+
+def _counted(step: PairStep) -> tuple[PairStep, ...]:
+    first, *rest = COUNTED_AS.get(step.letter, (step.letter,))
+    return step._replace(letter=first), *(PairStep(letter, step.along or _Z2) for letter in rest)
 
 
 def _guide(axes: str) -> JointType:

@@ -93,6 +93,7 @@ def catalogue(
         *_of_points(mechanism),
         *_of_links(mechanism),
         *_of_frictions(mechanism),
+        *_of_couplings(mechanism),
         *_of_held(held),
         *_of_ground(),
     ):
@@ -172,6 +173,21 @@ def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(f"{owner}.friction_force", "friction_force", owner, FORCE, True)
         yield Wanted(f"{owner}.friction_moment", "friction_moment", owner, MOMENT, True)
         yield Wanted(f"{owner}.friction_power", "friction_power", owner, POWER, False)
+
+
+def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
+    """What each applies at the first of its angles and of its slides."""
+    for name, relation in mechanism.couplings.items():
+        places: dict[tuple[Kind, Dimension], str] = {}
+        for term in relation.terms:
+            angle = is_angle(term.coordinate)
+            what: tuple[Kind, Dimension] = (
+                ("coupling_torque", MOMENT) if angle else ("coupling_force", FORCE)
+            )
+            places.setdefault(what, f"{term.joint.name}.{term.coordinate}")
+        for (kind, dimension), at in places.items():
+            word = kind.removeprefix("coupling_")
+            yield Wanted(f"{name}.{word}", kind, name, dimension, False, at)
 
 
 def friction_states(mechanism: Mechanism) -> list[Wanted]:
@@ -272,13 +288,15 @@ _LOADS_IN_PLANE: dict[Kind, tuple[str, Dimension]] = {"radial_force": ("norm(J.f
 
 _TOLD_IN_PLANE = "xy"
 
-BEARING_KINDS: frozenset[str] = frozenset(_LOADS)
+BEARING_KINDS: frozenset[str] = frozenset(_LOADS) | {"coupling_power"}
+"""These, and the power of a coupling: its effort at a coordinate by the rate of that."""
 
 
 def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
-    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis; in a
-    plane the first alone, of every joint with a point."""
-    return {wanted.name: wanted for wanted in _bearing_loads_of_joints(mechanism)}
+    """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis, in a
+    plane the first alone, of every joint with a point; `K.power` of every coupling."""
+    loads = (*_bearing_loads_of_joints(mechanism), *_powers_of_couplings(mechanism))
+    return {wanted.name: wanted for wanted in loads}
 
 
 def bearing_load(wanted: Wanted, resolve: Resolve) -> Quantity:
@@ -309,7 +327,17 @@ def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
             yield Wanted(f"{joint.name}.{kind}", kind, joint.name, dimension, False, told=told)
 
 
+def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
+    """What each puts in at its first coordinate; all that it puts in is zero."""
+    for name, relation in mechanism.couplings.items():
+        at = f"{relation.terms[0].joint.name}.{relation.terms[0].coordinate}"
+        yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
+
+
 @cache
 def _expression(wanted: Wanted) -> Expression:
+    if wanted.kind == "coupling_power":
+        effort = "torque" if is_angle(wanted.coordinate.rpartition(".")[2]) else "force"
+        return parse(f"{wanted.owner}.{effort} * {wanted.coordinate}_dot")
     loads = _LOADS_IN_PLANE if wanted.told == _TOLD_IN_PLANE else _LOADS
     return parse(loads[wanted.kind][0].replace("J.", f"{wanted.owner}."))

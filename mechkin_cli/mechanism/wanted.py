@@ -98,6 +98,9 @@ Kind = Literal[
     "radial_force",
     "axial_force",
     "tilting_moment",
+    "coupling_force",
+    "coupling_torque",
+    "coupling_power",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

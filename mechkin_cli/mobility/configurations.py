@@ -130,14 +130,16 @@ def damped_steps(jacobians: Floats, misses: Floats) -> Floats:
 
 
 class LoopPart:
-    """Loops of a mechanism that share joints: numbers of their equations `rows` and freedoms
-    `columns`."""
+    """Loops and couplings of a mechanism that share joints: numbers of their equations `rows` and
+    freedoms `columns`; `cuts` count the loops, then the couplings."""
 
     def __init__(
         self, mechanism: Mechanism, loops: Loops, cuts: NDArray[np.intp], columns: NDArray[np.intp]
     ) -> None:
         self.mechanism, self.loops, self.columns = mechanism, loops, columns
-        self.rows = (6 * cuts[:, None] + np.arange(6)).ravel()
+        closed = loops.cut_rows // 6
+        of_cuts = (6 * cuts[cuts < closed][:, None] + np.arange(6)).ravel()
+        self.rows = np.concatenate([of_cuts, cuts[cuts >= closed] + 5 * closed])
         self.count = columns.size
 
     def closing(self, states: Floats) -> tuple[Floats, Floats]:
@@ -176,7 +178,7 @@ class LoopPart:
 
 def _parts(mechanism: Mechanism, loops: Loops) -> tuple[LoopPart, ...]:
     """The parts in the order of their first cuts."""
-    passed = loops.signs != 0.0
+    passed = loops.passing
     left = list(range(len(passed)))
     parts = []
     while left:
@@ -220,8 +222,8 @@ class Body:
 
     @cached_property
     def free(self) -> NDArray[np.intp]:
-        """Columns that no loop passes."""
-        return np.flatnonzero(~np.any(self.loops.signs != 0.0, axis=0))
+        """Columns that no loop passes, nor a coupling."""
+        return np.flatnonzero(~np.any(self.loops.passing, axis=0))
 
     @cached_property
     def columns(self) -> dict[str, list[int]]:
@@ -279,11 +281,12 @@ class Configuration:
 
     @cached_property
     def _closing(self) -> tuple[Floats, Floats]:
-        return self.body.loops.closing_of(*self._arrays)
+        return self.body.loops.closing_of(*self._arrays, self.state[None])
 
     @property
     def jacobian(self) -> Floats:
-        """Twists of the copies against their links: (6 cuts, freedoms)."""
+        """Twists of the copies against their links, and rates of what couplings keep: (equations,
+        freedoms)."""
         return np.asarray(self._closing[1][0])
 
     @property
@@ -316,7 +319,9 @@ class Configuration:
             spin = turn @ np.array(angular)
             screw = np.array([*spin, *(turn @ linear + np.cross(place, spin))])
             columns.append(np.outer(body.signs[joint.name], screw).ravel())
-        return np.array(columns).T
+        of_cuts = np.array(columns).T
+        couplings = np.zeros((len(self.jacobian) - len(of_cuts), of_cuts.shape[1]))
+        return np.concatenate([of_cuts, couplings])
 
     def moved(self, steps: Floats) -> Configuration:
         """Displaced by steps (freedoms,) of the joints' freedoms."""
@@ -436,7 +441,9 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     far = max(1.0, *(float(np.abs(at).max()) for _, at in place.poses.values()))
     jacobian = place.jacobian
     parts = np.array([1.0, 1.0, 1.0, 1.0 / far, 1.0 / far, 1.0 / far])
-    matrix = jacobian * np.tile(parts, len(jacobian) // 6)[:, None]
+    cuts = body.loops.cut_rows
+    weights = np.concatenate([np.tile(parts, cuts // 6), np.ones(len(jacobian) - cuts)])
+    matrix = jacobian * weights[:, None]
     lengths = np.sqrt((matrix * matrix).sum(axis=0))
     driven = np.eye(body.count)[[body.column(*each) for each in problem.motion.driven]]
     at_rest = np.concatenate([matrix / np.where(lengths > 0.0, lengths, 1.0), driven])

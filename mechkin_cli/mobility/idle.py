@@ -87,12 +87,14 @@ class Motions:
 
     @cached_property
     def stresses(self) -> Floats:
-        """Stresses (6 cuts, redundant) at the general configuration."""
+        """Stresses (equations, redundant) at the general configuration."""
         jacobian = self.general.jacobian
         if not self.body.mechanism.plane:
             return rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).stresses
         # what the plane holds is no constraint: of each cut the moment about z, forces along x, y
-        rows = (6 * np.arange(len(jacobian) // 6)[:, None] + (2, 3, 4)).ravel()
+        cuts = self.body.loops.cut_rows
+        rows = (6 * np.arange(cuts // 6)[:, None] + (2, 3, 4)).ravel()
+        rows = np.concatenate([rows, np.arange(cuts, len(jacobian))])
         inside = rank_of(jacobian[rows], tolerances.MOBILITY_RANK_REACHED).stresses
         stresses = np.zeros((len(jacobian), inside.shape[1]))
         stresses[rows] = inside

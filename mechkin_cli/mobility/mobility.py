@@ -3,6 +3,7 @@ inputs do to the freedoms.
 
 With n links (ground too), j joints and freedoms f, the count is 6 (n - 1 - j) + sum f: all freedoms
 less six for every loop; in a plane less three, 3 (n - 1) - 2 j where all joints have one freedom.
+Every coupling takes one more.
 The freedom of first order is sum f less the rank of the loops' screws at the first configuration;
 the finite freedom is the dimension of the assembled configurations next to it (`dimension`). The
 difference of sum f less the rank at a general configuration and the count is the number of
@@ -221,9 +222,9 @@ def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreed
 
 
 def kutzbach(mechanism: Mechanism) -> int:
-    """6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f."""
+    """6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f, less one for every coupling."""
     freedom = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    return freedom - mechanism.space * mechanism.loops
+    return freedom - mechanism.space * mechanism.loops - len(mechanism.couplings)
 
 
 def _not_assembled(body: Body) -> Diagnostic:
@@ -278,8 +279,9 @@ def drawn_faults(problem: Problem) -> list[Diagnostic]:
 
 
 class Redundancy(NamedTuple):
-    """`number` redundant constraints that `joints` carry together, as `wrenches` (words, empty
-    where they differ from joint to joint), and a `cure` (None if none of the usual ones does)."""
+    """`number` redundant constraints that `joints` (and couplings) carry together, as `wrenches`
+    (words, empty where they differ from joint to joint), and a `cure` (None if none of the usual
+    ones does)."""
 
     number: int
     joints: tuple[str, ...]
@@ -290,7 +292,7 @@ class Redundancy(NamedTuple):
     def sentence(self) -> str:
         """The redundancy in words."""
         who = ", ".join(self.joints)
-        carry = f"the loop through {who} carries" if self.wrenches else f"the joints {who} carry"
+        carry = f"the loop through {who} carries" if self.wrenches else f"{who} carry"
         text = f"{carry} {self.number} redundant constraint{'s' * (self.number > 1)}"
         text += f": {self.wrenches}" if self.wrenches else ""
         return f"{text}; {self.cure}" if self.cure else text
@@ -305,47 +307,52 @@ def redundancies(
     """
     if stresses.shape[1] == 0:
         return ()
-    joints = list(configuration.body.mechanism.joints.values())
+    mechanism = configuration.body.mechanism
+    joints = list(mechanism.joints.values())
     places = {joint.name: list(range(6 * k, 6 * k + 6)) for k, joint in enumerate(joints)}
-    # an orthonormal basis (6 joints, count) of the wrenches that the joints carry
-    cuts = stresses.reshape(-1, 6, stresses.shape[1])
+    places |= {name: [6 * len(joints) + k] for k, name in enumerate(mechanism.couplings)}
+    # an orthonormal basis (6 joints and couplings, count) of the wrenches that the joints carry,
+    # and the efforts of couplings
+    of_cuts, of_couplings = np.split(stresses, [configuration.body.loops.cut_rows])
+    cuts = of_cuts.reshape(-1, 6, stresses.shape[1])
     signs = configuration.body.signs
     rows = [np.add.reduce(signs[joint.name][:, None, None] * cuts) for joint in joints]
-    carried = np.linalg.qr(np.concatenate(rows))[0]
+    carried = np.linalg.qr(np.concatenate([*rows, of_couplings]))[0]
     shares = carried @ carried.T
     found = []
-    for group in _groups(joints, places, shares):
-        every = [i for joint in group for i in places[joint.name]]
+    for names in _groups(places, shares):
+        every = [i for name in names for i in places[name]]
         number = round(float(np.trace(shares[np.ix_(every, every)])))
         if number:
-            words = _wrenches(configuration, group, carried[places[group[0].name]], number)
-            names = tuple(joint.name for joint in group)
+            group = [mechanism.joints[name] for name in names if name in mechanism.joints]
+            words = ""
+            if len(group) == len(names):
+                words = _wrenches(configuration, group, carried[places[names[0]]], number)
             softer = [joint for joint in group if joint.name not in driven]
             cure = _cure(configuration, softer, number)
             found.append(Redundancy(number, names, words, cure))
     return tuple(found)
 
 
-def _groups(
-    joints: list[Joint], places: dict[str, list[int]], shares: Floats
-) -> Iterator[list[Joint]]:
-    """Joints that carry stresses, in groups that do not stress each other."""
+def _groups(places: dict[str, list[int]], shares: Floats) -> Iterator[tuple[str, ...]]:
+    """Joints and couplings that carry stresses, in groups that do not stress each other."""
 
-    def touch(one: Joint, other: Joint) -> bool:
-        block = shares[np.ix_(places[one.name], places[other.name])]
+    def touch(one: str, other: str) -> bool:
+        block = shares[np.ix_(places[one], places[other])]
         return bool(np.abs(block).max() > tolerances.MOBILITY_NO_WRENCH)
 
-    left = [joint for joint in joints if touch(joint, joint)]
+    order = list(places)
+    left = [name for name in order if touch(name, name)]
     while left:
         group, grown = [left.pop(0)], True
         while grown:
             grown = False
-            for joint in list(left):
-                if any(touch(joint, other) for other in group):
-                    group.append(joint)
-                    left.remove(joint)
+            for name in list(left):
+                if any(touch(name, other) for other in group):
+                    group.append(name)
+                    left.remove(name)
                     grown = True
-        yield sorted(group, key=joints.index)
+        yield tuple(sorted(group, key=order.index))
 
 
 def _wrenches(

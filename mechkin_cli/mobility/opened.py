@@ -11,7 +11,8 @@ have any leading dimensions.
 Loops (`Loops`) are closed at many states at once: how far they are open, and their screws. A state
 of the kernel holds the coordinates of all joints; a step (freedoms,) changes it, balls by rotation
 vectors about the axes of the body before them. Twists are (angular, linear at the centre), lengths
-in parts of the size. Arrays are (rows, ...).
+in parts of the size. Arrays are (rows, ...). Couplings are equations between coordinates, after
+those of the cuts.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def opened(mechanism: Mechanism) -> Opened:
             cuts[copy] = joint.second
     links = {edge.child: RigidLink(edge.child) for edge in edges}
     joints = {edge.joint.name: edge.joint for edge in edges}
-    tree = Mechanism(mechanism.name, links, joints)
+    tree = Mechanism(mechanism.name, links, joints, couplings=mechanism.couplings)
     return Opened(tree, SolverGraph(tuple(edges), (), (), (), ()), elements, cuts)
 
 
@@ -196,7 +197,7 @@ def _cross(one: Floats, two: Floats) -> Floats:
 
 
 class Loops:
-    """The closing of the cuts of an opened mechanism."""
+    """The closing of the cuts of an opened mechanism, and what its couplings keep."""
 
     def __init__(self, opened: Opened, layout: Layout, poses: Poses) -> None:
         self.opened, self.layout, self.poses = opened, layout, poses
@@ -241,19 +242,65 @@ class Loops:
         """How the loop of each cut passes each freedom (cuts, freedoms)."""
         return self.edge_signs[:, self._edges]
 
+    @property
+    def cut_rows(self) -> int:
+        """Equations of the cuts, which come before those of the couplings."""
+        return 6 * len(self._copies)
+
+    @cached_property
+    def passing(self) -> NDArray[np.bool_]:
+        """Which freedoms each cut's loop passes, then which each coupling is between (cuts and
+        couplings, freedoms)."""
+        return np.concatenate([self.signs != 0.0, self._relations[0] != 0.0])
+
+    @cached_property
+    def _relations(self) -> tuple[Floats, Floats, Floats]:
+        """Of the couplings: their Jacobian (couplings, freedoms), what they are by the states
+        (couplings, states), and should be (couplings,)."""
+        relations = self.opened.mechanism.couplings.values()
+        jacobian = np.zeros((len(relations), self.count))
+        by_state = np.zeros((len(relations), self.layout.states))
+        totals = np.zeros(len(relations))
+        for row, relation in enumerate(relations):
+            unit = self.poses.size if relation.length else 1.0
+            totals[row] = relation.total / unit
+            for term in relation.terms:
+                freedom = term.joint.freedom_number(term.coordinate)
+                for k in self.opened.elements[term.joint.name]:
+                    carrier = self.layout.carriers[k]
+                    if freedom < len(carrier.part.type.freedoms):
+                        break
+                    freedom -= len(carrier.part.type.freedoms)
+                told = [term.joint.unit_of(term.coordinate, each) for each in self._units]
+                jacobian[row, carrier.column + freedom] += term.factor * told[0] / unit
+                by_state[row, carrier.state + freedom] += term.factor * told[1] / unit
+        return jacobian, by_state, totals
+
+    @property
+    def _units(self) -> tuple[float, float]:
+        """The length of a step and of a state, in m."""
+        return self.poses.size, self.layout.length
+
     def closing(self, states: Floats) -> tuple[Floats, Floats]:
         """Misses and Jacobian at states (rows, states)."""
-        return self.closing_of(*self.poses.at(np.empty((0, len(states))), states.T))
+        return self.closing_of(*self.poses.at(np.empty((0, len(states))), states.T), states)
 
-    def closing_of(self, turns: Floats, places: Floats) -> tuple[Floats, Floats]:
-        """Displacements of the copies against their links, the misses (rows, 6 cuts), and their
-        Jacobian by the freedoms (rows, 6 cuts, freedoms), at poses of all bodies."""
+    def closing_of(self, turns: Floats, places: Floats, states: Floats) -> tuple[Floats, Floats]:
+        """Displacements of the copies against their links and what couplings are off, the misses
+        (rows, equations), and their Jacobian by the freedoms (rows, equations, freedoms), at poses
+        of all bodies and the states (rows, states) that they belong to."""
         one, two = self._copies, self._links
         misses = displacement(turns[:, one], places[:, one], turns[:, two], places[:, two])
         screws = np.swapaxes(self.screws(turns, places), 1, 2)
         jacobian = self.signs[:, None, :] * screws[:, None]
-        rows, size = len(turns), 6 * len(one)
-        return misses.reshape(rows, size), jacobian.reshape(rows, size, self.count)
+        rows, size = len(turns), self.cut_rows
+        misses, jacobian = misses.reshape(rows, size), jacobian.reshape(rows, size, self.count)
+        related, by_state, totals = self._relations
+        if not totals.size:
+            return misses, jacobian
+        off = states @ by_state.T - totals
+        every = np.broadcast_to(related, (rows, *related.shape))
+        return np.concatenate([misses, off], axis=1), np.concatenate([jacobian, every], axis=1)
 
     def screws(self, turns: Floats, places: Floats) -> Floats:
         """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are."""

@@ -16,7 +16,7 @@ from mechkin_cli.expressions import Vector
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import DERIVED_KINDS
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.record import replace
 from mechkin_cli.session import (
     angle_slots,
@@ -193,7 +193,7 @@ def _wanted(design: Design, names: tuple[str, ...]) -> list[Wanted]:
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         quantity = known[name]
         forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
-        unsure = quantity.kind in WRENCH_KINDS and design.session.is_redundant
+        unsure = quantity.kind in REACTION_KINDS and design.session.is_redundant
         if quantity.owner == "row" or quantity.kind in DERIVED_KINDS or unsure:
             raise UsageError(f"solve does not give {name}; analyze does, at the rows of the file")
         if forces and any("time" in law.reads for law in problem.load_laws):

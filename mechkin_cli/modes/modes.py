@@ -244,7 +244,7 @@ def _result(
         )
         for i in order
     )
-    threads = any(joint.type.is_threaded for joint in problem.mechanism.joints.values())
+    threads = any(joint.type.counts_turns for joint in problem.mechanism.joints.values())
     return Modes(
         modes=modes,
         inputs=inputs,

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     )
     from mechkin_cli.plan.outputs import (
         FORCE_KINDS as FORCE_KINDS,
-        WRENCH_KINDS as WRENCH_KINDS,
+        REACTION_KINDS as REACTION_KINDS,
         OutputPlan as OutputPlan,
         Readout as Readout,
         demand_of as demand_of,
@@ -39,7 +39,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "layout": "Carrier Layout home_inputs home_state",
-        "outputs": "FORCE_KINDS OutputPlan Readout WRENCH_KINDS demand_of forces_demand "
+        "outputs": "FORCE_KINDS OutputPlan Readout REACTION_KINDS demand_of forces_demand "
         "needs_all_links",
         "plan": "build_plan plan_records",
         "programs": "kink_laws",

@@ -32,7 +32,7 @@ from mechkin_cli.mechanism import (
     upright,
 )
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.structure import SolverGraph, TreeEdge
+from mechkin_cli.structure import CutJoint, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
@@ -53,6 +53,21 @@ class Carrier(NamedTuple):
     first_freedom: int
     column: int
     state: int
+
+
+NO_FREEDOM = -1
+"""For a part of a joint that a relation only leads through."""
+
+
+class RelationRow(NamedTuple):
+    """A part of a joint that a coupling has a term of: the kernel joint, its direction in the tree,
+    the freedom there that is the coordinate, the axis of that, and its factor in length units."""
+
+    part: int
+    sign: float
+    freedom: int
+    axis: int
+    factor: float
 
 
 @dataclass(frozen=True)
@@ -184,6 +199,27 @@ class Layout:
     def states(self) -> int:
         """Length of the state vector."""
         return sum(c.part.type.states for c in self.carriers)
+
+    def relation_rows(self, closing: CutJoint) -> list[RelationRow]:
+        """All parts of the joints of a coupling; those that have none of its coordinates come
+        first."""
+        relation, signs = self.mechanism.couplings[closing.name], dict(closing.loop)
+        rows = []
+        for term in relation.terms:
+            edge = self.edge_number[term.joint.name]
+            own, freedom = self.carrier_of(edge, term.joint.freedom_number(term.coordinate))
+            axis, factor = self.axis_number[term.joint.name, term.coordinate], term.factor
+            if not term.joint.type.coordinate[term.coordinate].is_angle:
+                factor = factor * self.length
+            if relation.length:
+                factor = factor / self.length
+            rows += [
+                RelationRow(
+                    k, float(signs[edge]), freedom if k == own else NO_FREEDOM, axis, factor
+                )
+                for k in self.parts_of[edge]
+            ]
+        return sorted(rows, key=lambda row: row.freedom != NO_FREEDOM)
 
     def point(self, at: Attached) -> Vector:
         """A point of a link in the link's frame, in length units."""

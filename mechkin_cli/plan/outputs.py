@@ -42,9 +42,12 @@ _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
 FRICTION_KINDS = {"normal_load", "friction_force", "friction_moment", "friction_power"}
+COUPLING_KINDS = {"coupling_force", "coupling_torque"}
+REACTION_KINDS = WRENCH_KINDS | COUPLING_KINDS
+"""What redundant constraints may leave open."""
 _VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
 FORCE_KINDS = (
-    WRENCH_KINDS
+    REACTION_KINDS
     | _SHAKING_KINDS
     | _INERTIA_KINDS
     | _HOLDING_KINDS
@@ -218,6 +221,8 @@ class OutputPlan:
             return self._output(OutputCode.LOAD_POWER, int(wanted.coordinate), length * length)
         if kind in FRICTION_KINDS or kind == "friction_state":
             return self._friction(wanted)
+        if kind in COUPLING_KINDS:
+            return self._coupling(wanted)
         if kind == "self_locking":
             return self._output(OutputCode.SELF_LOCKING, 0, 1.0)
         code = OutputCode[kind.upper()]
@@ -229,6 +234,17 @@ class OutputPlan:
         code = OutputCode[wanted.kind.upper()]
         factor = {FORCE: length, DIMENSIONLESS: 1.0}.get(wanted.dimension, length * length)
         return self._output(code, names.index(wanted.owner), factor)
+
+    def _coupling(self, wanted: Wanted) -> int:
+        """What a coupling applies along one of its coordinates."""
+        layout = self.layout
+        number = next(k for k, c in enumerate(layout.graph.closings) if c.name == wanted.owner)
+        joint, _, coordinate = wanted.coordinate.rpartition(".")
+        axis = layout.axis_number[joint, coordinate]
+        rows = layout.relation_rows(layout.graph.closings[number])
+        at = next(k for k, row in enumerate(rows) if row.axis == axis and row.freedom >= 0)
+        factor = layout.length if wanted.kind == "coupling_force" else layout.length * layout.length
+        return self._output(OutputCode.MULTIPLIER, number, factor, freedom=at)
 
     def _wrench_code(self, joint: str, kind: str) -> OutputCode:
         """The output of a joint's wrench. A pair that holds nothing has only the wrench of its

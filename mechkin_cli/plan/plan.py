@@ -195,6 +195,8 @@ def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
 
 def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
     constraint = closing.constraint
+    if constraint.terms:
+        return _relation(layout, closing)
     loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
     first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
     one, other = constraint.frames
@@ -215,6 +217,14 @@ def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
         hung.slide_sign,
         loop,
     )
+
+
+def _relation(layout: Layout, closing: CutJoint) -> PlanRecord:
+    relation = layout.mechanism.couplings[closing.name]
+    rows = layout.relation_rows(closing)
+    total = relation.total / layout.length if relation.length else relation.total
+    places = [(row.part, row.sign, row.freedom, row.axis) for row in rows]
+    return record("add_relation", relation.length, places, [row.factor for row in rows], total)
 
 
 def _places(layout: Layout) -> Iterator[PlanRecord]:
@@ -274,6 +284,8 @@ def _blocks(layout: Layout) -> Iterator[PlanRecord]:
     for block in layout.graph.blocks:
         constraints = [layout.graph.closings[c].constraint for c in block.closings]
         links = [link for constraint in constraints for link in constraint.placed]
+        loops = [layout.graph.closings[c].loop for c in block.closings]
+        links += [layout.graph.edges[k].child for loop in loops for k, _ in loop]
         needed = _new_on_paths(layout, [layout.link_number[link] for link in links], placed)
         if block.charts:
             ends = [layout.carrier_of(*unknown)[0] for unknown in block.unknowns]

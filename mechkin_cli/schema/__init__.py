@@ -12,6 +12,12 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import fields_of as fields_of, section_of as section_of
+    from mechkin_cli.schema.couplings import (
+        AnyCoupling as AnyCoupling,
+        GearCoupling as GearCoupling,
+        LinearCoupling as LinearCoupling,
+        RackCoupling as RackCoupling,
+    )
     from mechkin_cli.schema.file import (
         AnyFile as AnyFile,
         MechanismFile as MechanismFile,
@@ -95,6 +101,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
+        "couplings": "AnyCoupling GearCoupling LinearCoupling RackCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "

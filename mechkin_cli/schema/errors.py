@@ -65,7 +65,13 @@ def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict
     return error | {"ctx": context}
 
 
-_TYPES = {"joints": "joint", "chain": "joint", "loads": "load", "balances": "balance"}
+_TYPES = {
+    "joints": "joint",
+    "couplings": "coupling",
+    "chain": "joint",
+    "loads": "load",
+    "balances": "balance",
+}
 _NOUNS = {
     "law": "law",
     "interpolation": "interpolation",
@@ -276,7 +282,10 @@ CONTACT = (
     "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
     "where they would meet (stop:)"
 )
-RATIO = "tie two inputs by their ratio: motion: {inputs: {B.theta: {with: -2*A.theta}, ...}}"
+RATIO = (
+    "wheels, racks and belts are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
+    "teeth: [20, 40], ideal: true}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
+)
 CAM = (
     "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "
     "the cam's angle}"

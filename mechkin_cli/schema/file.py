@@ -3,6 +3,7 @@
 from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.base import NOTHING, Rule, Section, refuse
+from mechkin_cli.schema.couplings import Coupling
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
@@ -46,6 +47,8 @@ class AnyFile(Section):
     quantities: dict[Name, AnyDimension] = NOTHING
     """Named expressions of quantities, used by name in columns, loads, stops and one another; left
     out, none."""
+    couplings: dict[Name, Coupling] = NOTHING
+    """Relations between coordinates of joints (gears, racks), by name; left out, none."""
     motion: MotionSection | None = None
     """The driven coordinates and their values; left out, one row."""
     assembly: AssemblySection | None = None
@@ -76,8 +79,8 @@ class MechanismFile(AnyFile):
     """A mechanism in the format 1 of mechkin.
 
     All points, axes, mass centres and inertias are written in one drawing, the home pose, in ground
-    axes; every joint coordinate is zero there. Joints, links, points, directions, parameters
-    and quantities share one namespace.
+    axes; every joint coordinate is zero there. Joints, couplings, links, points, directions,
+    parameters and quantities share one namespace.
     """
 
     links: dict[Name, Link] = NOTHING

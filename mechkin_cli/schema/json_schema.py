@@ -157,6 +157,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "columns": ["O1.theta", {"label": "torque", "value": "O1.effort", "decimals": 2}],
     "count": 73,
     "counted": 24,
+    "couplings": {"K": {"type": "gear", "joints": ["A", "B"], "teeth": [20, 40], "ideal": True}},
     "data": ["m2"],
     "decimals": 3,
     "direction": [0, -1, 0],
@@ -191,6 +192,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "quantities": {"gap": "norm(P.position - Q.position)"},
     "remarks": [{"text": "The source rounds to six digits."}],
     "responses": {"fall": {"start": {"A.theta": 80}, "time": {"from": 0, "to": 3, "step": 0.1}}},
+    "radii": ["20 mm", "40 mm"],
     "rows_by": "theta",
     "runs": ["sweep", "fall"],
     "shapes": {"coupler": "plate"},
@@ -199,7 +201,10 @@ BY_KEY: Final[dict[str, Any]] = {
     "start": {"A.theta": "80 deg", "A.theta_dot": "0 rad/s"},
     "stop": [{"turns": "A.theta", "count": 3}],
     "summary": ["max", "min", "rms"],
+    "sum": "10 deg",
     "tables": [{"name": "drive", "columns": ["O1.theta", "O1.effort"]}],
+    "teeth": [20, 40],
+    "terms": {"A.theta": 1, "B.theta": 2},
     "text": "The source rounds to six digits.",
     "time": {"from": 0, "to": "2 s", "step": 0.1},
     "title": "Torque of the motor",
@@ -258,6 +263,9 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
         "crank": {"mass": "0.4 kg", "center_of_mass": ["r/2", 0, 0]},
         "rod": {},
     },
+    ("GearCoupling", "ideal"): True,
+    ("GearCoupling", "internal"): True,
+    ("GearCoupling", "joints"): ["A", "B"],
     ("Plot", "x"): "theta",
     ("Plot", "y"): ["torque"],
     ("Polynomial", "coefficients"): [0, "10 deg/s", "2 deg/s^2"],
@@ -288,6 +296,9 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("StudyFile", "set"): {"P3": "0.4 in"},
     ("StudyFile", "vary"): {"P1": [0.48, "0.5 in"], "P2": {"tolerance": "0.01 in"}},
     ("Tolerance", "tolerance"): ["-0.1 mm", "0.2 mm"],
+    ("RackCoupling", "at"): "contact",
+    ("RackCoupling", "ideal"): True,
+    ("RackCoupling", "joints"): ["P", "S"],
     ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
 }
 
@@ -327,7 +338,7 @@ STUDY_IDENTITY: Final = "urn:mechkin:schema:study:1"
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = "$schema $id title description $ref type const enum required".split()  # noqa: SIM905
-_NAMED_SECTIONS = ("parameters", "links", "joints", "points", "directions")
+_NAMED_SECTIONS = ("parameters", "links", "joints", "couplings", "points", "directions")
 _BY_NAME = ("properties", "patternProperties", "$defs")
 _JSON_TYPES = {str: "string", int: "integer", bool: "boolean"}
 # JSON Schema has no flag for ignoring case

@@ -289,13 +289,13 @@ class PlaneFile(AnyFile):
 
     All points, directions and mass centres are written in one drawing, the home pose, as [x, y];
     every joint coordinate is zero there. Angles and torques are positive counter-clockwise. Joints,
-    links, points, directions and parameters share one namespace.
+    couplings, links, points, directions and parameters share one namespace.
     """
 
     advice: ClassVar[dict[str, str]] = {
         "chain": "rows of Denavit and Hartenberg are spatial: write the joints under joints: as "
-        "{type: R, links: [crank, rod], point: [x, y]}; a chain over two wheels is a tie: motion: "
-        "{inputs: {B.theta: {with: 2*A.theta, drive: tie}, ...}}",
+        "{type: R, links: [crank, rod], point: [x, y]}; a chain over two wheels is a coupling: "
+        "couplings: {K: {type: linear, terms: {A.theta: 2, B.theta: -1}}}",
         "coefficients": "they are six equations a link: leave it out; A.force and A.moment are "
         "unique in a plane",
         "idle": _LEFT_OUT + "no link spins about its own line",

@@ -2,8 +2,8 @@
 
 A record has `type`, `loc` (keys, list indices and tags in parentheses), `msg` and `ctx`. To the
 records of pydantic are added reserved and clashing names, and the keys that a mapping may have.
-Joints, links, points, directions, parameters and quantities share one namespace; the check reads
-plain data, so that a clash is reported together with all other errors.
+Joints, couplings, links, points, directions, parameters and quantities share one namespace; the
+check reads plain data, so that a clash is reported together with all other errors.
 
 Most files are valid, and to see that takes less than to load what can tell all errors of one that
 is not. So a value is taken here if it is surely valid: of the very type that an annotation names,
@@ -44,7 +44,16 @@ RESERVED: Final = frozenset(
 )
 """Words that cannot be the name of anything in a file."""
 
-_SECTIONS = ("parameters", "quantities", "links", "joints", "chain", "points", "directions")
+_SECTIONS = (
+    "parameters",
+    "quantities",
+    "links",
+    "joints",
+    "couplings",
+    "chain",
+    "points",
+    "directions",
+)
 
 
 def name_errors(data: object) -> list[dict[str, Any]]:
@@ -61,8 +70,8 @@ def name_errors(data: object) -> list[dict[str, Any]]:
         elif name in first_use:
             text = f"the name {name} is already used in {first_use[name]}:"
             hint = (
-                "joints, links, points, directions, parameters and quantities share one namespace; "
-                "rename one"
+                "joints, couplings, links, points, directions, parameters and quantities share one "
+                "namespace; rename one"
             )
             errors.append(_error("name-clash", location, text, hint))
         else:

@@ -59,18 +59,18 @@ class Chain(NamedTuple):
 
 def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     """The chain of a block with one cut joint, upstream states as in `base` (states,); None where
-    an unknown is a thread or a ball, or the loop passes a hung link."""
+    an unknown is a thread or a ball or its turns are counted, or no loop of links is closed."""
     graph = layout.graph
     block = graph.blocks[number]
     if len(block.closings) != 1:
         return None
     closing = graph.closings[block.closings[0]]
     kinds = [layout.carriers[layout.carrier_of(e, f)[0]].part.type for e, f in block.unknowns]
-    if any(kind.is_ball or kind.is_thread for kind in kinds):
+    if any(kind.is_ball or kind.counts_turns for kind in kinds):
         return None
     unknown = {layout.state(e, f) for e, f in block.unknowns}
     constraint = closing.constraint
-    if constraint.slides:
+    if constraint.slides or constraint.terms:
         return None
     ends = (constraint.first, constraint.second)
     paths = [_path(layout, layout.link_number[link]) for link in ends]

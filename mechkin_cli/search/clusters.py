@@ -40,9 +40,9 @@ Within = tuple["Floats", "Floats"]
 
 
 def thread_states(layout: Layout, number: int) -> list[int]:
-    """States of a block that are turns of threads."""
+    """States of a block that are turns of threads, or counted ones."""
     unknowns = (layout.carrier_of(*u)[0] for u in layout.graph.blocks[number].unknowns)
-    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.is_thread]
+    return [layout.carriers[k].state for k in unknowns if layout.carriers[k].part.type.counts_turns]
 
 
 def most_turn(turns: int) -> float:
@@ -106,7 +106,7 @@ def randomise(
         elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
-            thread = carrier.part.type.is_thread
+            thread = carrier.part.type.counts_turns
             half = most_turn(turns) if thread else pi
             states[state] = generator.between(half, rows)
             if thread:

@@ -506,7 +506,7 @@ def _named_turns(session: Session) -> Floats:
     for name, value in session.problem.assembly.near.items():
         owner, _, coordinate = name.rpartition(".")
         joint, edge = session.layout.mechanism.joints[owner], session.layout.edge_number.get(owner)
-        if edge is not None and joint.type.is_threaded:
+        if edge is not None and joint.type.counts_turns:
             number = session.layout.state(edge, joint.type.freedom_of[coordinate])
             states[number] = value / joint.unit_of(coordinate, session.layout.length)
     return states

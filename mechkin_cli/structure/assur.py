@@ -11,6 +11,9 @@ drawing can be special, and the dimensions of an overconstrained loop decide lat
 enough, all that hangs together is one group; what is undetermined even then is not driven.
 
 Where there are more equations than freedoms, all this only proposes groups: ranks decide (`rank`).
+
+Couplings are no edges of the network. Each takes up one of the freedoms that its joints' components
+lack drives for (`coupled_groups`); what two of them say of each other is solved together.
 """
 
 from __future__ import annotations
@@ -73,6 +76,58 @@ def assur_groups(
             return groups, (_own_names(component, loose[0]), loose[1])
         groups += _pieces(component, rest)
     return _determined(component, groups, places) if is_redundant else groups, None
+
+
+def coupled_groups(
+    components: Sequence[GraphComponent],
+    found: Sequence[tuple[list[AssurGroup], Undriven | None]],
+    couplings: Sequence[Connection],
+) -> tuple[list[AssurGroup], list[Undriven]]:
+    """The groups of all components with the couplings, and what nothing drives then.
+
+    A component that nothing drives is one group with the couplings that drive it. A coupling that
+    drives none is redundant: the groups of its joints are solved together with it.
+
+    Args:
+        components: each after the one that it hangs on.
+        found: their own groups, as `assur_groups` gives them.
+        couplings: their joints are among the components' connections.
+    """
+    number = {c.name: k for k, part in enumerate(components) for c in part.connections}
+    members = [sorted({number[t.joint.name] for t in c.constraint.terms}) for c in couplings]
+    short = [0 if undriven is None else undriven[1] for _, undriven in found]
+    matching = Matching(
+        short, [Row(c.equations, tuple(m)) for c, m in zip(couplings, members, strict=True)]
+    )
+    if left := sum(matching.free):
+        loose = [found[k][1] for k in sorted(matching.undetermined())]
+        touched = tuple(c for undriven in loose if undriven is not None for c in undriven[0])
+        return [], [(touched, left)]
+    groups: list[AssurGroup] = []
+    for k, (part, (own, undriven)) in enumerate(zip(components, found, strict=True)):
+        if undriven is None:
+            groups += own
+            continue
+        driving = tuple(couplings[row] for row in matching.taken[k])
+        groups.append(AssurGroup(part.entry, part.links, (*part.connections, *driving)))
+    placed = {c.name for group in groups for c in group.connections}
+    for c in couplings:
+        if c.name not in placed:
+            groups = _joined_by(groups, c)
+    return groups, []
+
+
+def _joined_by(groups: Sequence[AssurGroup], coupling: Connection) -> list[AssurGroup]:
+    """The groups of a coupling's joints as one with it, in the place of the first."""
+    joints = {term.joint.name for term in coupling.constraint.terms}
+    inside = [any(c.name in joints for c in group.connections) for group in groups]
+    own = [group for group, member in zip(groups, inside, strict=True) if member]
+    links = tuple(link for group in own for link in group.links)
+    connections = tuple(c for group in own for c in group.connections)
+    whole = AssurGroup(own[0].entry, links, (*connections, coupling))
+    first = inside.index(True)
+    others = [group for group, member in zip(groups, inside, strict=True) if not member]
+    return [*others[:first], whole, *others[first:]]
 
 
 def _determined(

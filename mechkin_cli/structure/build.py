@@ -19,7 +19,7 @@ from math import comb, prod
 
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
-from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
+from mechkin_cli.structure.assur import AssurGroup, assur_groups, coupled_groups
 from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
@@ -27,6 +27,7 @@ from mechkin_cli.structure.network import (
     Reduction,
     biconnected,
     connections_of,
+    couplings_of,
     cut_link,
     depths,
     incidence,
@@ -66,7 +67,7 @@ def in_order(
     owner = {link: k for k, group in enumerate(groups) for link in group.links}
     ahead: list[set[int]] = [set() for _ in groups]
     for k, group in enumerate(groups):
-        ends = {link for c in group.connections for link in (c.first, c.second)}
+        ends = {link for c in group.connections for link in c.ends}
         ahead[k] = {owner[link] for link in (*ends, group.entry) if link != GROUND_NAME} - {k}
     for edge in edges:
         if edge.child in owner and edge.parent in owner:
@@ -177,7 +178,10 @@ class TreePaths:
         self.number = {edge.joint.name: k for k, edge in enumerate(edges) if not edge.hung}
 
     def closing(self, constraint: Constraint) -> CutJoint:
-        """A constraint with the loop that it closes."""
+        """A constraint with the loop that it closes, or the joints that it is between."""
+        if constraint.terms:
+            own = dict.fromkeys(self.number[term.joint.name] for term in constraint.terms)
+            return CutJoint(constraint, tuple((k, 1 if self.edges[k].forward else -1) for k in own))
         slides = [(self.number[slide.name], -1) for slide in constraint.slides]
         return CutJoint(constraint, (*self._loop(constraint.first, constraint.second), *slides))
 
@@ -423,18 +427,14 @@ def _groups(
     inputs: Sequence[tuple[str, str]],
     places: Iterable[Rates],
 ) -> list[AssurGroup]:
-    """The Assur groups of all components, each after those that it hangs on."""
+    """The Assur groups of all components, each after those that it hangs on, with the couplings
+    that drive them."""
     components = biconnected(connections, incidence(connections), GROUND_NAME)
     reached = {link for component in components for link in component.links}
     if apart := [link for link in whole.links if link not in reached]:
         raise errors.disconnected(apart)
-    groups: list[AssurGroup] = []
-    loose: list[Undriven] = []
-    for component in components:
-        own, undriven = assur_groups(component, places)
-        groups += own
-        if undriven is not None:
-            loose.append(undriven)
+    found = [assur_groups(component, places) for component in components]
+    groups, loose = coupled_groups(components, found, couplings_of(whole, connections))
     if loose:
         raise errors.undriven(mechanism, inputs, loose)
     return groups

@@ -145,13 +145,19 @@ def disconnected(links: Sequence[str]) -> UnsolvableGraph:
 
 
 def driven_solid(connections: Iterable[Connection], equations: int) -> UnsolvableGraph:
-    """A loop all of whose freedoms are driven."""
+    """A loop, or couplings, all of whose freedoms are driven."""
+    connections = tuple(connections)
     joints = sorted({name for c in connections for name in c.constraint.joints})
+    couplings = [c.name for c in connections if c.constraint.terms]
+    text = f"nothing is left to close the loop through {listed(joints)}: "
+    text += "all its other freedoms are driven"
+    if couplings:
+        text = f"nothing is left that {listed(couplings)} could move: "
+        text += f"all freedoms of {listed(joints)} are driven"
     diagnostic = Diagnostic(
         "driven-solid",
         "error",
-        f"nothing is left to close the loop through {listed(joints)}: "
-        "all its other freedoms are driven",
+        text,
         measured=f"{equations} equations, no unknowns",
         hint="drive fewer coordinates",
     )

@@ -152,10 +152,10 @@ def _free_pair(body: str, points: list[Vector]) -> Joint:
 
 
 class Connection(NamedTuple):
-    """A joint or another constraint between two links.
+    """A joint or another constraint between two links, or one between joints, which is no edge.
 
     `driven` counts its driven freedoms (of its slides, where it has no others); `stays` says that
-    no loop may be closed at it.
+    no loop may be closed at it; `others` are further links of the joints that it is between.
     """
 
     name: str
@@ -164,6 +164,12 @@ class Connection(NamedTuple):
     constraint: Constraint
     driven: int = 0
     stays: bool = False
+    others: tuple[str, ...] = ()
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """The links that have to be placed for its equations."""
+        return self.first, self.second, *self.others
 
     @property
     def joint(self) -> Joint:
@@ -208,7 +214,7 @@ class Connection(NamedTuple):
 def connections_of(
     mechanism: Mechanism, whole: Reduction, inputs: Sequence[tuple[str, str]]
 ) -> list[Connection]:
-    """The joints in the order written, then the other constraints.
+    """The joints in the order written, then the other constraints between links.
 
     Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a cut joint
     does not count; so do H and free pairs, which close no loop, and joints of loops that are cut.
@@ -231,8 +237,22 @@ def connections_of(
         for name, joint in whole.joints.items()
     ]
     for c in whole.constraints:
+        if c.terms:
+            continue
         count = sum(driven[slide.name] for slide in c.slides)
         found.append(Connection(c.name, c.first, c.second, c, count, True))
+    return found
+
+
+def couplings_of(whole: Reduction, connections: Iterable[Connection]) -> list[Connection]:
+    """The constraints between joints anywhere, each with the links of these."""
+    ends = {c.name: c.ends for c in connections}
+    found = []
+    for c in whole.constraints:
+        links = dict.fromkeys(link for term in c.terms for link in ends[term.joint.name])
+        if links:
+            first, second, *others = links
+            found.append(Connection(c.name, first, second, c, 0, True, tuple(others)))
     return found
 
 

@@ -255,6 +255,7 @@ def _without(mechanism: Mechanism, graph: SolverGraph, left_out: Sequence[int]) 
         (),
         mechanism.gravity,
         datum=mechanism.datum,
+        couplings={n: c for n, c in mechanism.couplings.items() if n not in gone_joints},
     )
 
 

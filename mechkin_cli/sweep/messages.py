@@ -101,7 +101,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
     found: set[tuple[int, int]] = set()
     for carrier in layout.carriers:
         for number, freedom in enumerate(carrier.part.type.freedoms):
-            if freedom.motion == "thread":
+            if freedom.motion == "thread" or freedom.counted:
                 place = both[carrier.state + number]
                 if abs(float(place[1] - place[0])) > tolerances.SAME_MODE:
                     found.add((carrier.edge, carrier.first_freedom + number))
@@ -143,7 +143,9 @@ def _unique_loads(result: RunRows, asked: Sequence[Wanted]) -> list[str]:
     known, joints = result.problem.quantities(), result.problem.mechanism.joints
     wanted = {quantity.name for quantity in asked}
     found = []
-    for load in (load for load in known.values() if load.kind in BEARING_KINDS):
+    for load in known.values():
+        if load.kind not in BEARING_KINDS or load.owner not in joints:
+            continue
         slides = not all(coordinate.is_angle for coordinate in joints[load.owner].type.named)
         reaction = f"{load.owner}.{'moment' if load.dimension == MOMENT else 'force'}"
         if reaction not in wanted or (slides and load.kind == "axial_force"):

@@ -17,7 +17,7 @@ import numpy as np
 from mechkin_cli import assembly, derived, proofs
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import BEARING_KINDS, DERIVED_KINDS, bearing_load
-from mechkin_cli.plan import WRENCH_KINDS, Demand, Readout, demand_of, forces_demand
+from mechkin_cli.plan import REACTION_KINDS, Demand, Readout, demand_of, forces_demand
 from mechkin_cli.session import Ask, RowInputs, input_number, input_rest
 from mechkin_cli.sweep.friction import FrictionRows
 from mechkin_cli.sweep.messages import is_held, undefined_loads
@@ -321,7 +321,7 @@ class Result:
         columns = self._columns[name]
         if self._alternative is not None:
             columns = self._shifted[self._alternative].get(name, columns)
-        if self._disturbance is not None and wanted.kind in WRENCH_KINDS:
+        if self._disturbance is not None and wanted.kind in REACTION_KINDS:
             unit = self.session.layout.length
             columns = disturbed(columns, wanted, self._rounding, unit, self._disturbance)
         if wanted.vector:
@@ -382,7 +382,7 @@ class Result:
         self._rests |= make_continuous(self, wanted, outputs)
         self._columns |= columns
         self.friction.judge(self, wanted, ask.demand)
-        reactions = [quantity for quantity in wanted if quantity.kind in WRENCH_KINDS]
+        reactions = [quantity for quantity in wanted if quantity.kind in REACTION_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
             others |= self.evaluated(reactions, shift=shift)
 

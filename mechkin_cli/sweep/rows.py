@@ -283,9 +283,10 @@ def _level(result: RunRows, shift: int) -> Floats:
 
 
 def disturbed(columns: Floats, wanted: Wanted, off: Floats, length: float, number: int) -> Floats:
-    """A reaction (3, rows) whose components are `off` by rounding (rows,); `length` unit in m."""
+    """A reaction (numbers, rows) whose numbers are `off` by rounding (rows,); `length` in m."""
     off = off if wanted.dimension == FORCE else off * length
-    return np.asarray(columns + off * np.array(DISTURBANCES[number])[:, None])
+    by = np.array(DISTURBANCES[number])[: len(columns), None]
+    return np.asarray(columns + off * by)
 
 
 # A bound of the errors of every row's position.

@@ -22,7 +22,7 @@ from mechkin_cli.mechanism import (
     read_for,
 )
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.record import replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows, followed_session
@@ -98,7 +98,7 @@ def at_once(
 
 def rest_on_reactions(problem: Problem, asked: Sequence[Wanted]) -> bool:
     """Whether some quantities are not unique where reactions are not."""
-    kinds = {*WRENCH_KINDS, *TRANSMISSION_KINDS}
+    kinds = {*REACTION_KINDS, *TRANSMISSION_KINDS}
     return any(
         base_quantity(problem.quantities(), base_name(quantity)).kind in kinds
         if quantity.kind in COEFFICIENT_KINDS

@@ -27,7 +27,7 @@ from mechkin_cli.mechanism import (
     read_for,
     response_problem,
 )
-from mechkin_cli.plan import WRENCH_KINDS, Demand, demand_of
+from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
@@ -134,7 +134,7 @@ class _SweepRun:
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
-            or (session.is_redundant and any(q.kind in WRENCH_KINDS for q in self.wanted))
+            or (session.is_redundant and any(q.kind in REACTION_KINDS for q in self.wanted))
             or self._friction_takes_more(session)
             or self._led_by_rates()
             or (variation.moving_inputs and inputs & {q.name for q in self.wanted})

@@ -64,7 +64,8 @@ void bind_plan_codes(nb::module_& m) {
       .value("FRICTION_MOMENT", OUT_FRICTION_MOMENT)
       .value("FRICTION_POWER", OUT_FRICTION_POWER)
       .value("FRICTION_STATE", OUT_FRICTION_STATE)
-      .value("SELF_LOCKING", OUT_SELF_LOCKING);
+      .value("SELF_LOCKING", OUT_SELF_LOCKING)
+      .value("MULTIPLIER", OUT_MULTIPLIER);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)

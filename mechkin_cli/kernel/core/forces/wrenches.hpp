@@ -217,13 +217,29 @@ inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* 
   }
 }
 
+// A relation acts along its coordinates, on each joint's second link and opposite on its first. Its multiplier stands where
+// a closing joint's wrench does.
+inline void transmit_along_coordinates(const Plan& p, Workspace& w, int c, Pack multiplier) {
+  const ClosingJoint& j = p.closing[c];
+  w.reaction[c] = {zero3(), {multiplier, Pack(0.0), Pack(0.0)}};
+  for (int l = j.loop_begin; l < j.loop_end; ++l) {
+    const LoopEntry& e = p.loop[l];
+    const Term& t = p.term[e.term];
+    w.carried[e.joint] -= Pack(e.sign) * along_coordinate(p, w, t.axis, Pack(t.factor) * multiplier);
+  }
+}
+
 // The wrenches of a block's closing joints from the multipliers of its equations, and into the sums.
 inline void take_closing_wrenches(const Plan& p, Workspace& w, int index, const Pack* multiplier) {
   const Block& b = p.block[index];
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
+    if (is_relation(j.type)) {
+      transmit_along_coordinates(p, w, c, multiplier[j.row]);
+      continue;
+    }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      w.reaction[c] = entry.wrench(w.closure[c], multiplier + j.row);
+      if constexpr (!entry.is_relation) w.reaction[c] = entry.wrench(w.closure[c], multiplier + j.row);
     });
     for (int l = j.loop_begin; l < j.loop_end; ++l)
       w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * w.reaction[c];

@@ -102,7 +102,9 @@ struct Coordinates {
 };
 
 template <class TheConditions, class TheCoordinates>
-struct Pair : TheConditions, TheCoordinates {};
+struct Pair : TheConditions, TheCoordinates {
+  static constexpr bool is_relation = false;
+};
 
 // Entry number I of a list.
 template <int I, class First, class... Rest>

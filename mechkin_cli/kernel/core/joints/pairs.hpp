@@ -4,6 +4,7 @@
 #pragma once
 
 #include "joints/composition.hpp"
+#include "joints/relations.hpp"
 
 #if MECHKIN_ENCLOSES
 #include "joints/relative_conditions.hpp"
@@ -95,8 +96,8 @@ struct PointsApart : Pair<Conditions<Distance>, Coordinates<>> {
   static constexpr char letter[] = "";
 };
 
-// The code of a pair is its place; PointsApart is PAIR_DISTANCE.
-using Pairs = Entries<PointsApart, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
+// The code of a pair is its place; the first ones stand in PairCode.
+using Pairs = Entries<PointsApart, Relation<0>, Relation<1>, Revolute, Prismatic, Cylindric, Spheric, SphereOnPlane, SphereInGroove, Universal, Planar,
                       Weld, SphereInSlottedCylinder, CylinderOnPlane, RevoluteInPlane, PrismaticInPlane, PinInSlot,
                       WeldInPlane>;
 

@@ -5,7 +5,8 @@
 //   PlanBuilder        length, origin (3), size
 //   add_tree_joint     pitch, at (12: axes x, y, z, origin)
 //   add_closing_joint  on_first (12), on_second (12), parameter
-//   add_hung_links            on_first (12), on_second (12), length, line (3)
+//   add_hung_links     on_first (12), on_second (12), length, line (3)
+//   add_relation       factors, sum
 //   add_place          point (3)
 //   add_axis           vector (3), other_vector (3)
 //   add_input          scale
@@ -39,6 +40,7 @@ enum PlanArray : int {
   ARRAY_DRIVE,
   ARRAY_FREE,
   ARRAY_LOOP,
+  ARRAY_TERM,
   ARRAY_BLOCK,
   ARRAY_ORDER,
   ARRAY_UNKNOWN,

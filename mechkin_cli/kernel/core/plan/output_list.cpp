@@ -20,7 +20,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   REQUIRE(r.order >= 0 && r.order <= 3, "outputs go to third order");
   const bool orders = r.type == OUT_CLOSING || r.type == OUT_POINT;
   REQUIRE(orders || r.order == 0, "only closing coordinates and points have derivatives of an order");
-  REQUIRE(r.type == OUT_CLOSING || r.freedom == 0, "only closing coordinates have a freedom");
+  REQUIRE(r.type == OUT_CLOSING || r.type == OUT_MULTIPLIER || r.freedom == 0, "only closing coordinates have a freedom");
   REQUIRE(all_finite(r.data.data(), 3) && all_finite(&r.factor, 1), "an output's numbers must be finite");
   switch (r.type) {
     case OUT_STATE: return check_index(r.index, 0, p.states, "state");
@@ -43,6 +43,12 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
     case OUT_CARRIED_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
     case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.hung_bodies, "body");
+    case OUT_MULTIPLIER:
+      CHECK(check_index(r.index, 0, p.closings, "relation"));
+      REQUIRE(is_relation(p.closing[r.index].type), "an output of a multiplier of a closing joint that is no relation");
+      REQUIRE(r.freedom >= 0 && r.freedom < p.closing[r.index].loop_end - p.closing[r.index].loop_begin,
+              "an output of an unknown term of a relation");
+      return {};
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
@@ -60,7 +66,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_SELF_LOCKING; }
+bool is_output(int type) { return type >= 0 && type <= OUT_MULTIPLIER; }
 
 int output_width(int type) {
   switch (type) {
@@ -70,6 +76,7 @@ int output_width(int type) {
     case OUT_JERK:
     case OUT_CLOSING:
     case OUT_HOLDING_MOMENT:
+    case OUT_MULTIPLIER:
     case OUT_REACTION_LEVEL:
     case OUT_KINETIC_ENERGY:
     case OUT_POTENTIAL_ENERGY:
@@ -117,6 +124,7 @@ unsigned output_demand(int type, int order) {
     case OUT_INERTIA_FORCE:
     case OUT_INERTIA_MOMENT:
     case OUT_REACTION_LEVEL:
+    case OUT_MULTIPLIER:
     case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return to_order[order];
   }
@@ -125,6 +133,7 @@ unsigned output_demand(int type, int order) {
 Refusal check_closing_coordinate(const Plan& p, int c, int freedom) {
   const int type = p.closing[c].type;
   REQUIRE(type != PAIR_DISTANCE, "a hung body has no coordinates");
+  REQUIRE(!is_relation(type), "a relation has no coordinates of its own");
   REQUIRE(freedom >= 0 && freedom < 6 && kernel_unit()->pair_types[type].coordinates >> freedom & 1,
           "closing joint " + std::to_string(c) + " has no coordinate " + std::to_string(freedom));
   return {};

@@ -25,8 +25,9 @@ enum TreeCode : int {
 };
 
 // Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_DISTANCE is no pair of the file format: the
-// distance of two points that a hung body keeps.
-enum PairCode : int { PAIR_DISTANCE = 0 };
+// distance of two points that a hung body keeps; nor are relations between coordinates, whose equation is an angle, or a length.
+enum PairCode : int { PAIR_DISTANCE = 0, RELATION_OF_ANGLES = 1, RELATION_OF_LENGTHS = 2 };
+inline bool is_relation(int type) { return type == RELATION_OF_ANGLES || type == RELATION_OF_LENGTHS; }
 
 // Axes (columns of the rotation) and origin of a frame, in a link's frame or in ground axes.
 template <class Number>
@@ -51,17 +52,27 @@ struct ClosingJointOf {
   int first, second;        // links, -1: ground
   FrameOf<Number> on_first, on_second;
   Number parameter;         // U: cosine of the angle between its axes; Sc: of axis and pin at home, where the two
-                            // frames coincide in x; a distance: its length, the slide at zero
+                            // frames coincide in x; a distance: its length, the slide at zero; a relation: its sum
   int slide;                // a distance: tree joint of its slide, -1 without one
   double slide_sign;        // a distance: rate of its length by the slide
   int row;                  // first closing equation within its block
   int loop_begin, loop_end;  // into Plan::loop
 };
 
-// One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1).
+// One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1). Of a relation
+// between coordinates: a part of a joint in it, passed from its first link to its second (+1) or back, and its term; else -1.
 struct LoopEntry {
   int joint;
   double sign;
+  int term;
+};
+
+// A term of a relation: `factor` times the coordinate of an axis, which is the freedom of the entry's tree joint; -1: of
+// another part of the same joint.
+template <class Number>
+struct TermOf {
+  int freedom, axis;
+  Number factor;
 };
 
 // A hung body: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
@@ -195,7 +206,7 @@ struct Actuator {
 // What plans of one structure share.
 struct PlanShape {
   int links, states, columns, closings, hung_bodies, blocks, inputs, loads, load_values;
-  int places, axes, drives, frees, loop_entries, order_count, unknowns, size_points, frictions, contacts;
+  int places, axes, drives, frees, loop_entries, terms, order_count, unknowns, size_points, frictions, contacts;
   int largest_block;  // rows
   int charts;         // coordinates of the one block's chart, whose unknowns they determine; 0: inputs do
   int driven;         // inputs, the first ones, that motors or actuators answer for; the others are held
@@ -220,6 +231,7 @@ struct PlanOf : PlanShape {
   const TreeJointOf<Number>* joints;
   const ClosingJointOf<Number>* closing;
   const HungBodyOf<Number>* hung;
+  const TermOf<Number>* term;
   const JointPlaceOf<Number>* place;
   const CoordinateAxisOf<Number>* axis;
   const DriveOf<Number>* drive;
@@ -243,6 +255,7 @@ using Frame = FrameOf<double>;
 using TreeJoint = TreeJointOf<double>;
 using ClosingJoint = ClosingJointOf<double>;
 using HungBody = HungBodyOf<double>;
+using Term = TermOf<double>;
 using LinkInertia = LinkInertiaOf<double>;
 using Load = LoadOf<double>;
 using JointPlace = JointPlaceOf<double>;

@@ -92,6 +92,7 @@ Refusal PlanBuilder::check_order() const {
     REQUIRE((joints_[k].type == TREE_L) == (joints_[k].hung >= 0), "TREE_L hangs a hung body");
     REQUIRE(placed_by_[k] != NOT_PLACED, "every tree joint must be placed by a block or be of the rest");
   }
+  for (const Term& t : term_) REQUIRE(t.axis < (int)axis_.size(), "a relation's coordinates have axes");
   for (int b = 0; b < (int)block_.size(); ++b) {
     const auto placed = [&](int link) { return link < 0 || (placed_by_[link] != REST && placed_by_[link] <= b); };
     for (int c = block_[b].closing_begin; c < block_[b].closing_end; ++c) {
@@ -198,6 +199,7 @@ Plan PlanBuilder::arrays() const {
   p.frees = (int)free_.size();
   p.drives = (int)drive_.size();
   p.loop_entries = (int)loop_.size();
+  p.terms = (int)term_.size();
   p.order_count = (int)order_.size();
   p.unknowns = (int)unknown_.size();
   p.rest_count = (int)rest_.size();
@@ -208,7 +210,7 @@ Plan PlanBuilder::arrays() const {
   for (const Block& b : block_) p.largest_block = b.rows > p.largest_block ? b.rows : p.largest_block;
   p.joints = joints_.data(), p.closing = closing_.data(), p.hung = hung_.data();
   p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
-  p.loop = loop_.data(), p.block = block_.data();
+  p.loop = loop_.data(), p.term = term_.data(), p.block = block_.data();
   p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();
   p.column_state = column_state_.data(), p.column_joint = column_joint_.data();

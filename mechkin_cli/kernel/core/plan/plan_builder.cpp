@@ -104,7 +104,7 @@ Refusal PlanBuilder::add_tree_joint(int type, int parent, double pitch, const Fr
 Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const FrameData& on_first,
                                     const FrameData& on_second, double parameter, const Loop& loop) {
   CHECK(open());
-  REQUIRE(type > PAIR_DISTANCE && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
+  REQUIRE(type > PAIR_DISTANCE && !is_relation(type) && type < kernel_unit()->pair_codes, "this pair cannot close a loop");
   CHECK(check_link(first));
   CHECK(check_link(second));
   CHECK(check_finite(on_first, on_second, parameter));
@@ -128,8 +128,45 @@ Refusal PlanBuilder::check_loop(const Loop& loop) const {
 
 std::pair<int, int> PlanBuilder::add_loop(const Loop& loop) {
   const int begin = (int)loop_.size();
-  for (const auto& [joint, sign] : loop) loop_.push_back({joint, sign});
+  for (const auto& [joint, sign] : loop) loop_.push_back({joint, sign, -1});
   return {begin, (int)loop_.size()};
+}
+
+Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors,
+                                  double sum) {
+  CHECK(open());
+  REQUIRE(!terms.empty() && terms.size() == factors.size(), "a relation has terms, each with a factor");
+  CHECK(check_finite(sum));
+  REQUIRE(all_finite(factors.data(), factors.size()), "a plan's numbers must be finite");
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    for (std::size_t other = 0; other < k; ++other)
+      REQUIRE(std::get<0>(terms[k]) != std::get<0>(terms[other]) || std::get<2>(terms[k]) < 0 ||
+                  std::get<2>(terms[k]) != std::get<2>(terms[other]), "a relation has one term of a freedom");
+  for (const auto& [joint, sign, freedom, axis] : terms) {
+    CHECK(check_joint(joint, "a relation of an unknown joint"));
+    REQUIRE(is_sign(sign), NO_SIGN);
+    const TreeType& tree = tree_type(joints_[joint].type);
+    REQUIRE(freedom == -1 || (freedom >= 0 && freedom < tree.freedoms && tree.states == tree.freedoms),
+            "a relation is between coordinates");
+    REQUIRE(axis >= 0, "a relation's coordinates have axes");
+  }
+  // a column of a relation is that of the last entry of its tree joint
+  for (std::size_t k = 1; k < terms.size(); ++k)
+    REQUIRE(std::get<2>(terms[k]) >= 0 || std::get<2>(terms[k - 1]) < 0, "parts that a relation only leads through come first");
+  const int begin = (int)loop_.size(), first_term = (int)term_.size();
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto& [joint, sign, freedom, axis] = terms[k];
+    loop_.push_back({joint, sign, (int)term_.size()});
+    term_.push_back({freedom, axis, factors[k]});
+  }
+  for (int t = first_term; t < (int)term_.size(); ++t)
+    number(ARRAY_TERM, t * sizeof(Term) + offsetof(Term, factor), 1);
+  const std::size_t at = closing_.size() * sizeof(ClosingJoint);
+  const Frame none = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
+  const int type = length ? RELATION_OF_LENGTHS : RELATION_OF_ANGLES;
+  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size()});
+  number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
+  return {};
 }
 
 Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, const FrameData& on_first,

@@ -17,6 +17,7 @@
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
 using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
+using TermTuple = std::tuple<int, double, int, int>;  // tree joint and sign, freedom and axis of a Term
 // Register, range, and knots x, y, b, c, d.
 using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
 
@@ -31,6 +32,8 @@ class PlanBuilder {
   // The next closing equation: a hung body of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
   Refusal add_hung_links(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
                double length, const Triple& line, double slide_sign, const Loop& loop);
+  // The next closing equation: the sum of terms, each with its factor, is `sum`; a length, or an angle. Axes may come later.
+  Refusal add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors, double sum);
   // The next joint as its user knows it, see JointPlace; returns its number.
   Result<int> add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
@@ -106,6 +109,7 @@ class PlanBuilder {
   std::vector<ClosingJoint> closing_;
   std::vector<HungBody> hung_;
   std::vector<LoopEntry> loop_;
+  std::vector<Term> term_;
   std::vector<Block> block_;
   std::vector<int> order_, unknown_, rest_, input_column_;
   std::vector<int> column_state_, column_joint_, column_block_, column_place_;

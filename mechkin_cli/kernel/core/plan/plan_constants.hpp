@@ -22,6 +22,7 @@ using Frame = FrameOf<PlanNumber>;
 using TreeJoint = TreeJointOf<PlanNumber>;
 using ClosingJoint = ClosingJointOf<PlanNumber>;
 using HungBody = HungBodyOf<PlanNumber>;
+using Term = TermOf<PlanNumber>;
 using LinkInertia = LinkInertiaOf<PlanNumber>;
 using Load = LoadOf<PlanNumber>;
 using JointPlace = JointPlaceOf<PlanNumber>;
@@ -58,6 +59,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
   TreeJoint* const joint = room.take<TreeJoint>(first.links);
   ClosingJoint* const closing = room.take<ClosingJoint>(first.closings);
   HungBody* const hung = room.take<HungBody>(first.hung_bodies);
+  Term* const term = room.take<Term>(first.terms);
   if (!room.memory) return;
   for (int k = 0; k < first.links; ++k) {
     const auto& j = first.joints[k];
@@ -79,7 +81,10 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
     lanes.numbers(hung[l].point, 3, [&](const LanePlan& p) { return p.hung[l].point; });
     lanes.numbers(hung[l].line, 3, [&](const LanePlan& p) { return p.hung[l].line; });
   }
-  w->joints = joint, w->closing = closing, w->hung = hung;
+  for (int t = 0; t < first.terms; ++t)
+    term[t] = {first.term[t].freedom, first.term[t].axis,
+               lanes.number([&](const LanePlan& p) { return p.term[t].factor; })};
+  w->joints = joint, w->closing = closing, w->hung = hung, w->term = term;
 }
 
 template <class Constants>

@@ -38,7 +38,8 @@ enum OutputCode : int {
   OUT_FRICTION_MOMENT = 31,   // about the joint's point
   OUT_FRICTION_POWER = 32,    // that it takes
   OUT_FRICTION_STATE = 33,    // FrictionState
-  OUT_SELF_LOCKING = 34       // 1 where a drive that would brake without friction has to push
+  OUT_SELF_LOCKING = 34,      // 1 where a drive that would brake without friction has to push
+  OUT_MULTIPLIER = 35         // index: closing joint that is a relation; freedom: one of its terms, along which it acts
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

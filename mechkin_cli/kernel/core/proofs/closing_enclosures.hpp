@@ -77,7 +77,7 @@ inline void enclose_closing(const Plan& p, Enclosures& w) {
       const Closure k = enclosed_closure(p, w, j);
       const int equation = first + j.row;
       with_closing_joint(j.type, [&](auto entry) {
-        entry.residual(k, w.equation + equation);
+        closing_residual(p, w.q, j, k, entry, w.equation + equation);
         entry.sides(k, [&](const Pack& x) { w.side = min(w.side, lower_bound(x)); });
         for (int l = j.loop_begin; l < j.loop_end; ++l) {
           const TreeJoint& t = p.joints[p.loop[l].joint];
@@ -87,7 +87,7 @@ inline void enclose_closing(const Plan& p, Enclosures& w) {
           }
           for (int f = t.column; f < t.column + freedoms_of(t); ++f) {
             Pack column[MAX_EQUATIONS];
-            entry.column(k, Pack(p.loop[l].sign) * w.screw[f], column);
+            closing_column(p, k, p.loop[l], f - t.column, w.screw[f], entry, column);
             for (int i = 0; i < entry.equations; ++i) w.jacobian[(equation + i) * p.columns + f] = column[i];
           }
         }

@@ -71,7 +71,12 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
-      entry.column(k, a, r);
+      if constexpr (entry.is_relation)
+        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) {
+          return unknown_index(p, index, t.column + f) < 0 ? w.rate[t.column + f] : Pack(0.0);
+        });
+      else
+        entry.column(k, a, r);
       for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
     });
   }
@@ -85,7 +90,10 @@ inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
     const Motion &first = motion_of(w, j.first), &other = motion_of(w, j.second);
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
-      entry.second(w.closure[c], first, other, r);
+      if constexpr (entry.is_relation)
+        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) { return w.acceleration[t.column + f]; });
+      else
+        entry.second(w.closure[c], first, other, r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
     });
     if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.acceleration[p.joints[j.slide].column];
@@ -128,7 +136,10 @@ inline void third_of_equations(const Plan& p, Workspace& w, const Block& b) {
     const MotionToJerk first = motion_to_jerk(w, j.first), other = motion_to_jerk(w, j.second);
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
-      entry.third(w.closure[c], first, other, r);
+      if constexpr (entry.is_relation)
+        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) { return w.jerk[t.column + f]; });
+      else
+        entry.third(w.closure[c], first, other, r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
     });
     if (j.slide >= 0) w.right[j.row] += Pack(j.slide_sign) * w.jerk[p.joints[j.slide].column];

@@ -84,6 +84,13 @@ inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Num
   return k[o.order];
 }
 
+// The effort of a relation along the coordinate of one of its terms.
+template <class Number>
+inline Pack output_multiplier(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
+  const LoopEntry& e = p.loop[p.closing[o.index].loop_begin + o.freedom];
+  return Pack(p.term[e.term].factor) * w.reaction[o.index].force.x;
+}
+
 // The value of a quantity, one pack or three; returns how many. `balance` for those that need forces, `row_value` as in
 // apply_load.
 template <class Number, class RowValue>
@@ -113,6 +120,7 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return three(factor * output_joint(p, w, o.type, o.index));
     case OUT_HOLDING_MOMENT: return one(factor * w.holding[o.index]);
+    case OUT_MULTIPLIER: return one(factor * output_multiplier(p, w, o));
     case OUT_REACTION_LEVEL: return one(factor * balance->level);
     case OUT_MOTOR: return one(factor * w.actuation.motor[o.index]);
     case OUT_ACTUATION: return one(factor * *w.actuation.least);

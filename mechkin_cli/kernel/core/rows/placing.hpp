@@ -95,7 +95,7 @@ MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& 
     place_closure(p, w, c, axes);
     Pack* r = w.right + j.row;
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      entry.residual(w.closure[c], r);
+      closing_residual(p, w.q, j, w.closure[c], entry, r);
       meet(entry, r);
     });
   }
@@ -106,12 +106,10 @@ MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& 
 MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, const LoopEntry& e, Pack* out) {
   const TreeJoint& t = p.joints[e.joint];
   const Closure& k = w.closure[c];
-  const Pack sign = e.sign;
   with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
     for (int i = 0; i < tree.freedoms; ++i) {
-      const Twist s = sign * w.screw[t.column + i];
       with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
-        entry.column(k, s, out + i * MAX_CLOSING_ROWS);
+        closing_column(p, k, e, i, w.screw[t.column + i], entry, out + i * MAX_CLOSING_ROWS);
       });
     }
   });
@@ -138,12 +136,11 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
       std::uint64_t written = 0;  // of the first 64 columns, a bit each: mostly all of them are
       for (int l = j.loop_begin; l < j.loop_end; ++l) {
         const TreeJoint& t = p.joints[p.loop[l].joint];
-        const Pack sign = p.loop[l].sign;
         for (int f = 0; f < freedoms_of(t.type); ++f) {
           const int u = unknown_index(p, index, t.column + f);
           if (u < 0) continue;
           Pack column[entry.equations];
-          entry.column(k, sign * w.screw[t.column + f], column);
+          closing_column(p, k, p.loop[l], f, w.screw[t.column + f], entry, column);
           for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
           if (u < 64) written |= std::uint64_t(1) << u;
         }

@@ -31,7 +31,7 @@ std::vector<ClosingTurn> closing_turns(const Plan& plan, const KernelUnit& unit)
     slot += width;
   };
   for (int c = 0; c < plan.closings; ++c) {
-    if (plan.closing[c].type == PAIR_DISTANCE) continue;
+    if (plan.closing[c].type == PAIR_DISTANCE || is_relation(plan.closing[c].type)) continue;
     const PairType& pair = unit.pair_types[plan.closing[c].type];
     // without conditions on directions an orientation is free; it is carried along where no angle tells it
     if (pair.equations == pair.lengths && !pair.turns) add(c, -1, 4);

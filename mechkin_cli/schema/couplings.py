@@ -1,0 +1,118 @@
+"""`couplings:` - relations between coordinates of joints anywhere in the mechanism: gears, racks,
+differentials.
+
+All coordinates are zero in the home drawing, so a coupling is drawn as it meshes.
+"""
+
+from typing import Annotated, Any, Literal
+
+from mechkin_cli.schema.base import (
+    Limits,
+    Rule,
+    SchemaName,
+    Section,
+    Shown,
+    by_word,
+    each_once,
+    refuse,
+)
+from mechkin_cli.schema.scalars import (
+    AngleOrLength,
+    AnyDimension,
+    Coordinate,
+    Dimensionless,
+    Length,
+    Name,
+)
+
+
+def _truth(value: Any) -> Any:
+    words = {"true": True, "false": False}
+    return words.get(str(value).strip().lower(), value)
+
+
+def _ideal(value: bool) -> bool:
+    if not value:
+        text = "forces between teeth are not computed yet"
+        raise refuse("not-ideal", text, "write ideal: true for moments alone")
+    return value
+
+
+Truth = Annotated[
+    bool,
+    Rule(_truth, before=True),
+    Shown(("boolean",), "true or false", (True,)),
+    SchemaName("Truth"),
+]
+Ideal = Annotated[
+    bool,
+    Rule(_truth, before=True),
+    Rule(_ideal),
+    Shown(("boolean",), "true", (True,)),
+    SchemaName("Ideal"),
+]
+TwoJoints = Annotated[
+    tuple[Name, ...], Limits(min_length=2, max_length=2), Rule(each_once), SchemaName("TwoJoints")
+]
+
+
+class LinearCoupling(Section):
+    """The sum of some coordinates, each with its factor, is constant."""
+
+    type: Literal["linear"]
+    terms: dict[Coordinate, AnyDimension]
+    """Coordinates and their factors; the factor of the first is a number, those of the others
+    carry them to what it measures: `{A.theta: 1, S.s: -1 rad/(20 mm)}`."""
+    sum: AngleOrLength = "0"
+    """What the sum is; left out, 0 as in the drawing."""
+
+    def check(self) -> None:
+        """A relation is between two coordinates or more."""
+        if len(self.terms) < 2:
+            text = "a coupling is between two coordinates or more"
+            raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
+
+
+class GearCoupling(Section):
+    """Two wheels that roll on each other, with parallel axes on one carrier."""
+
+    type: Literal["gear"]
+    joints: TwoJoints
+    """The R or C joints of the two wheels, which turn on one link, the carrier; where a wheel turns
+    on another link, that is joined to the carrier about the same axis."""
+    teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)] | None = None
+    """Numbers of teeth, in the order of the joints; left out, `radii`."""
+    radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)] | None = None
+    """Pitch radii, in the order of the joints; left out, `teeth`."""
+    internal: Truth = False
+    """Whether one of the wheels is a ring with teeth inside, so that both turn the
+    same way; left out, no."""
+    ideal: Ideal
+    """`true`: the wheels transmit moments alone, without a force between their teeth."""
+
+    def check(self) -> None:
+        """The ratio is told once."""
+        if (self.teeth is None) == (self.radii is None):
+            text = "the ratio of a gear is told by teeth or by radii"
+            raise refuse("teeth-or-radii", text, "give one of them")
+
+
+class RackCoupling(Section):
+    """A pinion that rolls on a rack."""
+
+    type: Literal["rack"]
+    joints: TwoJoints
+    """The R or C joint of the pinion and the P joint of the rack, both on one link."""
+    radius: Length
+    """The pinion's pitch radius."""
+    at: Name | None = None
+    """A named point which is drawn on the rack's pitch line and tells its side of the pinion; left
+    out, the point of the rack's joint."""
+    ideal: Ideal
+    """`true`: moment and force along the coordinates alone."""
+
+
+AnyCoupling = LinearCoupling | GearCoupling | RackCoupling
+"""All forms of a coupling."""
+
+Coupling = Annotated[AnyCoupling, by_word("type", ("linear", "gear", "rack"))]
