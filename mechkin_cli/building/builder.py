@@ -10,7 +10,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from mechkin_cli.building.couplings import build_couplings, coupled_joints
+from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -222,6 +222,7 @@ def build_problem(
     for coupled in coupled_joints(file.couplings) & joints.keys():
         joints[coupled] = counted(joints[coupled])
     couplings = build_couplings(fields, file.couplings, joints)
+    refuse_friction(fields, file.loads, couplings)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
         for name, d in file.directions.items()

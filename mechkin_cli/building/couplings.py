@@ -5,12 +5,20 @@ direction (Willis 1841); the sign of the second term is the other one where a ri
 inside. A wheel that turns on another link than the carrier turns against it by the sum of its own
 coordinate and that of the joint between the two links, which has the same axis.
 
+Teeth act by a force at the pitch point, which rides on the carrier. With a moment M on the first
+wheel, of pitch radius r, its tangential part is M / r, its axial one that by the tangent of the
+helix angle; and it pushes the wheels apart by that by the tangent of the pressure angle in the
+section square to the axes, whichever flank bears. All but the tangential part does no work where
+wheels do not slide along their axes; where they do, the relation tells of that, too.
+
 A rack: s = r phi, the pinion's turn being positive where it moves the pitch point along the rack.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import product
+from math import pi
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, is_coordinate, place_at
@@ -18,18 +26,31 @@ from mechkin_cli.diagnostics import Number, nearest_hint
 from mechkin_cli.mechanism import (
     Frame,
     Joint,
+    Mesh,
     Relation,
     Term,
+    Vector,
+    add,
     cross,
     dimension_of,
     dot,
     frame_on,
     norm,
+    scale,
     subtract,
 )
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema import AnyCoupling, GearCoupling, LinearCoupling, RackCoupling
-from mechkin_cli.units import DIMENSIONLESS, LENGTH
+from mechkin_cli.schema import (
+    AnyCoupling,
+    FrictionAtJoint,
+    GearCoupling,
+    LinearCoupling,
+    RackCoupling,
+)
+from mechkin_cli.tape import cos, sin
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
+
+_QUARTER = 0.5 * pi
 
 
 def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
@@ -61,6 +82,20 @@ def build_couplings(
         else:
             found[name] = _rack(fields, path, section, joints)
     return {name: relation for name, relation in found.items() if relation is not None}
+
+
+def refuse_friction(
+    fields: Fields, loads: Iterable[object], couplings: Mapping[str, Relation]
+) -> None:
+    """Notes teeth that push wheels apart where joints rub: friction is solved for by reactions that
+    are linear in it."""
+    if not any(isinstance(load, FrictionAtJoint) for load in loads):
+        return
+    for name, relation in couplings.items():
+        if relation.pushes_apart:
+            text = "with friction in joints the force that pushes wheels apart is not computed"
+            hint = "leave out pressure_angle, or the friction"
+            fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)
 
 
 def _linear(
@@ -108,11 +143,18 @@ def _are_joints(
 
 
 class _Turning(NamedTuple):
-    """How a wheel turns against a carrier: the terms of its angle, and its axis as drawn on the
-    carrier, about which the angle counts."""
+    """How a wheel turns against a carrier, and slides along its axis: the terms of both, the axis
+    as drawn on the carrier, about which they count, and the way from wheel to carrier (`Mesh`)."""
 
     terms: tuple[Term, ...]
+    slides: tuple[Term, ...]
     axis: Frame
+    way: tuple[tuple[str, int], ...]
+
+    @property
+    def back(self) -> tuple[tuple[str, int], ...]:
+        """The way from carrier to wheel."""
+        return tuple((name, -sense) for name, sense in reversed(self.way))
 
 
 def _gear(
@@ -122,9 +164,8 @@ def _gear(
     for i, joint in enumerate(wheels):
         if not joint.type.is_bearing:
             text = f"{joint.name} is of type {joint.letter}: a wheel turns on an R or C joint"
-            fields.error(
-                "wheel-joint", (*path, "joints", i), text, "name the joint that it turns on"
-            )
+            hint = "name the joint that it turns on"
+            fields.error("wheel-joint", (*path, "joints", i), text, hint)
             return None
     numbers = _ratio(fields, path, section)
     pair = _on_one_carrier(wheels[0], wheels[1], joints)
@@ -139,7 +180,7 @@ def _gear(
             "the axis of one wheel",
         )
         return None
-    first, second = pair
+    carrier, first, second = pair
     tilt = norm(cross(first.axis.z, second.axis.z))
     if tilt > tolerances.PARALLEL:
         fields.error(
@@ -152,14 +193,126 @@ def _gear(
             numbers=(Number("sine of the angle", float(tilt), limit=tolerances.PARALLEL),),
         )
         return None
-    if numbers is None:
+    teeth = _teeth(fields, path, section)
+    if numbers is None or teeth is None:
         return None
-    ratio = numbers[1] / numbers[0]
     same = dot(first.axis.z, second.axis.z) > 0.0
+    ratio = numbers[1] / numbers[0]
     ratio = -ratio if same == section.internal else ratio
-    return Relation(
-        (*first.terms, *(t._replace(factor=ratio * t.factor) for t in second.terms)), False
+    terms = (*first.terms, *(t._replace(factor=ratio * t.factor) for t in second.terms))
+    if section.ideal:
+        return Relation(terms, length=False)
+    found = _pitch_circles(fields, path, section, (first.axis, second.axis), numbers, teeth)
+    if found is None:
+        return None
+    radius, outward, is_ring = found
+    mesh = _mesh(carrier, first, (*first.way, *second.back), radius, outward, teeth)
+    if is_ring:
+        mesh = mesh._replace(apart=scale(-1.0, mesh.apart))
+    # along the axis a wheel gives way by its helix
+    by = teeth.lead / radius
+    slides = (
+        *(t._replace(factor=-by * t.factor) for t in first.slides),
+        *(t._replace(factor=(by if same else -by) * t.factor) for t in second.slides),
     )
+    return Relation((*terms, *(t for t in slides if t.factor != 0.0)), length=False, mesh=mesh)
+
+
+class _Teeth(NamedTuple):
+    """Tangents of the pressure angle in the section square to the axis, and of the helix angle;
+    `cosine` of that."""
+
+    pressure: float
+    lead: float
+    cosine: float
+
+
+def _teeth(fields: Fields, path: Path, section: GearCoupling | RackCoupling) -> _Teeth | None:
+    """The form of teeth; angles of a quarter turn are noted in `fields`."""
+    angles, errors = [], fields.error_count
+    for key in ("pressure_angle", "helix"):
+        text = getattr(section, key)
+        angle = 0.0 if text is None else fields.number((*path, key), text, ANGLE)
+        least = 0.0 if key == "pressure_angle" else -_QUARTER
+        if not least <= angle < _QUARTER or angle == -_QUARTER:
+            told = fields.units.text(float(angle), ANGLE)
+            fields.error(
+                "no-teeth",
+                (*path, key),
+                f"there are no teeth with a {key.replace('_', ' ')} of {told}",
+                "usual are pressure angles of 20 deg and helix angles of up to 45 deg",
+                limit="less than a quarter turn",
+            )
+        angles.append(angle)
+    if fields.error_count > errors:
+        return None
+    pressure, helix = angles
+    cosine = cos(helix)
+    # tan(transverse) = tan(normal) / cos(helix)
+    return _Teeth(sin(pressure) / cos(pressure) / cosine, sin(helix) / cosine, cosine)
+
+
+def _pitch_circles(
+    fields: Fields,
+    path: Path,
+    section: GearCoupling,
+    axes: tuple[Frame, Frame],
+    numbers: tuple[float, float],
+    teeth: _Teeth,
+) -> tuple[float, Vector, bool] | None:
+    """The pitch radius of the first wheel (m), the unit vector from its axis to the pitch point,
+    and whether it is the ring."""
+    one, other = axes
+    apart = subtract(other.o, one.o)
+    across = subtract(apart, scale(dot(apart, one.z), one.z))
+    distance = norm(across)
+    is_ring = section.internal and numbers[0] > numbers[1]
+    total = numbers[1] - numbers[0] if section.internal else numbers[0] + numbers[1]
+    total = -total if is_ring else total
+    if total == 0.0 or distance == 0.0:
+        text = "these wheels have no pitch point: they would lie on one another"
+        hint = "draw the axes apart, or write ideal: true for moments alone"
+        fields.error("no-pitch-point", path, text, hint)
+        return None
+    wanted = None
+    if section.radii is not None:
+        wanted = total
+    elif section.module is not None:
+        module = fields.number((*path, "module"), section.module, LENGTH)
+        wanted = module * total / (2.0 * teeth.cosine)
+    if wanted is not None and abs(distance - wanted) > tolerances.PARALLEL * distance:
+        measured, limit = (fields.units.text(float(x), LENGTH) for x in (distance, wanted))
+        fields.error(
+            "centre-distance",
+            (*path, "radii" if section.radii is not None else "module"),
+            "the wheels do not mesh where they are drawn",
+            "draw the axes at the sum of the pitch radii, of a ring and its pinion at the "
+            "difference",
+            measured=f"axes {measured} apart",
+            limit=limit,
+        )
+        return None
+    # a ring and its pinion have their pitch point beyond the pinion's axis, seen from the ring's
+    beyond = -1.0 if section.internal and not is_ring else 1.0
+    return numbers[0] * distance / total, scale(beyond / distance, across), is_ring
+
+
+def _mesh(
+    carrier: str,
+    first: _Turning,
+    way: tuple[tuple[str, int], ...],
+    radius: float,
+    outward: Vector,
+    teeth: _Teeth,
+) -> Mesh:
+    """The force on the second of two wheels at the pitch point of the first: against the moment on
+    that, and away from it."""
+    z = first.axis.z
+    around = cross(z, outward)
+    along = add(scale(-1.0, around), scale(teeth.lead, z))
+    point = add(first.axis.o, scale(radius, outward))
+    forces = scale(1.0 / radius, along), scale(teeth.pressure / radius, outward)
+    return Mesh(carrier, point, *forces, way)
 
 
 def _ratio(fields: Fields, path: Path, section: GearCoupling) -> tuple[float, float] | None:
@@ -181,28 +334,28 @@ def _ratio(fields: Fields, path: Path, section: GearCoupling) -> tuple[float, fl
 
 def _on_one_carrier(
     one: Joint, other: Joint, joints: Mapping[str, Joint]
-) -> tuple[_Turning, _Turning] | None:
-    """How two wheels turn against one carrier."""
+) -> tuple[str, _Turning, _Turning] | None:
+    """A carrier, and how two wheels turn against it."""
     shared = {one.first, one.second} & {other.first, other.second}
     if shared:
         carrier = min(shared, key=(one.first, one.second).index)
-        return _against(one, carrier), _against(other, carrier)
-    for near, far, swapped in ((one, other, False), (other, one, True)):
-        for base in (near.first, near.second):
-            for carrier in (far.first, far.second):
-                for between in joints.values():
-                    if {between.first, between.second} == {base, carrier} and _on_one_axis(
-                        near, between, base
-                    ):
-                        pair = _through(near, between, base, carrier), _against(far, carrier)
-                        return (pair[1], pair[0]) if swapped else pair
+        return carrier, _against(one, carrier), _against(other, carrier)
+    for near, far in ((one, other), (other, one)):
+        for base, carrier in product((near.first, near.second), (far.first, far.second)):
+            for between in joints.values():
+                joins = {between.first, between.second} == {base, carrier}
+                if joins and _on_one_axis(near, between, base):
+                    pair = _through(near, between, base, carrier), _against(far, carrier)
+                    return (carrier, *pair) if near is one else (carrier, *pair[::-1])
     return None
 
 
 def _against(joint: Joint, carrier: str) -> _Turning:
     """The wheel at a joint's other link against the carrier."""
-    sign = 1.0 if joint.first == carrier else -1.0
-    return _Turning((Term(joint, "theta", sign),), frame_on(joint, carrier))
+    sense = 1 if joint.first == carrier else -1
+    slides = (Term(joint, "s", float(sense)),) if any(joint.type.slides) else ()
+    turn = Term(joint, "theta", float(sense))
+    return _Turning((turn,), slides, frame_on(joint, carrier), ((joint.name, -sense),))
 
 
 def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> _Turning:
@@ -211,8 +364,11 @@ def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> _Turning:
     # about the axis of the joint between them
     same = dot(frame_on(wheel, base).z, frame_on(between, base).z) > 0.0
     sign = 1.0 if same else -1.0
-    terms = tuple(term._replace(factor=sign * term.factor) for term in own.terms)
-    return _Turning((*terms, *with_base.terms), with_base.axis)
+    terms, slides = (
+        (*(t._replace(factor=sign * t.factor) for t in of_own), *of_base)
+        for of_own, of_base in ((own.terms, with_base.terms), (own.slides, with_base.slides))
+    )
+    return _Turning(terms, slides, with_base.axis, (*own.way, *with_base.way))
 
 
 def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
@@ -268,8 +424,30 @@ def _rack(
             measured=f"distance {fields.units.text(float(abs(lever)), LENGTH)}",
         )
         return None
-    turn = 1.0 if pinion.first == carrier else -1.0
+    teeth = _teeth(fields, path, section)
+    if teeth is None:
+        return None
+    wheel = _against(pinion, carrier)
     slide = 1.0 if rack.first == carrier else -1.0
     side = 1.0 if lever > 0.0 else -1.0
-    by_rack = -(turn * slide * side) / radius
-    return Relation((Term(pinion, "theta", 1.0), Term(rack, "s", by_rack)), length=False)
+    terms = (*wheel.terms, Term(rack, "s", -slide * side / radius))
+    if section.ideal:
+        return Relation(terms, length=False)
+    # from the axis square to the pitch line
+    outward = scale(side, cross(along.z, about.z))
+    tilt = abs(dot(about.z, along.z))
+    if tilt > tolerances.PARALLEL:
+        fields.error(
+            "rack-oblique",
+            (*path, "joints"),
+            f"the rack at {rack.name} does not run square to the axis of {pinion.name} as drawn",
+            "draw it square, or write ideal: true for moment and force alone",
+            measured=f"cosine of the angle between them {float(tilt):.3g}",
+            limit=f"{tolerances.PARALLEL:g}",
+        )
+        return None
+    way = (*wheel.way, (rack.name, 1 if rack.first == carrier else -1))
+    mesh = _mesh(carrier, wheel, way, radius, outward, teeth)
+    by = teeth.lead / radius
+    slides = tuple(t._replace(factor=-by * t.factor) for t in wheel.slides if by != 0.0)
+    return Relation((*terms, *slides), length=False, mesh=mesh)

@@ -286,6 +286,9 @@ def build_coefficients(
     if layouts and problem.mechanism.frictions:
         text = "there are no coefficients: where joints rub, since friction is not linear"
         fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
+    if layouts and problem.mechanism.couplings:
+        text = "there are no coefficients: of mechanisms with couplings"
+        fields.error("coupled", ("coefficients",), text, "leave out coefficients:")
     if layouts and problem.hold_idle:
         text = "there are no coefficients: where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")

@@ -95,6 +95,7 @@ class OutputCode(IntEnum):
     FRICTION_STATE = ...
     SELF_LOCKING = ...
     MULTIPLIER = ...
+    MESH_FORCE = ...
 
 class ContactCode(IntEnum):
     RADIAL = 0
@@ -240,6 +241,14 @@ class PlanBuilder:
         terms: Sequence[tuple[int, float, int, int]],
         factors: Sequence[float],
         sum: float,
+    ) -> None: ...
+    def add_mesh(
+        self,
+        carrier: int,
+        point: Triple,
+        along: Triple,
+        apart: Triple,
+        path: Sequence[tuple[int, float]],
     ) -> None: ...
     def add_place(
         self, reference: int, first: int, second: int, point_on: int, point: Triple, sign: float

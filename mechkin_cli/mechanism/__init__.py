@@ -14,6 +14,7 @@ if TYPE_CHECKING:
         Constraint as Constraint,
         DistanceConstraint as DistanceConstraint,
         InputConstraint as InputConstraint,
+        Mesh as Mesh,
         PairConstraint as PairConstraint,
         Relation as Relation,
         Term as Term,
@@ -176,7 +177,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint Relation Term",
+        "constraint": "Constraint DistanceConstraint InputConstraint Mesh PairConstraint Relation "
+        "Term",
         "curve": "Curve Ends Interpolation LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "

@@ -58,13 +58,32 @@ class Term(NamedTuple):
     factor: float
 
 
+class Mesh(NamedTuple):
+    """Teeth that a coupling acts by, on the carrier's drawing: the pitch point (m), and the force
+    on the second wheel per unit moment on the first: `along` the flank, and `apart` per magnitude,
+    both in 1/m. `way` leads from the first wheel to the second: joints, each passed from its first
+    link to its second (1) or back (-1)."""
+
+    carrier: str
+    point: Vector
+    along: Vector
+    apart: Vector
+    way: tuple[tuple[str, int], ...]
+
+
 class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
-    m)."""
+    m). It acts along its coordinates, or by a `mesh`, whose work at them is the same."""
 
     terms: tuple[Term, ...]
     length: bool
     total: float = 0.0
+    mesh: Mesh | None = None
+
+    @property
+    def pushes_apart(self) -> bool:
+        """Whether it acts by a force that goes with the magnitude of its multiplier."""
+        return self.mesh is not None and any(part != 0.0 for part in self.mesh.apart)
 
 
 OwnEdge = tuple[Joint, str, str, bool]

@@ -142,6 +142,13 @@ class Problem:
         held = hint_in_plane(name) if self.mechanism.plane else None
         return passive or held or hint_of(name, self._quantities)
 
+    def _linear(self, found: Mapping[str, Wanted]) -> Mapping[str, Wanted]:
+        """Without reactions where teeth push wheels apart, whichever way their moment acts."""
+        if not any(relation.pushes_apart for relation in self.mechanism.couplings.values()):
+            return found
+        reactions = ("force", "moment", "moment_about_origin")
+        return {name: known for name, known in found.items() if known.kind not in reactions}
+
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
         if self._known is not None:
@@ -158,7 +165,8 @@ class Problem:
                 if known.order < 3 and known.kind != "error_bound"
             }
             # efforts are given here, and linear in nothing
-            linear = {name: known for name, known in found.items() if known.kind != "effort"}
+            linear = self._linear(found)
+            linear = {name: known for name, known in linear.items() if known.kind != "effort"}
             moving = [*self.response.independent, *self.response.driven_at]
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
@@ -167,7 +175,7 @@ class Problem:
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
-            found |= coefficient_catalogue(found, motion.driven, leading)
+            found |= coefficient_catalogue(self._linear(found), motion.driven, leading)
         if motion.time is not None and leading is not None:
             found |= ledger_catalogue()
         found |= bearing_catalogue(mechanism)

@@ -107,7 +107,7 @@ def catalogue(
 
 _IN_PLANE: tuple[Kind, ...] = (
     *("point", "direction", "joint_point", "slip", "axis", "screw_point", "finite_point"),
-    *("force", "total_force", "friction_force", "shaking_force", "inertia_force"),
+    *("force", "total_force", "friction_force", "shaking_force", "inertia_force", "tooth_force"),
 )
 _ALONG_NORMAL: tuple[Kind, ...] = (
     *("omega", "alpha", "moment", "total_moment", "moment_about_origin", "friction_moment"),
@@ -176,7 +176,7 @@ def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
 
 
 def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
-    """What each applies at the first of its angles and of its slides."""
+    """What each applies at the first of its angles and of its slides, and by its teeth."""
     for name, relation in mechanism.couplings.items():
         places: dict[tuple[Kind, Dimension], str] = {}
         for term in relation.terms:
@@ -188,6 +188,8 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         for (kind, dimension), at in places.items():
             word = kind.removeprefix("coupling_")
             yield Wanted(f"{name}.{word}", kind, name, dimension, False, at)
+        if relation.mesh is not None:
+            yield Wanted(f"{name}.tooth_force", "tooth_force", name, FORCE, True)
 
 
 def friction_states(mechanism: Mechanism) -> list[Wanted]:

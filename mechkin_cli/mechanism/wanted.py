@@ -101,6 +101,7 @@ Kind = Literal[
     "coupling_force",
     "coupling_torque",
     "coupling_power",
+    "tooth_force",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

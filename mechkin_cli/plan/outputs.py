@@ -42,7 +42,7 @@ _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
 FRICTION_KINDS = {"normal_load", "friction_force", "friction_moment", "friction_power"}
-COUPLING_KINDS = {"coupling_force", "coupling_torque"}
+COUPLING_KINDS = {"coupling_force", "coupling_torque", "tooth_force"}
 REACTION_KINDS = WRENCH_KINDS | COUPLING_KINDS
 """What redundant constraints may leave open."""
 _VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
@@ -236,9 +236,11 @@ class OutputPlan:
         return self._output(code, names.index(wanted.owner), factor)
 
     def _coupling(self, wanted: Wanted) -> int:
-        """What a coupling applies along one of its coordinates."""
+        """What a coupling applies along one of its coordinates, or by its teeth."""
         layout = self.layout
         number = next(k for k, c in enumerate(layout.graph.closings) if c.name == wanted.owner)
+        if wanted.kind == "tooth_force":
+            return self._output(OutputCode.MESH_FORCE, number, layout.length)
         joint, _, coordinate = wanted.coordinate.rpartition(".")
         axis = layout.axis_number[joint, coordinate]
         rows = layout.relation_rows(layout.graph.closings[number])

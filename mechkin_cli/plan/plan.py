@@ -166,7 +166,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
-        *(_closing(layout, closing) for closing in layout.graph.closings),
+        *(each for closing in layout.graph.closings for each in _closing(layout, closing)),
         *_places(layout),
         *_axes(layout),
         *_free_motions(layout),
@@ -193,10 +193,11 @@ def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
+def _closing(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
     constraint = closing.constraint
     if constraint.terms:
-        return _relation(layout, closing)
+        yield from _relation(layout, closing)
+        return
     loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
     first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
     one, other = constraint.frames
@@ -204,8 +205,9 @@ def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
     hung = constraint.hung
     if hung is None or constraint.length is None:
         code, parameter = constraint.code, constraint.parameter
-        return record("add_closing_joint", code, first, second, *frames, parameter, loop)
-    return record(
+        yield record("add_closing_joint", code, first, second, *frames, parameter, loop)
+        return
+    yield record(
         "add_hung_links",
         layout.link_number[hung.body],
         layout.link_number[hung.rod] if hung.rod else -1,
@@ -219,12 +221,24 @@ def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
     )
 
 
-def _relation(layout: Layout, closing: CutJoint) -> PlanRecord:
+def _relation(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
     relation = layout.mechanism.couplings[closing.name]
     rows = layout.relation_rows(closing)
     total = relation.total / layout.length if relation.length else relation.total
     places = [(row.part, row.sign, row.freedom, row.axis) for row in rows]
-    return record("add_relation", relation.length, places, [row.factor for row in rows], total)
+    yield record("add_relation", relation.length, places, [row.factor for row in rows], total)
+    mesh = relation.mesh
+    if mesh is None:
+        return
+    forces = [
+        scale(layout.length, layout.vector(Attached(mesh.carrier, force)))
+        for force in (mesh.along, mesh.apart)
+    ]
+    signs, carrier = dict(closing.loop), layout.link_number[mesh.carrier]
+    point = layout.point(Attached(mesh.carrier, mesh.point))
+    way = [(layout.edge_number[name], sense) for name, sense in mesh.way]
+    path = [(k, float(signs[e] * sense)) for e, sense in way for k in layout.parts_of[e]]
+    yield record("add_mesh", carrier, point, *forces, path)
 
 
 def _places(layout: Layout) -> Iterator[PlanRecord]:

@@ -17,6 +17,7 @@ from mechkin_cli.schema.base import (
     refuse,
 )
 from mechkin_cli.schema.scalars import (
+    Angle,
     AngleOrLength,
     AnyDimension,
     Coordinate,
@@ -31,26 +32,13 @@ def _truth(value: Any) -> Any:
     return words.get(str(value).strip().lower(), value)
 
 
-def _ideal(value: bool) -> bool:
-    if not value:
-        text = "forces between teeth are not computed yet"
-        raise refuse("not-ideal", text, "write ideal: true for moments alone")
-    return value
-
-
 Truth = Annotated[
     bool,
     Rule(_truth, before=True),
     Shown(("boolean",), "true or false", (True,)),
     SchemaName("Truth"),
 ]
-Ideal = Annotated[
-    bool,
-    Rule(_truth, before=True),
-    Rule(_ideal),
-    Shown(("boolean",), "true", (True,)),
-    SchemaName("Ideal"),
-]
+
 TwoJoints = Annotated[
     tuple[Name, ...], Limits(min_length=2, max_length=2), Rule(each_once), SchemaName("TwoJoints")
 ]
@@ -73,7 +61,28 @@ class LinearCoupling(Section):
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
 
 
-class GearCoupling(Section):
+class Toothed(Section):
+    """Teeth that push on each other along their flanks."""
+
+    pressure_angle: Angle | None = None
+    """Pressure angle of the teeth, in the section square to them; left out, 0, so that the force
+    is tangential."""
+    helix: Angle | None = None
+    """Helix angle of the first wheel's teeth, positive for a right-hand helix; left out, 0, a spur
+    wheel."""
+    ideal: Truth = False
+    """Whether moments and forces along the coordinates are transmitted alone, without a force
+    between the teeth; left out, no."""
+
+    def check(self) -> None:
+        """An ideal coupling has no teeth."""
+        for key in ("pressure_angle", "helix"):
+            if self.ideal and getattr(self, key) is not None:
+                text = f"an ideal coupling has no teeth, and {key} means nothing"
+                raise refuse("two-choices", text, "leave out one of the two", key)
+
+
+class GearCoupling(Toothed):
     """Two wheels that roll on each other, with parallel axes on one carrier."""
 
     type: Literal["gear"]
@@ -84,20 +93,25 @@ class GearCoupling(Section):
     """Numbers of teeth, in the order of the joints; left out, `radii`."""
     radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)] | None = None
     """Pitch radii, in the order of the joints; left out, `teeth`."""
+    module: Length | None = None
+    """With `teeth`, their module in the section square to them, which the distance of the axes is
+    checked against; left out, it follows from that distance."""
     internal: Truth = False
-    """Whether one of the wheels is a ring with teeth inside, so that both turn the
-    same way; left out, no."""
-    ideal: Ideal
-    """`true`: the wheels transmit moments alone, without a force between their teeth."""
+    """Whether one of the wheels is a ring with teeth inside, so that both turn the same way; left
+    out, no."""
 
     def check(self) -> None:
         """The ratio is told once."""
         if (self.teeth is None) == (self.radii is None):
             text = "the ratio of a gear is told by teeth or by radii"
             raise refuse("teeth-or-radii", text, "give one of them")
+        if self.module is not None and self.teeth is None:
+            text = "a module goes with numbers of teeth"
+            raise refuse("module-alone", text, "give teeth instead of radii", "module")
+        super().check()
 
 
-class RackCoupling(Section):
+class RackCoupling(Toothed):
     """A pinion that rolls on a rack."""
 
     type: Literal["rack"]
@@ -108,8 +122,6 @@ class RackCoupling(Section):
     at: Name | None = None
     """A named point which is drawn on the rack's pitch line and tells its side of the pinion; left
     out, the point of the rack's joint."""
-    ideal: Ideal
-    """`true`: moment and force along the coordinates alone."""
 
 
 AnyCoupling = LinearCoupling | GearCoupling | RackCoupling

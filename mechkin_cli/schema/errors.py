@@ -284,7 +284,7 @@ CONTACT = (
 )
 RATIO = (
     "wheels, racks and belts are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
-    "teeth: [20, 40], ideal: true}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
+    "teeth: [20, 40]}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
 )
 CAM = (
     "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "

@@ -101,7 +101,6 @@ WRONG = {
         "not parallel",
     ),
     "no type": ("type: gear", "type: worm", "known words: linear, gear, rack"),
-    "forces asked for": ("ideal: true", "ideal: false", "forces between teeth"),
     "name taken": ("  G: {type: gear", "  A: {type: gear", "already used"),
 }
 

@@ -217,6 +217,17 @@ inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* 
   }
 }
 
+// What a relation that acts by a force exerts: teeth push along the flank that bears, and always apart.
+inline Vec3 mesh_force(const Workspace& w, const ClosingJoint& j, Pack multiplier) {
+  return multiplier * carried_vector(w, j.first, j.on_first.x) + abs(multiplier) * carried_vector(w, j.first, j.on_first.y);
+}
+inline void transmit_by_force(const Plan& p, Workspace& w, int c, Pack multiplier) {
+  const ClosingJoint& j = p.closing[c];
+  w.reaction[c] = {zero3(), {multiplier, Pack(0.0), Pack(0.0)}};
+  const Wrench r = force_at(carried_point(w, j.first, j.on_first.o), mesh_force(w, j, multiplier));
+  for (int l = j.path_begin; l < j.path_end; ++l) w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * r;
+}
+
 // A relation acts along its coordinates, on each joint's second link and opposite on its first. Its multiplier stands where
 // a closing joint's wrench does.
 inline void transmit_along_coordinates(const Plan& p, Workspace& w, int c, Pack multiplier) {
@@ -235,7 +246,7 @@ inline void take_closing_wrenches(const Plan& p, Workspace& w, int index, const 
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     if (is_relation(j.type)) {
-      transmit_along_coordinates(p, w, c, multiplier[j.row]);
+      j.path_end ? transmit_by_force(p, w, c, multiplier[j.row]) : transmit_along_coordinates(p, w, c, multiplier[j.row]);
       continue;
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {

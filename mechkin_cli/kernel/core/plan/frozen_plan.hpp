@@ -7,6 +7,7 @@
 //   add_closing_joint  on_first (12), on_second (12), parameter
 //   add_hung_links     on_first (12), on_second (12), length, line (3)
 //   add_relation       factors, sum
+//   add_mesh           point (3), along (3), apart (3)
 //   add_place          point (3)
 //   add_axis           vector (3), other_vector (3)
 //   add_input          scale

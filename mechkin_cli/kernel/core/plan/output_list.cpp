@@ -49,6 +49,10 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
       REQUIRE(r.freedom >= 0 && r.freedom < p.closing[r.index].loop_end - p.closing[r.index].loop_begin,
               "an output of an unknown term of a relation");
       return {};
+    case OUT_MESH_FORCE:
+      CHECK(check_index(r.index, 0, p.closings, "relation"));
+      REQUIRE(p.closing[r.index].path_end > 0, "an output of the force of a relation that acts by none");
+      return {};
     case OUT_EFFORT: return check_index(r.index, 0, p.inputs, "input");
     case OUT_LOAD_POWER: return check_index(r.index, -1, p.loads, "load");
     case OUT_MOTOR: return check_index(r.index, 0, p.actuators ? p.actuators : p.inputs, "motor");
@@ -66,7 +70,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_MULTIPLIER; }
+bool is_output(int type) { return type >= 0 && type <= OUT_MESH_FORCE; }
 
 int output_width(int type) {
   switch (type) {
@@ -125,6 +129,7 @@ unsigned output_demand(int type, int order) {
     case OUT_INERTIA_MOMENT:
     case OUT_REACTION_LEVEL:
     case OUT_MULTIPLIER:
+    case OUT_MESH_FORCE:
     case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return to_order[order];
   }

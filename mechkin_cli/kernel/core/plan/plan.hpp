@@ -57,6 +57,9 @@ struct ClosingJointOf {
   double slide_sign;        // a distance: rate of its length by the slide
   int row;                  // first closing equation within its block
   int loop_begin, loop_end;  // into Plan::loop
+  int path_begin, path_end;  // likewise, where a relation acts by a force between two links: the way from one to the other.
+                             // `first` carries the point of contact o and the force on the latter per multiplier, x, and
+                             // per its magnitude, y
 };
 
 // One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1). Of a relation

@@ -101,6 +101,8 @@ Refusal PlanBuilder::check_order() const {
       REQUIRE(j.slide < 0 || placed(j.slide), "a hung body's rod must be placed by its block or before");
       for (int l = j.loop_begin; l < j.loop_end; ++l)
         REQUIRE(placed(loop_[l].joint), "a loop's joints must be placed by its block or before");
+      for (int l = j.path_begin; l < j.path_end; ++l)
+        REQUIRE(placed(loop_[l].joint), "a force's way must be placed by its block or before");
     }
     for (int u = block_[b].column_begin; u < block_[b].column_end; ++u)
       REQUIRE(placed_by_[column_joint_[unknown_[u]]] == b, "a block's unknowns are of joints that it places");

@@ -34,6 +34,8 @@ class PlanBuilder {
                double length, const Triple& line, double slide_sign, const Loop& loop);
   // The next closing equation: the sum of terms, each with its factor, is `sum`; a length, or an angle. Axes may come later.
   Refusal add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors, double sum);
+  // The last relation acts by a force, see ClosingJoint, at a point of `carrier`, on the end of the way `path`.
+  Refusal add_mesh(int carrier, const Triple& point, const Triple& along, const Triple& apart, const Loop& path);
   // The next joint as its user knows it, see JointPlace; returns its number.
   Result<int> add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.

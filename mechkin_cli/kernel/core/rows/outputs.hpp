@@ -120,6 +120,7 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_JOINT_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return three(factor * output_joint(p, w, o.type, o.index));
     case OUT_HOLDING_MOMENT: return one(factor * w.holding[o.index]);
+    case OUT_MESH_FORCE: return three(factor * mesh_force(w, p.closing[o.index], w.reaction[o.index].force.x));
     case OUT_MULTIPLIER: return one(factor * output_multiplier(p, w, o));
     case OUT_REACTION_LEVEL: return one(factor * balance->level);
     case OUT_MOTOR: return one(factor * w.actuation.motor[o.index]);
