@@ -22,7 +22,7 @@ from math import pi
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, is_coordinate, place_at
-from mechkin_cli.diagnostics import Number, nearest_hint
+from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import (
     Frame,
     Joint,
@@ -38,6 +38,7 @@ from mechkin_cli.mechanism import (
     norm,
     scale,
     subtract,
+    unit,
 )
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import (
@@ -71,11 +72,12 @@ def build_couplings(
 ) -> dict[str, Relation]:
     """The relations of a file's couplings; errors are noted in `fields`."""
     found: dict[str, Relation | None] = {}
+    drawn = not fields.error_count  # else axes may be none
     for name, section in couplings.items():
         path: Path = ("couplings", name)
         if isinstance(section, LinearCoupling):
             found[name] = _linear(fields, path, section, joints)
-        elif not _are_joints(fields, path, section.joints, joints):
+        elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):
             found[name] = _gear(fields, path, section, joints)
@@ -181,21 +183,11 @@ def _gear(
         )
         return None
     carrier, first, second = pair
-    tilt = norm(cross(first.axis.z, second.axis.z))
-    if tilt > tolerances.PARALLEL:
-        fields.error(
-            "axes-not-parallel",
-            (*path, "joints"),
-            f"the axes of {wheels[0].name} and {wheels[1].name} are not parallel as drawn",
-            "draw them parallel; other gears are couplings of type linear",
-            measured=f"sine of the angle between them {tilt:.3g}",
-            limit=f"{tolerances.PARALLEL:g}",
-            numbers=(Number("sine of the angle", float(tilt), limit=tolerances.PARALLEL),),
-        )
-        return None
     teeth = _teeth(fields, path, section)
     if numbers is None or teeth is None:
         return None
+    if norm(cross(first.axis.z, second.axis.z)) > tolerances.PARALLEL:
+        return _oblique(fields, path, section, pair, numbers, teeth)
     same = dot(first.axis.z, second.axis.z) > 0.0
     ratio = numbers[1] / numbers[0]
     ratio = -ratio if same == section.internal else ratio
@@ -276,7 +268,17 @@ def _pitch_circles(
         return None
     wanted = None
     if section.radii is not None:
-        wanted = total
+        one_radius, other_radius = (
+            fields.number((*path, "radii", i), text, LENGTH) for i, text in enumerate(section.radii)
+        )
+        wanted = other_radius - one_radius if section.internal else one_radius + other_radius
+        wanted = -wanted if is_ring else wanted
+        if abs(one_radius * numbers[1] - other_radius * numbers[0]) > tolerances.PARALLEL * (
+            one_radius * numbers[1]
+        ):
+            text = "teeth and radii tell different ratios"
+            fields.error("teeth-do-not-fit", (*path, "radii"), text, "leave out one of the two")
+            return None
     elif section.module is not None:
         module = fields.number((*path, "module"), section.module, LENGTH)
         wanted = module * total / (2.0 * teeth.cosine)
@@ -295,6 +297,148 @@ def _pitch_circles(
     # a ring and its pinion have their pitch point beyond the pinion's axis, seen from the ring's
     beyond = -1.0 if section.internal and not is_ring else 1.0
     return numbers[0] * distance / total, scale(beyond / distance, across), is_ring
+
+
+def _oblique(
+    fields: Fields,
+    path: Path,
+    section: GearCoupling,
+    pair: tuple[str, _Turning, _Turning],
+    numbers: tuple[float, float],
+    teeth: _Teeth,
+) -> Relation | None:
+    """Wheels whose axes meet (bevel wheels), or pass each other (crossed helical wheels, worms)."""
+    carrier, first, second = pair
+    one, other = first.axis, second.axis
+    if section.internal:
+        text = "a ring with teeth inside has an axis parallel to its pinion's"
+        hint = "draw the axes parallel, or leave out internal"
+        fields.error("oblique-ring", (*path, "internal"), text, hint)
+        return None
+    normal, apart = cross(one.z, other.z), subtract(other.o, one.o)
+    square = dot(normal, normal)
+    foot = add(one.o, scale(dot(cross(apart, other.z), normal) / square, one.z))
+    far = add(other.o, scale(dot(cross(apart, one.z), normal) / square, other.z))
+    gap = subtract(far, foot)
+    radius = 1.0
+    if section.radii is not None:
+        radius = fields.number((*path, "radii", 0), section.radii[0], LENGTH)
+    elif not section.ideal:
+        text = "the axes of these wheels are not parallel: teeth alone do not tell where they mesh"
+        hint = "give radii, of bevel wheels at the middle of their faces, or write ideal: true"
+        fields.error("no-radii", path, text, hint)
+        return None
+    meet = norm(gap) <= tolerances.PARALLEL * max(norm(apart), norm(subtract(one.o, foot)))
+    find = _bevel if meet else _crossed
+    mesh = find(fields, path, section, (first, second), numbers, teeth, (foot, gap, radius))
+    if mesh is None:
+        return None
+    by_turn, by_slide = _work(mesh, other)
+    ratio = numbers[1] / numbers[0]
+    if not section.ideal and abs(abs(by_turn) - ratio) > tolerances.PARALLEL * ratio:
+        fields.error(
+            "teeth-do-not-fit",
+            path,
+            "by its radii and helix the second wheel turns another amount than by its teeth",
+            "of bevel wheels radii are in proportion to teeth, of crossed ones radii by the cosine "
+            "of the helix",
+            measured=f"{float(1.0 / abs(by_turn)):.9g} turns for one of the first wheel",
+            limit=f"{float(1.0 / ratio):.9g}",
+        )
+        return None
+    ratio = ratio if by_turn > 0.0 else -ratio
+    terms = (*first.terms, *(t._replace(factor=ratio * t.factor) for t in second.terms))
+    if section.ideal:
+        return Relation(terms, length=False)
+    own = -dot(mesh.along, one.z)
+    slides = (
+        *(t._replace(factor=own * t.factor) for t in first.slides),
+        *(t._replace(factor=by_slide * t.factor) for t in second.slides),
+    )
+    mesh = mesh._replace(carrier=carrier)
+    return Relation((*terms, *(t for t in slides if t.factor != 0.0)), length=False, mesh=mesh)
+
+
+def _work(mesh: Mesh, axis: Frame) -> tuple[float, float]:
+    """What the force of a mesh along its flank does at a turn about, and a slide along, an axis."""
+    arm = subtract(mesh.point, axis.o)
+    return dot(cross(arm, mesh.along), axis.z), dot(mesh.along, axis.z)
+
+
+def _bevel(
+    fields: Fields,
+    path: Path,
+    section: GearCoupling,
+    wheels: tuple[_Turning, _Turning],
+    numbers: tuple[float, float],
+    teeth: _Teeth,
+    place: tuple[Vector, Vector, float],
+) -> Mesh | None:
+    """Teeth of pitch cones with one apex, which lie on the side of their joints' points."""
+    first, second = wheels
+    apex, _, radius = place
+    if teeth.lead != 0.0 and not section.ideal:
+        text = "these axes meet: forces of spiral teeth are not computed"
+        fields.error(
+            "spiral-bevel", (*path, "helix"), text, "leave out helix, or write ideal: true"
+        )
+        return None
+    ways = [subtract(wheel.axis.o, apex) for wheel in wheels]
+    for number, way in enumerate(ways):
+        if norm(way) == 0.0:
+            text = f"the point of {section.joints[number]} is where the axes of both wheels meet"
+            hint = "draw it where the wheel is, on its side of that point"
+            fields.error("wheel-at-apex", (*path, "joints", number), text, hint)
+            return None
+    one, other = (unit(way) for way in ways)
+    across = subtract(other, scale(dot(one, other), one))
+    outward = unit(across)
+    # the pitch line lies between the axes, its distances from them in proportion to the teeth
+    line = unit(add(scale(numbers[1] / numbers[0] + dot(one, other), one), across))
+    sine, cosine = dot(line, outward), dot(line, one)
+    point = add(apex, scale(radius / sine, line))
+    along = scale(-1.0 / radius, cross(first.axis.z, outward))
+    push = add(scale(-sine, one), scale(cosine, outward))
+    apart = scale(teeth.pressure / radius, push)
+    return Mesh("", point, along, apart, (*first.way, *second.back))
+
+
+def _crossed(
+    fields: Fields,
+    path: Path,
+    section: GearCoupling,
+    wheels: tuple[_Turning, _Turning],
+    numbers: tuple[float, float],
+    teeth: _Teeth,
+    place: tuple[Vector, Vector, float],
+) -> Mesh | None:
+    """Helical teeth that meet in one point between the axes."""
+    first, second = wheels
+    foot, gap, radius = place
+    if section.helix is None or section.teeth is None:
+        text = "these axes pass each other: such wheels have teeth with a helix angle"
+        hint = "give teeth, and the helix of the first wheel (of a worm 90 deg less its lead angle)"
+        fields.error("no-helix", path, text, hint)
+        return None
+    distance = norm(gap)
+    if section.radii is not None:
+        total = radius + fields.number((*path, "radii", 1), section.radii[1], LENGTH)
+        if abs(total - distance) > tolerances.PARALLEL * distance:
+            measured, limit = (fields.units.text(float(x), LENGTH) for x in (distance, total))
+            fields.error(
+                "centre-distance",
+                (*path, "radii"),
+                "the wheels do not mesh where they are drawn",
+                "draw the axes at the sum of the pitch radii",
+                measured=f"axes {measured} apart",
+                limit=limit,
+            )
+            return None
+    else:
+        radius = 0.5 * distance  # which way the second wheel turns does not depend on it
+    outward = scale(1.0 / distance, gap)
+    moved = first._replace(axis=first.axis._replace(o=foot))
+    return _mesh("", moved, (*first.way, *second.back), radius, outward, teeth)
 
 
 def _mesh(

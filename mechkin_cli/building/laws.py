@@ -531,6 +531,9 @@ class Following:
                 hint = (
                     f"inputs are {inputs}" if inputs else "drive it, too; there are no other inputs"
                 )
+                if name in coordinates:
+                    hint += f"; a gear or rack between {used} and {name} is a coupling: couplings: "
+                    hint += f"{{K: {{type: linear, terms: {{{name}: 1, {used}: ...}}}}}}"
             else:
                 continue
             if not self.fields.is_refused(used):

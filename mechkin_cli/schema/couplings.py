@@ -76,23 +76,24 @@ class Toothed(Section):
 
     def check(self) -> None:
         """An ideal coupling has no teeth."""
-        for key in ("pressure_angle", "helix"):
-            if self.ideal and getattr(self, key) is not None:
-                text = f"an ideal coupling has no teeth, and {key} means nothing"
-                raise refuse("two-choices", text, "leave out one of the two", key)
+        if self.ideal and self.pressure_angle is not None:
+            text = "an ideal coupling has no teeth that push"
+            raise refuse("two-choices", text, "leave out one of the two", "pressure_angle")
 
 
 class GearCoupling(Toothed):
-    """Two wheels that roll on each other, with parallel axes on one carrier."""
+    """Two wheels that mesh, on one carrier: with parallel axes; bevel wheels, whose axes meet; or
+    crossed helical wheels, such as a worm and its wheel, whose axes pass each other."""
 
     type: Literal["gear"]
     joints: TwoJoints
     """The R or C joints of the two wheels, which turn on one link, the carrier; where a wheel turns
     on another link, that is joined to the carrier about the same axis."""
     teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)] | None = None
-    """Numbers of teeth, in the order of the joints; left out, `radii`."""
+    """Numbers of teeth, of a worm its threads, in the order of the joints; left out, `radii`."""
     radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)] | None = None
-    """Pitch radii, in the order of the joints; left out, `teeth`."""
+    """Pitch radii, in the order of the joints, of bevel wheels at the middle of their faces; left
+    out, `teeth`."""
     module: Length | None = None
     """With `teeth`, their module in the section square to them, which the distance of the axes is
     checked against; left out, it follows from that distance."""
@@ -101,10 +102,10 @@ class GearCoupling(Toothed):
     out, no."""
 
     def check(self) -> None:
-        """The ratio is told once."""
-        if (self.teeth is None) == (self.radii is None):
+        """The ratio is told."""
+        if self.teeth is None and self.radii is None:
             text = "the ratio of a gear is told by teeth or by radii"
-            raise refuse("teeth-or-radii", text, "give one of them")
+            raise refuse("teeth-or-radii", text, "give at least one of them")
         if self.module is not None and self.teeth is None:
             text = "a module goes with numbers of teeth"
             raise refuse("module-alone", text, "give teeth instead of radii", "module")

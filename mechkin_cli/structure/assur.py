@@ -93,7 +93,12 @@ def coupled_groups(
         found: their own groups, as `assur_groups` gives them.
         couplings: their joints are among the components' connections.
     """
-    number = {c.name: k for k, part in enumerate(components) for c in part.connections}
+    number = {
+        name: k
+        for k, part in enumerate(components)
+        for c in part.connections
+        for name in c.constraint.joints
+    }
     members = [sorted({number[t.joint.name] for t in c.constraint.terms}) for c in couplings]
     short = [0 if undriven is None else undriven[1] for _, undriven in found]
     matching = Matching(
@@ -120,7 +125,7 @@ def coupled_groups(
 def _joined_by(groups: Sequence[AssurGroup], coupling: Connection) -> list[AssurGroup]:
     """The groups of a coupling's joints as one with it, in the place of the first."""
     joints = {term.joint.name for term in coupling.constraint.terms}
-    inside = [any(c.name in joints for c in group.connections) for group in groups]
+    inside = [any(joints & set(c.constraint.joints) for c in group.connections) for group in groups]
     own = [group for group, member in zip(groups, inside, strict=True) if member]
     links = tuple(link for group in own for link in group.links)
     connections = tuple(c for group in own for c in group.connections)

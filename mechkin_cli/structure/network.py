@@ -246,7 +246,7 @@ def connections_of(
 
 def couplings_of(whole: Reduction, connections: Iterable[Connection]) -> list[Connection]:
     """The constraints between joints anywhere, each with the links of these."""
-    ends = {c.name: c.ends for c in connections}
+    ends = {name: c.ends for c in connections for name in c.constraint.joints}
     found = []
     for c in whole.constraints:
         links = dict.fromkeys(link for term in c.terms for link in ends[term.joint.name])

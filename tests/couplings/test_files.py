@@ -95,11 +95,6 @@ WRONG = {
     "no teeth": ("teeth: [n, 50], ", "", "told by teeth or by radii"),
     "negative teeth": ("[n, 50]", "[n, -50]", "the teeth of a wheel are -50"),
     "unknown joint": ("[A, B]", "[A, Q]", "there is no joint Q"),
-    "axes not parallel": (
-        "[0.6, 0, 0], axis: [1, 2, 2]",
-        "[0.6, 0, 0], axis: [1, 2, 0]",
-        "not parallel",
-    ),
     "no type": ("type: gear", "type: worm", "known words: linear, gear, rack"),
     "name taken": ("  G: {type: gear", "  A: {type: gear", "already used"),
 }

@@ -48,7 +48,7 @@ def test_a_spur_pair_pushes_its_bearings(words: str, slope: float, load: float) 
 
 
 def test_a_pinion_in_a_ring() -> None:
-    """Ring 60, pinion 20 teeth, axes 20 mm apart: radii 30 and 10 mm; the ring is pushed outward."""
+    """Ring 60, pinion 20 teeth, axes 20 mm apart: radii 30 and 10 mm; both are pushed apart."""
     text = (
         HEAD
         + """
@@ -171,7 +171,7 @@ WRONG = {
         "teeth: [20, 40], pressure_angle: 95",
         "no teeth with a pressure",
     ),
-    "ideal": ("teeth: [20, 40]", "teeth: [20, 40], helix: 10, ideal: true", "has no teeth"),
+    "ideal": ("teeth: [20, 40]", "teeth: [20, 40], pressure_angle: 20, ideal: true", "no teeth"),
     "coaxial": ("point: [60, 0]", "point: [0, 0]", "no pitch point"),
 }
 
