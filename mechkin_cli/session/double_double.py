@@ -330,7 +330,7 @@ class Precise:
         mechanism = own.mechanism
         parts: dict[str, Any] = {
             name: {key: self._recorded(part) for key, part in getattr(mechanism, name).items()}
-            for name in ("links", "joints", "points", "directions")
+            for name in ("links", "joints", "points", "directions", "couplings")
         }
         for name in ("loads", "frictions"):
             parts[name] = tuple(map(self._recorded, getattr(mechanism, name)))
@@ -370,7 +370,7 @@ class Precise:
             *zip(own.load_laws, recorded.load_laws, strict=True),
             *zip(own.held, recorded.held, strict=True),
         ]
-        for name in ("links", "joints", "points", "directions"):
+        for name in ("links", "joints", "points", "directions", "couplings"):
             parts = getattr(recorded.mechanism, name)
             pairs += [(part, parts[key]) for key, part in getattr(own.mechanism, name).items()]
         return {id(one): (one, other) for one, other in pairs}

@@ -64,6 +64,24 @@ def test_teeth_may_be_parameters() -> None:
     assert len({row.tobytes() for row in rows}) == 1
 
 
+def test_slopes_by_teeth_and_by_a_helix() -> None:
+    """B = n/50 A; the thrust's moment on the wheel goes with the tangent of the helix."""
+    slopes = mk.loads(SPACE).sensitivities(["B.theta"], ["n"])
+    turn = np.linspace(0.0, 40.0, 5)
+    np.testing.assert_allclose(slopes["B.theta", "n"], turn / 50.0, rtol=1e-9, atol=1e-12)
+    text = SPACE.replace("parameters: {n: 20}", "parameters: {n: 20, beta: 0.5 rad}")
+    text = text.replace("ideal: true", "helix: beta").replace("type: C", "type: R")
+    text = text.replace("    A.s: {at: 0.1}\n", "").replace("{mass: 1, center", "{mass: 0, center")
+    text = text.replace("xx: 1, yy: 1, zz: 1", "")
+    model = mk.loads(text)
+    slopes = model.sensitivities(["norm(G.tooth_force)"], ["beta"])
+    # a third of 1 N m at 30/70 of the distance of the axes; the force is that over the cosine
+    apart = 0.6 * np.sqrt(8.0) / 3.0
+    size = 1.0 / 3.0 / (apart * 5.0 / 7.0)
+    found = slopes["norm(G.tooth_force)", "beta"]
+    np.testing.assert_allclose(found, size * np.sin(0.5) / np.cos(0.5) ** 2, rtol=1e-7)
+
+
 def test_rows_are_proven_and_their_errors_known() -> None:
     model = mk.loads(SPACE)
     assert set(model.certify().status) == {"proven"}

@@ -102,8 +102,10 @@ class Hostile:
             first, second = self.index(-1, links), self.index(-1, links)
             loop = [(self.index(0, links), self.sign()) for _ in range(links)]
             ends = self.frame(), self.frame()
-            if self.random.random() < 0.8:
-                arguments = (self.index(0, 14), first, second, *ends, self.number(), loop)
+            if self.random.random() < 0.2:
+                self.relation(builder, links, loop)
+            elif self.random.random() < 0.8:
+                arguments = (self.index(0, 17), first, second, *ends, self.number(), loop)
                 self.attempt(builder.add_closing_joint, *arguments)
             else:
                 body, rod = self.index(0, links), self.index(-1, links)
@@ -111,6 +113,18 @@ class Hostile:
                 arguments = (body, rod, first, second, *ends, self.number(), line, self.sign())
                 self.attempt(builder.add_hung_links, *arguments, loop)
         return closings
+
+    def relation(self, builder: Any, links: int, loop: list[tuple[int, float]]) -> None:
+        terms = [
+            (self.index(0, links), self.sign(), self.index(-1, 2), self.index(0, 2))
+            for _ in range(links)
+        ]
+        factors = [self.number() for _ in terms]
+        is_length = self.random.random() < 0.5
+        self.attempt(builder.add_relation, is_length, terms, factors, self.number())
+        if self.random.random() < 0.5:
+            vectors = self.numbers(3), self.numbers(3), self.numbers(3)
+            self.attempt(builder.add_mesh, self.index(-1, links), *vectors, loop)
 
     def places(self, builder: Any, links: int, closings: int) -> tuple[int, int]:
         count = self.random.randint(0, 3)
