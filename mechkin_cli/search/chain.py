@@ -184,6 +184,10 @@ AT_SIX_DISTANCES = 40
 
 def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
+    coupled = [bool(graph.closings[c].constraint.terms) for c in block.closings]
+    if any(coupled):
+        # couplings alone are linear
+        return 1 if all(coupled) and block.equations == len(block.unknowns) else None
     if all(graph.closings[c].constraint.length is not None for c in block.closings):
         return _bound_of_distances(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
