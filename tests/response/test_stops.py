@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,31 @@ def test_a_stone_is_stopped(stop: str, rate: float, moment: float) -> None:
         3 + rate * moment - 9.81 * moment**2 / 2, abs=EXACT * 10
     )
     assert str(found["row.event"][-1])
+
+
+APEX = (
+    "{dead_centre: S.s}",
+    "{dead_centre: S.s, count: 2}",
+    "{value: S.s_dot, at: 0, count: 3}",
+    "{value: 'max(S.s - 99 m, 0.5 s*S.s_dot)', at: 0 m, count: 2}",
+    "{value: '2*S.s_dot', at: 0, direction: down}",
+)
+
+
+@pytest.mark.parametrize(
+    "stops",
+    [
+        stops
+        for stops in [*permutations(APEX, 2), *list(permutations(APEX))[::17]]
+        if APEX[0] in stops or APEX[4] in stops
+    ],
+)
+def test_of_stops_met_at_one_moment_any_order_ends_there(stops: tuple[str, ...]) -> None:
+    """Some of them pass there without ending the motion, which the one that ends it must not see."""
+    found = respond(FALL.format(stop=", ".join(stops), rate=8))
+    assert last_time(found) == pytest.approx(8 / 9.81, rel=EXACT)
+    assert found["S.s"][-1] == pytest.approx(3 + 64 / (2 * 9.81), rel=EXACT)
+    assert found["S.s_dot"][-1] == pytest.approx(0, abs=EXACT * 10)
 
 
 def test_what_never_happens_ends_nothing() -> None:
