@@ -62,18 +62,41 @@ void ChartedMotion::begin_slips() {
   s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
-  for (int l = 0; l < lanes_; ++l) {
-    std::vector<double> v;
-    for (int i = 0; i < plan_.charts; ++i) v.push_back(at(rate, i, l));
-    for (double x : v) s.fastest[l] = std::max(s.fastest[l], std::fabs(x));
-    evaluate_here(l, v, &trial_);
-    for (int k = 0; k < n; ++k)
-      if (rubs(l, k) && slip_columns(k) == 1) sense(l, k) = at(trial_.slip.rate, s.first[k], l) < 0.0 ? -1.0 : 1.0;
-    settle(l, -1, &v);
-    arm(trial_, l);
-  }
+  for (int l = 0; l < lanes_; ++l) begin_slips(l);
   place_.assign(place_.size(), 0.0), rate_ = rate;
   for (int l = 0; l < lanes_; ++l) elapsed_[l] = 0.0;
+}
+
+void ChartedMotion::begin_slips(int lane) {
+  SlipMemory& s = slips_;
+  const std::vector<double> y = start();
+  std::vector<double> v;
+  for (int i = 0; i < plan_.charts; ++i) v.push_back(y[(std::size_t)(plan_.charts + i) * lanes_ + lane]);
+  for (double x : v) s.fastest[lane] = std::max(s.fastest[lane], std::fabs(x));
+  for (int k = 0; k < plan_.frictions; ++k) sense(lane, k) = 1.0;
+  evaluate_here(lane, v, &trial_);
+  for (int k = 0; k < plan_.frictions; ++k)
+    if (rubs(lane, k) && slip_columns(k) == 1) sense(lane, k) = at(trial_.slip.rate, s.first[k], lane) < 0.0 ? -1.0 : 1.0;
+  settle(lane, -1, &v);
+  arm(trial_, lane);
+}
+
+// The forces that decide what sticks are those on the sides of kinks where the lanes start.
+void ChartedMotion::begin(const signed char* side, unsigned char* lanes) {
+  const int kinks = plan_.law.kinks;
+  const Packed place = place_, rate = rate_, elapsed = elapsed_;
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    bool is_other = false;
+    for (int k = 0; k < kinks; ++k) {
+      const double now = side[k * lanes_ + l];
+      is_other = is_other || now != decided_by_[k * lanes_ + l];
+      decided_by_[k * lanes_ + l] = side_[k * lanes_ + l] = now;
+    }
+    lanes[l] = plan_.frictions && is_other;
+    if (lanes[l]) begin_slips(l);
+  }
+  place_ = place, rate_ = rate, elapsed_ = elapsed;
 }
 
 // Of a joint's columns.

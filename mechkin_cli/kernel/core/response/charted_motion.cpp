@@ -71,6 +71,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
+  decided_by_ = side_;
   if (plan_.frictions) begin_slips();
   evaluate(place_.data(), rate_.data(), &found_);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;

@@ -86,6 +86,7 @@ class ChartedMotion : public Motion {
   int quadratures() const override { return works() + (plan_.frictions ? slips_.columns + plan_.frictions : 0); }
   int works() const override { return 2; }
   std::vector<SwitchKind> switches() const override;
+  void begin(const signed char* side, unsigned char* lanes) override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
@@ -143,6 +144,7 @@ class ChartedMotion : public Motion {
   // charted_friction.cpp
   SlipStage make_slips() const;
   void begin_slips();
+  void begin_slips(int lane);
   // A switch for each friction, and one for those that rest with forces that are not unique.
   int slip_switches() const { return plan_.frictions ? plan_.frictions + 1 : 0; }
   bool rubs(int lane, int k) const;
@@ -250,6 +252,7 @@ class ChartedMotion : public Motion {
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
   Packed inputs_, input_rates_, input_seconds_, time_, side_;
+  Packed decided_by_;  // kinks x lanes: the sides by which it was decided at the start what sticks
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;
