@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import response as response_room
+from mechkin_cli import response as response_room, tolerances
 from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.arguments import (
     Setting,
@@ -135,6 +135,9 @@ def _input_value(problem: Problem, name: str, value: Setting) -> float:
         found = constant_in_file_units(text, dimension, problem.units, resolve)
         if is_tiny_length(problem.units.to_si(found, dimension), dimension):
             raise ExpressionError("this length is too small", 0, "check its exponent and unit")
+        if not abs(found) <= tolerances.LARGEST_NUMBER:
+            large = f"this is too large to compute with (limit {tolerances.LARGEST_NUMBER:g})"
+            raise ExpressionError(large, 0, "check its exponent and unit")
         return found
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""

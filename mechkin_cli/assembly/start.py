@@ -281,10 +281,11 @@ def _by_name(modes: NamedModes, name: str) -> AssemblyStart:
     for i, letter in modes.letters.items():
         if letter == name:
             return AssemblyStart(modes.found.states[:, i], name, "by name")
+    shown = name[:LONGEST_NAME] or '""'
     diagnostic = Diagnostic(
         "no-such-mode",
         "error",
-        f"there is no mode {name[:LONGEST_NAME]} at the first row",
+        f"there is no mode {shown} at the first row",
         measured=f"modes {_letters(list(modes.letters.values()))}",
         hint="take one of these",
     )

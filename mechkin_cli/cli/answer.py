@@ -195,6 +195,8 @@ def _place(texts: list[str] | None) -> str | dict[str, str] | None:
         name, equals, value = text.partition("=")
         if not equals or not value.strip():
             raise UsageError(f"--at {text}: expected INPUT=VALUE, for example O1.theta=50")
+        if name.strip() in place:
+            raise UsageError(f"--at gives {name.strip()} twice; leave one of them out")
         place[name.strip()] = value.strip()
     return place
 

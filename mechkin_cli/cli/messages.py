@@ -108,6 +108,8 @@ def content_of(path: Path) -> bytes:
     """
     try:
         return reading.read_regular(path, reading.MOST_TABLE_BYTES)
+    except FileNotFoundError:
+        raise UsageError(f"there is no file {path}; check its name, and the folder") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(f"cannot read {path}: {reason}; make it readable") from None
@@ -306,12 +308,14 @@ def parameters(settings: list[str] | None) -> dict[str, str]:
     """NAME=VALUE texts as a mapping.
 
     Raises:
-        UsageError: a text without `=`.
+        UsageError: a text without `=`, or a name given twice.
     """
     values = {}
     for text in settings or ():
         name, equals, value = text.partition("=")
         if not equals or not name.strip() or not value.strip():
             raise UsageError(f"--set {text}: expected NAME=VALUE, for example --set P1=0.6in")
+        if name.strip() in values:
+            raise UsageError(f"--set gives {name.strip()} twice; leave one of them out")
         values[name.strip()] = value.strip()
     return values

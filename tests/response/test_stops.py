@@ -79,7 +79,7 @@ APEX = (
     ],
 )
 def test_of_stops_met_at_one_moment_any_order_ends_there(stops: tuple[str, ...]) -> None:
-    """Some of them pass there without ending the motion, which the one that ends it must not see."""
+    """Some of them pass there without ending the motion, which must not move the end."""
     found = respond(FALL.format(stop=", ".join(stops), rate=8))
     assert last_time(found) == pytest.approx(8 / 9.81, rel=EXACT)
     assert found["S.s"][-1] == pytest.approx(3 + 64 / (2 * 9.81), rel=EXACT)
