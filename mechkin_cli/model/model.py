@@ -758,11 +758,11 @@ def load(
     """
     place = None if folder is None else a_path("folder", folder)
     if isinstance(path, Mapping):
-        return Model(Design(build(open_data(path, DATA, _texts(parameters), place)), DATA))
+        return Model(Design(build(*open_data(path, DATA, _texts(parameters), place)), DATA))
     if isinstance(path, str) and "\n" in path:
         raise UsageError("path: this is a text of several lines, no path; use loads(text)")
     path = a_path("path", path)
-    return Model(Design(build(open_file(path, _texts(parameters))), path.stem))
+    return Model(Design(build(*open_file(path, _texts(parameters))), path.stem))
 
 
 def loads(
@@ -789,7 +789,7 @@ def loads(
         shown = text.strip()[:LONGEST_NAME]
         raise UsageError(f"text: this looks like the name of a file; use load({shown!r})")
     place = None if folder is None else a_path("folder", folder)
-    built = build(open_text(text, name, _texts(parameters), place))
+    built = build(*open_text(text, name, _texts(parameters), place))
     return Model(Design(built, Path(name).stem))
 
 

@@ -153,7 +153,7 @@ class Study:
 
     def contents(self, file_format: str) -> Contents:
         """What a folder with this study's results holds."""
-        document, known = self.model.built.read.document, self.model.problem.parameters
+        document, known = self.model.built.document, self.model.problem.parameters
         values = dict(document.overrides) | {n: repr(known[n].value) for n in known}
         study = dict(self.source.document.data)
         for key in ("mechanism", "name"):
@@ -261,7 +261,7 @@ class Study:
                 cannot be written; pieces that were written stay.
         """
         workers, kind = _checked(workers), format_of(file_format)
-        spare(folder, [*self.model.built.read.document.files, *self.source.document.files])
+        spare(folder, [*self.model.built.document.files, *self.source.document.files])
         with StudyFolder(folder, self.contents(file_format), kind, self.piece) as output:
             output.begin(again)
             missing = [] if output.is_complete else output.missing()

@@ -197,7 +197,8 @@ class Base:
         """
         known = self.design.problem.parameters
         given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
-        return build(self.design.built.read, given)
+        built = self.design.built
+        return build(built.file, built.document, given)
 
 
 def base_of(design: Design) -> Base:
