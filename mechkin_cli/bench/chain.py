@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from mechkin_cli.mechanism import Frame
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Joint, Part
+    from mechkin_cli.mechanism import Constraint, Joint, Part
     from mechkin_cli.plan import Layout
-    from mechkin_cli.structure import CutJoint
 
 
 GROUND = -1
@@ -179,8 +178,8 @@ class _Builder:
             self.states.append(None if state is None else state + (0 if kind.is_ball else local))
         return TreeDisplacement(part.letter, part.before, part.after, joint.pitch, first)
 
-    def _closing(self, closing: CutJoint) -> Closed:
-        joint, constraint, bodies = closing.joint, closing.constraint, self.layout.link_number
+    def _closing(self, constraint: Constraint) -> Closed:
+        joint, bodies = constraint.joint, self.layout.link_number
         first, second = bodies[constraint.first], bodies[constraint.second]
         if constraint.length is not None:
             one, other = (at.vector for at in constraint.points)

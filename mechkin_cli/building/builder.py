@@ -295,7 +295,7 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
         if block.equations <= MOST_EQUATIONS:
             continue
         closings = [graph.closings[c] for c in block.closings]
-        members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
+        members = {graph.edges[k].joint.name for k in graph.passed(block)}
         joints = sorted(members | {closing.joint.name for closing in closings})
         fields.error(
             "block-too-large",

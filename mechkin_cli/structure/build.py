@@ -20,7 +20,7 @@ from math import comb, prod
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
 from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
-from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge
+from mechkin_cli.structure.graph import Block, Loop, SolverGraph, TreeEdge
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
     Connection,
@@ -103,17 +103,18 @@ def in_order(
 def lay_blocks(
     order: Sequence[Sequence[AssurGroup]],
     edges: Sequence[TreeEdge],
-    closings: Mapping[str, CutJoint],
+    closings: Mapping[str, tuple[Constraint, Loop]],
     place: Mapping[str, int],
     driven: Sequence[Freedom],
-) -> tuple[list[CutJoint], list[Block], set[Freedom]]:
-    """Closings in block order, the blocks, and the freedoms that are known in the end.
+) -> tuple[list[tuple[Constraint, Loop]], list[Block], set[Freedom]]:
+    """Closings with their loops in block order, the blocks, and the freedoms that are known in the
+    end.
 
     Raises:
         NothingSolved: a block has no unknowns.
     """
     solved = set(driven)
-    laid: list[CutJoint] = []
+    laid: list[tuple[Constraint, Loop]] = []
     blocks: list[Block] = []
     for part in order:
         connections = [c for group in part for c in group.connections]
@@ -121,15 +122,15 @@ def lay_blocks(
         if not names:
             continue
         some = [closings[name] for name in names]
-        members = sorted({k for closing in some for k, _ in closing.loop})
+        members = sorted({k for _, loop in some for k, _ in loop})
         freedoms = [(k, f) for k in members for f in range(edges[k].freedoms)]
         unknowns = tuple(freedom for freedom in freedoms if freedom not in solved)
-        equations = sum(closing.equations for closing in some)
+        equations = sum(closing.equations for closing, _ in some)
         if not unknowns:
             loops = [
-                [closing.name, *(edges[k].joint.name for k, _ in closing.loop)]
-                for closing in some
-                if closing.constraint.has_coordinates
+                [closing.name, *(edges[k].joint.name for k, _ in loop)]
+                for closing, loop in some
+                if closing.has_coordinates
             ]
             raise NothingSolved(connections, loops, equations)
         start = len(laid)
@@ -176,12 +177,12 @@ class TreePaths:
             self.depth[edge.child] = self.depth[edge.parent] + 1
         self.number = {edge.joint.name: k for k, edge in enumerate(edges) if not edge.hung}
 
-    def closing(self, constraint: Constraint) -> CutJoint:
-        """A constraint with the loop that it closes."""
+    def loop(self, constraint: Constraint) -> Loop:
+        """The loop that a constraint closes."""
         slides = [(self.number[slide.name], -1) for slide in constraint.slides]
-        return CutJoint(constraint, (*self._loop(constraint.first, constraint.second), *slides))
+        return (*self._between(constraint.first, constraint.second), *slides)
 
-    def _loop(self, one: str, other: str) -> tuple[tuple[int, int], ...]:
+    def _between(self, one: str, other: str) -> Loop:
         """Edges from where the paths part to the other link (+1), then to the one (-1)."""
         first: list[tuple[int, int]] = []
         second: list[tuple[int, int]] = []
@@ -511,7 +512,7 @@ def _laid(
         k = paths.number[name]
         driven.append((k, edges[k].joint.freedom_number(coordinate)))
     constraints = [PairConstraint.of(whole.joints[name]) for name in names]
-    closings = {c.name: paths.closing(c) for c in (*constraints, *whole.constraints)}
+    closings = {c.name: (c, paths.loop(c)) for c in (*constraints, *whole.constraints)}
     place = {name: k for k, name in enumerate(closings)}
     order = in_order(groups, edges, place)
     laid, blocks, solved = lay_blocks(order, edges, closings, place, driven)
@@ -524,4 +525,5 @@ def _laid(
         members = [c for group in groups for c in group.connections]
         concerned = tuple(c for c in members if c.name in on_none) or tuple(members)
         raise errors.undriven(mechanism, inputs, [(concerned, max(1, len(unknown)))])
-    return SolverGraph(tuple(edges), tuple(laid), tuple(blocks), tuple(driven), tuple(inputs))
+    cuts, loops = tuple(c for c, _ in laid), tuple(loop for _, loop in laid)
+    return SolverGraph(tuple(edges), cuts, loops, tuple(blocks), tuple(driven), tuple(inputs))

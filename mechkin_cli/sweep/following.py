@@ -199,16 +199,14 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
     links = {link for quantity in wanted for link in _links_of(problem.mechanism, quantity)}
     needed = {b for link in links for b in blocks_of(link)}
     for b, block in enumerate(graph.blocks):
-        joints = {
-            graph.edges[k].joint.name for c in block.closings for k, _ in graph.closings[c].loop
-        }
+        joints = {graph.edges[k].joint.name for k in graph.passed(block)}
         joints |= {graph.closings[c].name for c in block.closings}
         if joints & set(problem.follow or ()):
             needed.add(b)
     front = list(needed)
     for b in front:
         for c in graph.blocks[b].closings:
-            placed = graph.closings[c].constraint.placed
+            placed = graph.closings[c].placed
             more = {b for link in placed for b in blocks_of(link)} - needed
             needed |= more
             front += more
@@ -221,7 +219,7 @@ def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
         link: b
         for b, block in enumerate(graph.blocks)
         for c in block.closings
-        for link in graph.closings[c].constraint.links
+        for link in graph.closings[c].links
     }
 
 
@@ -262,9 +260,8 @@ def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
     names = []
     for b in left_out:
         for c in graph.blocks[b].closings:
-            closing = graph.closings[c]
-            loop = [graph.edges[k].joint.name for k, _ in closing.loop]
-            names.append(", ".join(sorted({*loop, closing.name})))
+            loop = [graph.edges[k].joint.name for k, _ in graph.loops[c]]
+            names.append(", ".join(sorted({*loop, graph.closings[c].name})))
     loops = "the loop" if len(names) == 1 else "the loops"
     left = "is left out" if len(names) == 1 else "are left out"
     return Diagnostic(

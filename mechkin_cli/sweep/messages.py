@@ -107,8 +107,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
                     found.add((carrier.edge, carrier.first_freedom + number))
     edges = {edge for edge, _ in found}
     for block in graph.blocks:
-        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
-        if edges & loops:
+        if edges & graph.passed(block):
             found.update(block.unknowns)
             edges.update(edge for edge, _ in block.unknowns)
     return found
@@ -119,7 +118,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     are unique nevertheless."""
     graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
-    joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
+    joints = sorted({graph.edges[k].joint.name for loop in graph.loops for k, _ in loop})
     joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
