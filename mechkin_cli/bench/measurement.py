@@ -8,14 +8,14 @@ of the machine meanwhile; whole processes by the clock on the wall.
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from time import thread_time
 from typing import Any, TypeVar
 
 import numpy as np
 
-from mechkin_cli.bench.scene import Asked, BenchScene, Values
+from mechkin_cli.bench.scene import BenchScene, Values
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -194,7 +194,9 @@ def measured(
     return Measurement(scene, *named, median, least, timing.spread, ratio, *kinds)
 
 
-def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values) -> dict[str, Any]:
+def errors_of(
+    asked: Mapping[str, Sequence[str]], lengths: Collection[str], found: Values, true: Values
+) -> dict[str, Any]:
     """Largest errors by kind, each in parts of its quantity's largest value.
 
     Args:
@@ -204,7 +206,7 @@ def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values
     """
     worst: dict[str, Any] = {}
     for kind in ERROR_KINDS:
-        known = [name for name in getattr(asked, kind) if name in found and name in true]
+        known = [name for name in asked[kind] if name in found and name in true]
         # what is zero by its nature is rounding of the numbers that are right
         sizes = {name: float(np.max(np.abs(true[name]))) for name in known}
         nothing = ZERO * max(sizes.values(), default=0.0)

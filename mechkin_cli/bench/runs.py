@@ -69,15 +69,14 @@ DEMAND_COLUMNS = (
 
 def steps(scene: BenchScene) -> list[tuple[str, tuple[str, ...], Demand]]:
     """Each part with the quantities of the parts up to it, and what is demanded beside them."""
-    asked = scene.asked
-    efforts = tuple(name for name in asked.loads if name.endswith(".effort"))
-    first = (*asked.position, *asked.velocity)
-    moving = asked.level("motion")
-    parts = [("position", asked.position), ("+ velocity", first), ("+ acceleration", moving)]
+    asked, moving = scene.asked, scene.names("motion")
+    efforts = tuple(name for name in asked["loads"] if name.endswith(".effort"))
+    first = (*asked["position"], *asked["velocity"])
+    parts = [("position", asked["position"]), ("+ velocity", first), ("+ acceleration", moving)]
     if efforts:
         parts.append(("+ effort", (*moving, *efforts)))
-    if len(asked.loads) > len(efforts):
-        parts.append(("+ reactions of all joints", asked.level("everything")))
+    if len(asked["loads"]) > len(efforts):
+        parts.append(("+ reactions of all joints", scene.names("everything")))
     verdicts = ("+ verdicts of all rows", parts[-1][1], scene.verdicts("everything"))
     return [*((name, names, Demand.POSITION) for name, names in parts), verdicts]
 
@@ -234,7 +233,7 @@ def bench(scene: BenchScene, rounds: Rounds, families: Mapping[str, Family] = FA
     methods = [each for each in found if isinstance(each, Method)]
     skipped = tuple(each for each in found if isinstance(each, Skipped))
     true, exact = exact_values(scene)
-    lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
+    lengths = frozenset(scene.chain.coordinates[k] for k in scene.chain.lengths)
     units = {m.level: m for m in methods if m.family == FAMILY and m.curve == UNIT}
     measurements = []
     for method, timing, by, values in _timed(methods, units, rounds):
@@ -253,7 +252,7 @@ def exact_values(scene: BenchScene) -> tuple[Values, str]:
     Arrays (width, places) of numpy's widest numbers, from the rows repeated in double-double; none
     where the text cannot be followed in it.
     """
-    wanted = scene.wanted(scene.asked.level("everything"))
+    wanted = scene.wanted(scene.names("everything"))
     try:
         wide = wide_run(scene.result)
     except NotRepeated as reason:

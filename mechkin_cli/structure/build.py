@@ -19,12 +19,13 @@ from math import comb, prod
 
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
-from mechkin_cli.structure.assur import AssurGroup, Undriven, assur_groups
+from mechkin_cli.structure.assur import Undriven, assur_groups
 from mechkin_cli.structure.graph import Block, Loop, SolverGraph, TreeEdge
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
     Connection,
     Reduction,
+    Subgraph,
     biconnected,
     connections_of,
     cut_link,
@@ -57,8 +58,8 @@ class NothingSolved(Exception):
 
 
 def in_order(
-    groups: Sequence[AssurGroup], edges: Sequence[TreeEdge], place: Mapping[str, int]
-) -> list[list[AssurGroup]]:
+    groups: Sequence[Subgraph], edges: Sequence[TreeEdge], place: Mapping[str, int]
+) -> list[list[Subgraph]]:
     """Groups in the order of solution; those together that the tree makes depend on each other.
 
     `place` numbers the closings; first comes what has fewest of them, then what is numbered first.
@@ -89,7 +90,7 @@ def in_order(
     count = [len(some) for some in waits]
     ready = [key(p) for p in range(len(parts)) if not count[p]]
     heapify(ready)
-    order: list[list[AssurGroup]] = []
+    order: list[list[Subgraph]] = []
     while ready:
         p = heappop(ready)[2]
         order.append([groups[k] for k in parts[p]])
@@ -101,7 +102,7 @@ def in_order(
 
 
 def lay_blocks(
-    order: Sequence[Sequence[AssurGroup]],
+    order: Sequence[Sequence[Subgraph]],
     edges: Sequence[TreeEdge],
     closings: Mapping[str, tuple[Constraint, Loop]],
     place: Mapping[str, int],
@@ -204,7 +205,7 @@ class NothingCloses(Exception):
         super().__init__()
 
 
-def closings_of(group: AssurGroup, depth: Mapping[str, int]) -> list[Connection]:
+def closings_of(group: Subgraph, depth: Mapping[str, int]) -> list[Connection]:
     """The connections at which a group's loops are cut.
 
     `depth` is the number of tree edges from ground to each link that is placed before.
@@ -253,7 +254,7 @@ class _Sets:
         return link if link in top else ""
 
 
-def _joined(group: AssurGroup, joints: Sequence[Connection]) -> _Sets:
+def _joined(group: Subgraph, joints: Sequence[Connection]) -> _Sets:
     """The links that joints join, none of which may close a loop."""
     sets = _Sets(group.links)
     for number, c in enumerate(joints):
@@ -262,7 +263,7 @@ def _joined(group: AssurGroup, joints: Sequence[Connection]) -> _Sets:
     return sets
 
 
-def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> list[Connection]:
+def _loop(group: Subgraph, before: Sequence[Connection], last: Connection) -> list[Connection]:
     """The loop that a connection closes with some before it."""
     own = set(group.links)
 
@@ -285,7 +286,7 @@ def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> 
 
 
 def _most_even(
-    group: AssurGroup,
+    group: Subgraph,
     joints: Sequence[Connection],
     able: Sequence[Connection],
     chosen: Sequence[Connection],
@@ -423,13 +424,13 @@ def _groups(
     connections: Sequence[Connection],
     inputs: Sequence[tuple[str, str]],
     places: Iterable[Rates],
-) -> list[AssurGroup]:
+) -> list[Subgraph]:
     """The Assur groups of all components, each after those that it hangs on."""
     components = biconnected(connections, incidence(connections), GROUND_NAME)
     reached = {link for component in components for link in component.links}
     if apart := [link for link in whole.links if link not in reached]:
         raise errors.disconnected(apart)
-    groups: list[AssurGroup] = []
+    groups: list[Subgraph] = []
     loose: list[Undriven] = []
     for component in components:
         own, undriven = assur_groups(component, places)
@@ -441,7 +442,7 @@ def _groups(
     return groups
 
 
-def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
+def _closing_names(whole: Reduction, groups: Sequence[Subgraph]) -> list[str]:
     """The cut joints of all groups: fewest equations first, then as written."""
     depth = {GROUND_NAME: 0}
     chosen: dict[str, int] = {}
@@ -495,7 +496,7 @@ def _cut(
 def _laid(
     mechanism: Mechanism,
     whole: Reduction,
-    groups: Sequence[AssurGroup],
+    groups: Sequence[Subgraph],
     names: Sequence[str],
     inputs: Sequence[tuple[str, str]],
 ) -> SolverGraph:

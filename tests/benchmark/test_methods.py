@@ -68,7 +68,7 @@ def measured(rcsr: BenchScene) -> Bench:
 
 
 def errors(scene: BenchScene, values: dict, true: dict) -> dict:
-    lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
+    lengths = frozenset(scene.chain.coordinates[k] for k in scene.chain.lengths)
     return errors_of(scene.asked, lengths, values, true)
 
 
