@@ -24,7 +24,6 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
     turned_tensor,
-    varying,
 )
 from mechkin_cli.plan.layout import Layout, coordinate_axis
 from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord, hand_over, record
@@ -110,7 +109,7 @@ def _link_load(layout: Layout, load: LinkLoad) -> PlanRecord:
     else:
         code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
         value, point = scale(1.0 / (layout.length * layout.length), value), ZERO
-    link, varies = layout.link_number[load.link], bool(varying(load))
+    link, varies = layout.link_number[load.link], bool(load.varying)
     return record("add_load", code, link, -1, 0, point, ZERO, value, varies)
 
 

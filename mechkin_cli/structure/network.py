@@ -36,7 +36,6 @@ from mechkin_cli.mechanism import (
     Mechanism,
     PairConstraint,
     Part,
-    Spring,
     Vector,
     add,
     diagonal,
@@ -215,9 +214,9 @@ def connections_of(
     """
     driven = Counter(joint for joint, _ in inputs)
     sprung = {
-        load.joint
+        load.acts_at[0]
         for load in mechanism.loads
-        if isinstance(load, Spring) and load.joint and is_angle(load.coordinate or "")
+        if load.has_potential and load.acts_at and is_angle(load.acts_at[1])
     }
     found = [
         Connection(

@@ -20,11 +20,9 @@ from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
-    Damper,
     is_written,
     quantities_read,
     undefined_laws,
-    varying,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
@@ -241,12 +239,12 @@ def unrated_notes(
 def _of_motion(mechanism: Mechanism) -> str:
     """The forces that there are by rates alone."""
     masses = [link.name for link in mechanism.links.values() if link.has_mass]
-    laws = any(amount.moving for load in mechanism.loads for amount in varying(load))
+    moving = [load for load in mechanism.loads if load.reads_rates]
     parts = {
         f"the inertia forces of {listed(masses)}": bool(masses),
-        "those of dampers": any(isinstance(load, Damper) for load in mechanism.loads),
+        "those of dampers": any(load.dissipates for load in moving),
         "friction that slides": bool(mechanism.frictions),
-        "those of loads that read rates": laws,
+        "those of loads that read rates": any(not load.dissipates for load in moving),
     }
     *others, last = (words for words, there in parts.items() if there)
     return f"{', '.join(others)} and {last}" if others else last
