@@ -116,15 +116,6 @@ class Unable(Exception):
 
 
 @dataclass(frozen=True)
-class Skipped:
-    """A method that cannot run here, and why."""
-
-    scene: str
-    family: str
-    reason: str
-
-
-@dataclass(frozen=True)
 class Measurement:
     """A method's time and errors on a scene.
 
@@ -156,11 +147,12 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Bench:
-    """All that a scene was measured by; errors are against `exact`."""
+    """All that a scene was measured by; errors are against `exact`. `skipped` says of families why
+    not all of their methods can run."""
 
     scene: BenchScene
     measurements: tuple[Measurement, ...]
-    skipped: tuple[Skipped, ...]
+    skipped: Mapping[str, str]
     exact: str
 
     def record(self) -> dict[str, Any]:
@@ -174,7 +166,7 @@ class Bench:
             "equations": chain.equations,
             "exact": self.exact,
             "measurements": [m.record() for m in self.measurements],
-            "skipped": [{"family": s.family, "reason": s.reason} for s in self.skipped],
+            "skipped": [{"family": name, "reason": why} for name, why in self.skipped.items()],
         }
 
 
