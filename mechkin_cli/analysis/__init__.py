@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.certificate import Certificate as Certificate
     from mechkin_cli.analysis.design import Design as Design
     from mechkin_cli.analysis.runs import (
-        RunOptions as RunOptions,
         a_packing as a_packing,
         input_values as input_values,
         respond as respond,
@@ -30,6 +29,6 @@ __getattr__, __dir__ = lazy_names(
         "analysis": "Analysis Solvable",
         "certificate": "Certificate",
         "design": "Design",
-        "runs": "RunOptions a_packing input_values respond response_name run_name run_sweep",
+        "runs": "a_packing input_values respond response_name run_name run_sweep",
     },
 )

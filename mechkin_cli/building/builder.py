@@ -31,7 +31,6 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
-from mechkin_cli.building.source import MechanismSource
 from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
@@ -63,7 +62,7 @@ from mechkin_cli.mechanism import (
     differentiation,
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
-from mechkin_cli.reading import in_order
+from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import MechanismFile
 from mechkin_cli.session import solver_graph
@@ -85,15 +84,16 @@ _NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, the source it names, the file as read, its runs by name, the solver graphs at the starts
-    of its responses, coefficients, balances, and the settings of its view."""
+    tables, the source it names, the file as read and its document, its runs by name, the solver
+    graphs at the starts of its responses, coefficients, balances, and the settings of its view."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
     tables: tuple[TableLayout, ...]
     own_tables: bool
     source: str
-    read: MechanismSource
+    file: MechanismFile
+    document: Document
     runs: tuple[str, ...] = (SWEEP,)
     response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
     coefficients: tuple[CoefficientsLayout, ...] = ()
@@ -105,18 +105,19 @@ class Built(NamedTuple):
         return tuple(table for table in self.tables if table.run == run)
 
 
-def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> Built:
+def build(
+    file: MechanismFile, document: Document, given: Mapping[str, Quantity] = _NOTHING
+) -> Built:
     """Builds everything that a file describes; `given` values replace those of some parameters.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
     """
-    file = source.file
-    fields = read_fields(source, given)
+    fields = read_fields(file, document, given)
     problem = build_problem(fields, file)
     datum = datum_of(problem.mechanism)
     if datum != ZERO:
-        fields = read_fields(source, given, datum=datum)
+        fields = read_fields(file, document, given, datum=datum)
         problem = build_problem(fields, file)
     problem = replace(problem, hold_idle=file.idle == "hold")
     problem = _with_definitions(fields, file, problem)
@@ -149,7 +150,7 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     if file.parameters:
         note_unused(fields)
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    read = (bool(file.tables), file.source or "", source)
+    read = (bool(file.tables), file.source or "", file, document)
     others = (coefficients, balances, view)
     return Built(problem, graph, tables, *read, runs_of(file), graphs, *others)
 
@@ -187,7 +188,8 @@ def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings
 
 
 def read_fields(
-    source: MechanismSource,
+    file: MechanismFile,
+    document: Document,
     given: Mapping[str, Quantity] = _NOTHING,
     moved: Move | None = None,
     *,
@@ -195,13 +197,13 @@ def read_fields(
 ) -> Fields:
     """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
     places are measured from the `datum` (m). Errors are noted."""
-    units, errors = read_units(source.document, source.file.units)
-    fields = Fields(source.document, units, diagnostics=errors, plane=source.file.in_plane)
-    read_parameters(fields, source.file.parameters, given, moved)
+    units, errors = read_units(document, file.units)
+    fields = Fields(document, units, diagnostics=errors, plane=file.in_plane)
+    read_parameters(fields, file.parameters, given, moved)
     if datum != ZERO:
-        fields.datum = Datum(datum, source.file.parameters, given, units)
-    if source.file.quantities:
-        read_quantities(fields, source.file.quantities)
+        fields.datum = Datum(datum, file.parameters, given, units)
+    if file.quantities:
+        read_quantities(fields, file.quantities)
     return fields
 
 
@@ -293,7 +295,7 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
         if block.equations <= MOST_EQUATIONS:
             continue
         closings = [graph.closings[c] for c in block.closings]
-        members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
+        members = {graph.edges[k].joint.name for k in graph.passed(block)}
         joints = sorted(members | {closing.joint.name for closing in closings})
         fields.error(
             "block-too-large",

@@ -49,11 +49,9 @@ from mechkin_cli.mechanism import (
     dot,
     is_angle,
     norm,
-    renumbered,
     scale,
     subtract,
     unit,
-    varying,
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
@@ -206,9 +204,9 @@ class LoadBuilder:
             if not isinstance(item, Load):
                 gravity = add(gravity, item)
                 continue
-            for amount in varying(item):
+            for amount in item.varying:
                 numbers.setdefault(amount.number, len(numbers))
-            loads.append(renumbered(item, numbers))
+            loads.append(item.renumbered(numbers))
         laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
         acting = replace(mechanism, loads=tuple(loads), gravity=gravity, frictions=tuple(frictions))
         return acting, laws, numbers

@@ -33,7 +33,6 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.model import Model
-    from mechkin_cli.tables import RunFiles
 
 
 def run_all(
@@ -188,7 +187,7 @@ def _one(
         model = model_of(path, settings)
         if command.errors:
             _refuse_own_errors(model, command.table)
-        analyses, notes, files = _run(model, folder, command, tell)
+        analyses, notes, written, removed = _run(model, folder, command, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     diagnostics = dict.fromkeys(one for analysis in analyses for one in analysis.diagnostics)
@@ -203,30 +202,31 @@ def _one(
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(shown(path), analyses, folder, files, command)
+        _report(shown(path), analyses, folder, written, removed, command)
     enough = all(_is_enough(analysis, command) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
 
 
 def _run(
     model: Model, folder: Path, command: AnalyzeCommand, tell: Tell
-) -> tuple[list[Analysis], tuple[Diagnostic, ...], RunFiles]:
-    """The runs, notes on what is not proven or not removed, and the files written: alone in their
-    folder from before the work on, so that nothing is computed that cannot be written."""
+) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path], list[str]]:
+    """The runs, notes on what is not proven or not removed, the files written and the names of
+    those removed: alone in their folder from before the work on, so that nothing is computed that
+    cannot be written."""
     with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
         analyses = run_all(model, command.table, command.mode, tell)
         tell("proving rows" if command.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if command.certify else ()
         if output is None:
-            return analyses, notes, table_room.RunFiles([], [], [])
+            return analyses, notes, [], []
         tell("measuring true errors" if command.errors else "writing tables")
         results = [_results(analysis, command) for analysis in analyses]
         files = written_files(results, command.formats)
         if command.view:
             files[view.PAGE_NAME], left_out = view.view_page(analyses)
             notes = (*notes, *left_out)
-        found = output.write_run(files)
-        return analyses, (*notes, *_changed_notes(folder, found.changed)), found
+        written, removed, changed = output.write_run(files)
+        return analyses, (*notes, *_changed_notes(folder, changed)), written, removed
 
 
 def _changed_notes(folder: Path, names: Sequence[str]) -> list[Diagnostic]:
@@ -293,7 +293,12 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
 
 
 def _report(
-    file: str, analyses: list[Analysis], folder: Path, files: RunFiles, command: AnalyzeCommand
+    file: str,
+    analyses: list[Analysis],
+    folder: Path,
+    written: list[Path],
+    removed: list[str],
+    command: AnalyzeCommand,
 ) -> None:
     if command.explain:
         from mechkin_cli.cli.show import explanation
@@ -309,4 +314,4 @@ def _report(
     for analysis in analyses:
         for line in summary(file, analysis, errors=command.errors):
             say(line)
-    say(files_line(folder, files.written, files.removed))
+    say(files_line(folder, written, removed))

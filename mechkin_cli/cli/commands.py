@@ -242,7 +242,7 @@ CHECK = Command(
 )
 MODES = Command(
     "modes",
-    "answer:modes",
+    "modes:modes",
     """List the assembly modes: the ways to put a mechanism together.""",
     (
         FILE,
@@ -271,7 +271,7 @@ MODES = Command(
 )
 RANGES = Command(
     "ranges",
-    "answer:ranges",
+    "ranges:ranges",
     """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.
@@ -301,7 +301,7 @@ RANGES = Command(
 )
 MOBILITY = Command(
     "mobility",
-    "answer:mobility",
+    "mobility:mobility",
     """Find the mobility, idle freedoms and redundant constraints.
 
     Compares Kutzbach's count with the true mobility. Inputs need not be declared.

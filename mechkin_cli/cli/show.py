@@ -246,7 +246,7 @@ def _loops(analysis: Analysis) -> str:
     graph = analysis.result.graph
     if not graph.closings:
         return "none (open chain)"
-    closed = ", ".join(closing.constraint.label for closing in graph.closings)
+    closed = ", ".join(closing.label for closing in graph.closings)
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
     return f"{analysis.model.problem.mechanism.loops}, closed at {closed}; {sizes} unknowns"
 
@@ -351,12 +351,12 @@ def explanation(analysis: Analysis) -> str:
         words = ", hung between its spheres" if edge.hung else words
         lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, words)}")
     lines.append("  loops closed at" if graph.closings else "  no loops")
-    for closing in graph.closings:
-        loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
+    for closing, passed in zip(graph.closings, graph.loops, strict=True):
+        loop = ", ".join(graph.edges[k].joint.name for k, _ in passed)
         count = closing.equations
         equations = f", {count} equation{'s' * (count > 1)}"
-        if closing.constraint.words:
-            equations += f": {closing.constraint.words}"
+        if closing.words:
+            equations += f": {closing.words}"
         lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
     if graph.blocks:
         lines.append("  blocks, solved in this order")

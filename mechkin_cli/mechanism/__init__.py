@@ -70,9 +70,7 @@ if TYPE_CHECKING:
         Tensor as Tensor,
         Varying as Varying,
         diagonal as diagonal,
-        renumbered as renumbered,
         renumbered_amount as renumbered_amount,
-        varying as varying,
         without_effort as without_effort,
     )
     from mechkin_cli.mechanism.motion import (
@@ -182,7 +180,7 @@ __getattr__, __dir__ = lazy_names(
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
-        "Varying diagonal renumbered renumbered_amount varying without_effort",
+        "Varying diagonal renumbered_amount without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Moments MotionInputs ORDERS "
         "Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "

@@ -20,10 +20,12 @@ from mechkin_cli.mechanism.constraint import (
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
 
 if TYPE_CHECKING:
+    from typing import Self
+
     from mechkin_cli.mechanism.wanted import Wanted
 
 
@@ -149,7 +151,51 @@ Amount = float | Varying
 """A force (N) or moment (N m)."""
 
 
-class LinkLoad(NamedTuple):
+class _Load:
+    """What is asked of a load, with the answers of a kind that has none of its own."""
+
+    @property
+    def amounts(self) -> tuple[Amount, ...]:
+        """Its values that may be others in every row."""
+        return ()
+
+    @property
+    def varying(self) -> tuple[Varying, ...]:
+        """Its values that are others in every row."""
+        return tuple(amount for amount in self.amounts if isinstance(amount, Varying))
+
+    @property
+    def reads_rates(self) -> bool:
+        """Whether its force depends on rates."""
+        return any(amount.moving for amount in self.varying)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether its work is stored as potential energy."""
+        return False
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether its work is taken away for good."""
+        return False
+
+    @property
+    def acts_at(self) -> Coordinate | None:
+        """The joint coordinate at which it acts; None: it acts elsewhere."""
+        return None
+
+    @property
+    def ends(self) -> tuple[Attached, ...]:
+        """The points that it pulls towards each other, if any."""
+        return ()
+
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """The load with the laws of its values under other numbers."""
+        return self
+
+
+@dataclass(frozen=True)
+class LinkLoad(_Load):
     """A force (N, at a point of the link) or torque (N m) on a link, in ground or link axes."""
 
     kind: Literal["force", "torque"]
@@ -159,12 +205,18 @@ class LinkLoad(NamedTuple):
     point: Vector = ZERO
 
     @property
-    def amounts(self) -> tuple[Amount, Amount, Amount]:
+    def amounts(self) -> tuple[Amount, ...]:
         """The three components."""
         return self.value
 
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """As of every load."""
+        x, y, z = (renumbered_amount(amount, numbers) for amount in self.value)
+        return replace(self, value=(x, y, z))
 
-class JointLoad(NamedTuple):
+
+@dataclass(frozen=True)
+class JointLoad(_Load):
     """A torque on a joint's theta (N m) or a force on its s (N): on the second link, opposite on
     the first."""
 
@@ -173,12 +225,42 @@ class JointLoad(NamedTuple):
     value: Amount
 
     @property
-    def amounts(self) -> tuple[Amount]:
+    def amounts(self) -> tuple[Amount, ...]:
         """The value."""
         return (self.value,)
 
+    @property
+    def acts_at(self) -> Coordinate:
+        """As of every load."""
+        return self.joint, self.coordinate
 
-class Spring(NamedTuple):
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """As of every load."""
+        return replace(self, value=renumbered_amount(self.value, numbers))
+
+
+class _Element(_Load):
+    """A spring or a damper: between two points, or on a joint coordinate."""
+
+    between: tuple[Attached, Attached] | None
+    joint: str | None
+    coordinate: str | None
+
+    @property
+    def acts_at(self) -> Coordinate | None:
+        """As of every load."""
+        if self.joint is None or self.coordinate is None:
+            return None
+        return self.joint, self.coordinate
+
+    @property
+    def ends(self) -> tuple[Attached, ...]:
+        """As of every load."""
+        return self.between or ()
+
+
+@dataclass(frozen=True)
+class Spring(_Element):
     """A spring between two points (N/m) or on a joint coordinate (N/m or N m/rad)."""
 
     between: tuple[Attached, Attached] | None
@@ -188,8 +270,14 @@ class Spring(NamedTuple):
     free: float
     preload: float
 
+    @property
+    def has_potential(self) -> bool:
+        """It stores all that it takes."""
+        return True
 
-class Damper(NamedTuple):
+
+@dataclass(frozen=True)
+class Damper(_Element):
     """A viscous damper between two points (N s/m) or on a joint coordinate (or N m s/rad)."""
 
     between: tuple[Attached, Attached] | None
@@ -197,24 +285,18 @@ class Damper(NamedTuple):
     coordinate: str | None
     damping: float
 
+    @property
+    def reads_rates(self) -> bool:
+        """Its force is that of a rate."""
+        return True
+
+    @property
+    def dissipates(self) -> bool:
+        """It gives nothing back."""
+        return True
+
 
 Load = LinkLoad | JointLoad | Spring | Damper
-
-
-def varying(load: Load) -> tuple[Varying, ...]:
-    """The values of a load that are another in every row."""
-    amounts: tuple[Amount, ...] = load.amounts if isinstance(load, LinkLoad | JointLoad) else ()
-    return tuple(amount for amount in amounts if isinstance(amount, Varying))
-
-
-def renumbered(load: Load, numbers: Mapping[int, int]) -> Load:
-    """The load with the laws of its values under other numbers."""
-    if isinstance(load, JointLoad):
-        return load._replace(value=renumbered_amount(load.value, numbers))
-    if isinstance(load, LinkLoad):
-        x, y, z = (renumbered_amount(amount, numbers) for amount in load.value)
-        return load._replace(value=(x, y, z))
-    return load
 
 
 def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:

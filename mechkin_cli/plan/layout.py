@@ -134,7 +134,7 @@ class Layout:
     @cached_property
     def hung_number(self) -> dict[str, int]:
         """Number of each hung body in the kernel."""
-        hung = [c.constraint.links[0] for c in self.graph.closings if c.constraint.links]
+        hung = [c.links[0] for c in self.graph.closings if c.links]
         return {body: k for k, body in enumerate(hung)}
 
     @cached_property

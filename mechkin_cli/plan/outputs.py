@@ -19,13 +19,11 @@ from mechkin_cli.mechanism import (
     LEDGER_KINDS,
     ZERO,
     Attached,
-    Damper,
     Mechanism,
     Vector,
     Wanted,
     is_angle,
     reference_point,
-    varying,
 )
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.records import Demand, Output, OutputCode, hand_over_outputs
@@ -82,14 +80,12 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
 
 def forces_demand(mechanism: Mechanism) -> Demand:
     """The computation that forces need: accelerations if a link has mass or a joint rubs,
-    velocities if something is damped or a load reads rates."""
+    velocities if a load reads rates."""
     demand = Demand.FORCES
     if mechanism.frictions or any(link.has_mass for link in mechanism.links.values()):
         return demand | Demand.VELOCITY | Demand.ACCELERATION
-    for load in mechanism.loads:
-        if isinstance(load, Damper) or any(amount.moving for amount in varying(load)):
-            return demand | Demand.VELOCITY
-    return demand
+    reads_rates = any(load.reads_rates for load in mechanism.loads)
+    return demand | Demand.VELOCITY if reads_rates else demand
 
 
 def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:

@@ -24,15 +24,14 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
     turned_tensor,
-    varying,
 )
 from mechkin_cli.plan.layout import Layout, coordinate_axis
 from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord, hand_over, record
-from mechkin_cli.structure import CutJoint
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import Motion, Rubbing
+    from mechkin_cli.mechanism import Constraint, Motion, Rubbing
+    from mechkin_cli.structure import Loop
 
 
 NO_MOTION = -1
@@ -110,7 +109,7 @@ def _link_load(layout: Layout, load: LinkLoad) -> PlanRecord:
     else:
         code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
         value, point = scale(1.0 / (layout.length * layout.length), value), ZERO
-    link, varies = layout.link_number[load.link], bool(varying(load))
+    link, varies = layout.link_number[load.link], bool(load.varying)
     return record("add_load", code, link, -1, 0, point, ZERO, value, varies)
 
 
@@ -166,7 +165,10 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
-        *(_closing(layout, closing) for closing in layout.graph.closings),
+        *(
+            _closing(layout, *closing)
+            for closing in zip(layout.graph.closings, layout.graph.loops, strict=True)
+        ),
         *_places(layout),
         *_axes(layout),
         *_free_motions(layout),
@@ -193,16 +195,15 @@ def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
-    constraint = closing.constraint
-    loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
+def _closing(layout: Layout, constraint: Constraint, loop: Loop) -> PlanRecord:
+    passed = [(k, float(s)) for e, s in loop for k in layout.parts_of[e]]
     first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
     one, other = constraint.frames
     frames = layout.frame_on(first, one), layout.frame_on(second, other)
     hung = constraint.hung
     if hung is None or constraint.length is None:
         code, parameter = constraint.code, constraint.parameter
-        return record("add_closing_joint", code, first, second, *frames, parameter, loop)
+        return record("add_closing_joint", code, first, second, *frames, parameter, passed)
     return record(
         "add_hung_links",
         layout.link_number[hung.body],
@@ -213,14 +214,14 @@ def _closing(layout: Layout, closing: CutJoint) -> PlanRecord:
         constraint.length / layout.length,
         hung.line,
         hung.slide_sign,
-        loop,
+        passed,
     )
 
 
 def _places(layout: Layout) -> Iterator[PlanRecord]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
     # the multipliers push the second link, whether that is the joint's second or first
-    backward |= {c.name for c in layout.graph.closings if c.constraint.is_reversed}
+    backward |= {c.name for c in layout.graph.closings if c.is_reversed}
     for name, joint in layout.mechanism.joints.items():
         yield record(
             "add_place",
@@ -272,7 +273,7 @@ def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached)
 def _blocks(layout: Layout) -> Iterator[PlanRecord]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
-        constraints = [layout.graph.closings[c].constraint for c in block.closings]
+        constraints = [layout.graph.closings[c] for c in block.closings]
         links = [link for constraint in constraints for link in constraint.placed]
         needed = _new_on_paths(layout, [layout.link_number[link] for link in links], placed)
         if block.charts:

@@ -69,8 +69,8 @@ if TYPE_CHECKING:
     from mechkin_cli.session.path import places_at as places_at, places_of as places_of
     from mechkin_cli.session.redundancy import equations_that_follow as equations_that_follow
     from mechkin_cli.session.session import (
+        Between as Between,
         Continued as Continued,
-        ContinuedFrom as ContinuedFrom,
         Exchanged as Exchanged,
         Packing as Packing,
         Session as Session,
@@ -94,7 +94,6 @@ __getattr__, __dir__ = lazy_names(
         "assembly_size run",
         "path": "places_at places_of",
         "redundancy": "equations_that_follow",
-        "session": "Continued ContinuedFrom Exchanged Packing Session exchange find_limit "
-        "moves_freely",
+        "session": "Between Continued Exchanged Packing Session exchange find_limit moves_freely",
     },
 )

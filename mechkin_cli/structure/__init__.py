@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from mechkin_cli.structure.build import build_graph as build_graph
     from mechkin_cli.structure.graph import (
         Block as Block,
-        CutJoint as CutJoint,
+        Loop as Loop,
         SolverGraph as SolverGraph,
         TreeEdge as TreeEdge,
         UnsolvableGraph as UnsolvableGraph,
@@ -36,7 +36,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "build": "build_graph",
-        "graph": "Block CutJoint SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
+        "graph": "Block Loop SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
         "is_redundant listed structure_of",
         "network": "connections_of reduce whole_link",
         "rank": "Rates middle_and_size",

@@ -20,11 +20,9 @@ from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
-    Damper,
     is_written,
     quantities_read,
     undefined_laws,
-    varying,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
@@ -107,8 +105,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
                     found.add((carrier.edge, carrier.first_freedom + number))
     edges = {edge for edge, _ in found}
     for block in graph.blocks:
-        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
-        if edges & loops:
+        if edges & graph.passed(block):
             found.update(block.unknowns)
             edges.update(edge for edge, _ in block.unknowns)
     return found
@@ -119,7 +116,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     are unique nevertheless."""
     graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
-    joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
+    joints = sorted({graph.edges[k].joint.name for loop in graph.loops for k, _ in loop})
     joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
@@ -242,12 +239,12 @@ def unrated_notes(
 def _of_motion(mechanism: Mechanism) -> str:
     """The forces that there are by rates alone."""
     masses = [link.name for link in mechanism.links.values() if link.has_mass]
-    laws = any(amount.moving for load in mechanism.loads for amount in varying(load))
+    moving = [load for load in mechanism.loads if load.reads_rates]
     parts = {
         f"the inertia forces of {listed(masses)}": bool(masses),
-        "those of dampers": any(isinstance(load, Damper) for load in mechanism.loads),
+        "those of dampers": any(load.dissipates for load in moving),
         "friction that slides": bool(mechanism.frictions),
-        "those of loads that read rates": laws,
+        "those of loads that read rates": any(not load.dissipates for load in moving),
     }
     *others, last = (words for words, there in parts.items() if there)
     return f"{', '.join(others)} and {last}" if others else last

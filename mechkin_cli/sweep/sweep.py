@@ -189,10 +189,7 @@ def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
 def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
-    follow = follow_rows
-    if session.problem.motion.grid is not None:
-        from mechkin_cli.sweep.grid import follow_grid as follow
-    rows = follow(session, start, every_row=every_row)
+    rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows, motion_between)
     if not rows.reached.any():
         return result

@@ -102,7 +102,6 @@ if TYPE_CHECKING:
         WRITERS as WRITERS,
         Claim as Claim,
         OutputFolder as OutputFolder,
-        RunFiles as RunFiles,
         write_files as write_files,
         written_files as written_files,
     )
@@ -127,6 +126,6 @@ __getattr__, __dir__ = lazy_names(
         "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "
         "root_mean_square row_weights statistics summary_of",
         "table": "Columns evaluate summary_table",
-        "writers": "Claim OutputFolder RunFiles USUAL_FORMATS WRITERS write_files written_files",
+        "writers": "Claim OutputFolder USUAL_FORMATS WRITERS write_files written_files",
     },
 )

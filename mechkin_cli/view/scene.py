@@ -303,7 +303,7 @@ def view_scene(
     notes += _left_out(runs)
     scene = Scene(
         f"mechkin {__version__}",
-        Path(model.built.read.document.file).name,
+        Path(model.built.document.file).name,
         model.problem,
         runs,
         tuple(dict.fromkeys([*said, *notes])),

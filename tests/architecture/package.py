@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator, Set
 from functools import cache
 from pathlib import Path
 
@@ -56,3 +57,20 @@ def imported_names(path: Path) -> list[tuple[str, str]]:
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     ]
+
+
+def told_apart(module: ast.Module, kinds: Set[str]) -> Iterator[tuple[int, str]]:
+    """(line, source) of every question for one of some classes: by isinstance, by type, or by a
+    pattern."""
+    for node in ast.walk(module):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
+            names = {part.id for part in ast.walk(node.args[1]) if isinstance(part, ast.Name)}
+        elif isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            names = {side.id for side in sides if isinstance(side, ast.Name)}
+        elif isinstance(node, ast.MatchClass):
+            names = {ast.unparse(node.cls)}
+        else:
+            continue
+        if names & kinds:
+            yield getattr(node, "lineno", 0), ast.unparse(node)
