@@ -186,7 +186,7 @@ def _freedom_at_rest(body: Body, place: Configuration, driven: Sequence[tuple[st
     """How many motions of first order leave the inputs at rest."""
     rows = np.eye(body.count)[[body.column(*each) for each in driven]]
     matrix = np.concatenate([place.jacobian, rows])
-    return rank_of(matrix, tolerances.RANK_ZERO).motions.shape[1]
+    return int(rank_of(matrix, tolerances.RANK_ZERO).motions.shape[1])
 
 
 def _holds(
