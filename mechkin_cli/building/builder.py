@@ -10,6 +10,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from mechkin_cli import mobility
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -135,6 +136,7 @@ def build(
     problem = replace(problem, follow=build_follow(fields, file.follow, problem.mechanism.joints))
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
+        problem = replace(problem, held=mobility.held_to_family(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
         check_spins(fields, problem, own)

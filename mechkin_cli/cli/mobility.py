@@ -51,6 +51,16 @@ def _record(found: Mobility) -> Record:
             for item in found.redundant
         ],
         "fixed": list(found.fixed),
+        "families": [
+            {
+                "dimension": family.dimension,
+                "excess": family.excess,
+                "rests": list(family.rests),
+                "inputs": list(family.inputs),
+                "sentence": family.sentence,
+            }
+            for family in found.families
+        ],
         "verdict": found.verdict,
         "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
     }
@@ -89,4 +99,5 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
     ]
     if found.fixed:
         rows.append(("fixed", f"{', '.join(found.fixed)} never move"))
+    rows += [("family", family.sentence) for family in found.families]
     return [*lines, *(f"  {name:<11}{text}" for name, text in rows)]

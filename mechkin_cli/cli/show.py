@@ -228,13 +228,12 @@ def _branch(analysis: Analysis) -> str:
 def _driven(analysis: Analysis) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = analysis.model.problem.mechanism
-    freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    count = freedoms - mechanism.space * mechanism.loops
+    count = mechanism.kutzbach
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [spin.idle_words for spin in mechanism.spins]
-    several = Counter(held.words for held in analysis.model.problem.held)
+    several = Counter(held.words for held in analysis.model.problem.held if held.idle)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         exact_holds as exact_holds,
         held_freedoms as held_freedoms,
         held_groups as held_groups,
+        three_turns as three_turns,
     )
     from mechkin_cli.idle.idle import (
         conventional_notes as conventional_notes,
@@ -33,7 +34,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "find": "LinkMotion PLACES RigidGroup",
-        "hold": "exact_holds held_freedoms held_groups",
+        "hold": "exact_holds held_freedoms held_groups three_turns",
         "idle": "conventional_notes holding_notes idle_freedoms nearly_common_notes spin_errors "
         "without_spin",
     },

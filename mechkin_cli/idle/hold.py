@@ -91,7 +91,7 @@ def _turns_with_line(
     return joint._replace(parts=tuple(parts)), held
 
 
-def _three_turns(joint: Joint) -> Joint:
+def three_turns(joint: Joint) -> Joint:
     """A joint whose ball is turns about x, y and z as drawn."""
     x, y, z = GROUND.x, GROUND.y, GROUND.z
     parts: list[Part] = []
@@ -271,7 +271,7 @@ class Holder:
         joint, number, name = best
         self.split.add(joint.name)
         motion = group.take((joint.name, number), self.basis)
-        turns = _three_turns(joint) if joint.type.is_oriented else None
+        turns = three_turns(joint) if joint.type.is_oriented else None
         self._put(group, (joint.name, name), motion, {}, told=turns)
         return True
 

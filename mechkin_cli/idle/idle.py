@@ -78,6 +78,8 @@ def idle_freedoms(problem: Problem) -> Iterator[Idle]:
         yield _of_spin(spin)
     length = problem.mechanism.box_diagonal() if problem.held else 0.0
     for h in problem.held:
+        if not h.idle:
+            continue
         motion = h.words, h.links, h.axes, h.slides, h.moves
         yield Idle(*motion, length, h.convention, h.cure, h.holding)
 

@@ -359,6 +359,12 @@ class Mechanism:
         moving = sum(name != GROUND_NAME for name in self.links)
         return len(self.joints) - moving
 
+    @property
+    def kutzbach(self) -> int:
+        """Kutzbach's count of freedoms: 6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f."""
+        freedoms = sum(joint.type.freedoms for joint in self.joints.values())
+        return freedoms - self.space * self.loops
+
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
         return self._box_diagonal

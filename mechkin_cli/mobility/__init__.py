@@ -10,6 +10,7 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.mobility.configurations import lost_holds as lost_holds
+    from mechkin_cli.mobility.families import held_to_family as held_to_family
     from mechkin_cli.mobility.idle import held_along as held_along
     from mechkin_cli.mobility.mobility import (
         Mobility as Mobility,
@@ -23,6 +24,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "configurations": "lost_holds",
+        "families": "held_to_family",
         "idle": "held_along",
         "mobility": "Mobility drawn_faults find_mobility meeting undriven_notes",
     },

@@ -162,6 +162,18 @@ def _is_unique(result: RunRows, text: str) -> bool:
     return bool(np.isfinite(unique_cells(values(result), others, disturbed)).all())
 
 
+def first_order_note(problem: Problem) -> Diagnostic:
+    """Freedoms that loops stop, but not to first order: which motion the rows are of."""
+    words = "; ".join(dict.fromkeys(one.words for one in problem.stopped))
+    return Diagnostic(
+        "first-order-motion",
+        "note",
+        f"{words}, wherever the inputs take it: play in the joints lets it go far, and it needs a "
+        "stiff support; the rows are of the motion in which it rests",
+        hint="mobility tells which motions meet; a constraint more in that direction stops it",
+    )
+
+
 def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
     """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
     found = []

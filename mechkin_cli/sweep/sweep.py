@@ -30,6 +30,7 @@ from mechkin_cli.sweep.friction import judged_by, uncounted_notes
 from mechkin_cli.sweep.messages import (
     actuation_notes,
     condition_notes,
+    first_order_note,
     locked_pose_notes,
     not_converged_note,
     open_turn_note,
@@ -329,6 +330,8 @@ def row_notes(
             named = {freedom.holding for freedom in idle.idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
             notes += idle.holding_notes(problem, found)
+    if problem.stopped and rows.reached.any():
+        notes.append(first_order_note(problem))
     unclear = rows.status == Status.rank_unclear
     if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
         said = {diagnostic.code for diagnostic in rows.diagnostics}
