@@ -145,10 +145,15 @@ class ChartedMotion : public Motion {
   SlipStage make_slips() const;
   void begin_slips();
   void begin_slips(int lane);
+  void find_spans();
   // A switch for each friction, and one for those that rest with forces that are not unique.
   int slip_switches() const { return plan_.frictions ? plan_.frictions + 1 : 0; }
   bool rubs(int lane, int k) const;
   int slip_columns(int k) const { return slips_.first[k + 1] - slips_.first[k]; }
+  // Whether a joint slips along a line, so that its slip, in its first column, has a sign.
+  bool has_sign(int lane, int k) const {
+    return slip_columns(k) == 1 || slips_.span[(std::size_t)k * lanes_ + lane] == 1.0;
+  }
   double& sense(int lane, int k) { return slips_.sense[(std::size_t)k * lanes_ + lane]; }
   double& quiet(int lane, int k) { return slips_.quiet[(std::size_t)k * lanes_ + lane]; }
   double slip_size(const Packed& of, int lane, int k) const;
@@ -163,6 +168,7 @@ class ChartedMotion : public Motion {
   void tell_undecided(const Stage& found, int lane);
   std::vector<int> sticking(int lane) const;
   void arm(const Stage& found, int lane);
+  void aim_along(const Stage& found, int lane, int k);
   Matrix inertia_matrix(const Stage& found, int lane) const;
   int hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v);
   void hold_sticking(int lane);
@@ -193,6 +199,7 @@ class ChartedMotion : public Motion {
   double margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided);
   void settle(int lane, int event, std::vector<double>* v);
   bool give_rates(int lane, std::vector<double>* v);
+  bool turns_aside(int lane, int event) const;
   bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
   bool is_rounding(const MotionStop& stop, int lane, double value, double speed) const;

@@ -131,7 +131,7 @@ bool ChartedMotion::slips_beside(int lane, const Signs& way, const std::vector<i
 std::vector<Signs> ChartedMotion::ways_of(int lane, const std::vector<int>& open, int forced) {
   std::vector<int> one, several;
   for (int k : open)
-    if (k != forced) (slip_columns(k) == 1 ? one : several).push_back(k);
+    if (k != forced) (has_sign(lane, k) ? one : several).push_back(k);
   std::size_t choices = 1;
   for (std::size_t k = 0; k < several.size() && choices <= MOST_WAYS; ++k) choices *= 3;
   Signs now = senses(lane);
