@@ -157,3 +157,23 @@ def test_what_a_load_with_kinks_pushes_from_the_start_goes_at_once(
     assert np.abs(found["A.s"] - right).max() < 1e-8
     second = {True: 1.0, False: -1.0}[right[-1] > 0] * (2 if "< 9" in force else 1)
     assert found["A.s_ddot"][0] == pytest.approx(second, abs=1e-12)
+
+
+KINKS = ["sign(time - 1 s)", "-sign(1 s - time)", "if(time < 1 s, -1, 1)"]
+
+
+@pytest.mark.parametrize("kink", KINKS)
+def test_a_force_that_a_later_jump_ends_moves_a_block_from_the_start(kink: str) -> None:
+    # 5 N for 1 s: 1.7 m/s2, then -3.3 m/s2 to rest
+    have = rows("0.33", f"2.5 N*(1 - {kink})", 7)
+    time = np.linspace(0, 3, 7)
+    late = np.clip(time - 1, 0, 1.7 / 3.3)
+    want = 1.7 * np.minimum(time, 1) ** 2 / 2 + 1.7 * late - 3.3 * late**2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10
+    assert (have[-2:, 1] == 0.0).all()
+
+
+def test_a_force_that_begins_with_a_later_jump_leaves_a_block_at_rest_until_then() -> None:
+    have = rows("0.33", "2.5 N*(1 + sign(time - 1 s))", 7)
+    want = 1.7 * np.maximum(np.linspace(0, 3, 7) - 1, 0) ** 2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10
