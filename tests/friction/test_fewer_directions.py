@@ -21,7 +21,9 @@ loads:
   - {{type: friction, joint: T, coefficient: {coefficient}}}
   - {{type: force, link: a, point: [0, 0, 0], force: [{x}, {y}, 0]}}
 responses:
-  r: {{start: {{A.s: 0, A.s_dot: {speed}, B.theta: 0.5, B.theta_dot: 0}}, time: {{from: 0, to: 2, count: 21}}}}
+  r:
+    start: {{A.s: 0, A.s_dot: {speed}, B.theta: 0.5, B.theta_dot: 0}}
+    time: {{from: 0, to: 2, count: 21}}
 """
 """A rail that carries half the weight of a sled; a runner, with friction, the other half, 10 N. Its
 plane would let it slip to the side, the rail does not. A pendulum moves beside it."""
@@ -80,8 +82,8 @@ responses:
     start: {{A.theta: 0, A.theta_dot: {rate}, B.theta: 0.3, B.theta_dot: {other}}}
     time: {{from: 0, to: 2, count: 21}}
 """
-"""A ball in a socket that carries its 20 N, and a gimbal without mass that keeps it from turning about
-the line square to both its pins. Their kinetic energy is 0.05 (A'^2 + B'^2), and friction is
+"""A ball in a socket that carries its 20 N, and a gimbal without mass that keeps it from turning
+about the line square to both its pins. Its kinetic energy is 0.05 (A'^2 + B'^2), and friction is
 mu 20 N 0.1 m against (A', B')."""
 
 

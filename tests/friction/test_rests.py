@@ -129,3 +129,23 @@ def test_a_force_that_jumps_within_a_rest_moves_a_block(count: int) -> None:
     have = rows("{static: 0.33, sliding: 0.2}", force, count)
     assert have[-1, 0] == pytest.approx(0.5, abs=1e-9)
     assert have[-1, 1] == 0.0
+
+
+KINKS = ["sign(time - 1 s)", "-sign(1 s - time)", "if(time < 1 s, -1, 1)"]
+
+
+@pytest.mark.parametrize("kink", KINKS)
+def test_a_force_that_a_later_jump_ends_moves_a_block_from_the_start(kink: str) -> None:
+    # 5 N for 1 s: 1.7 m/s2, then -3.3 m/s2 to rest
+    have = rows("0.33", f"2.5 N*(1 - {kink})", 7)
+    time = np.linspace(0, 3, 7)
+    late = np.clip(time - 1, 0, 1.7 / 3.3)
+    want = 1.7 * np.minimum(time, 1) ** 2 / 2 + 1.7 * late - 3.3 * late**2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10
+    assert (have[-2:, 1] == 0.0).all()
+
+
+def test_a_force_that_begins_with_a_later_jump_leaves_a_block_at_rest_until_then() -> None:
+    have = rows("0.33", "2.5 N*(1 + sign(time - 1 s))", 7)
+    want = 1.7 * np.maximum(np.linspace(0, 3, 7) - 1, 0) ** 2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10

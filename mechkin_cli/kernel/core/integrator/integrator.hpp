@@ -106,6 +106,9 @@ class Motion {
     (void)which;
     (void)time;
   }
+  // Asked at the start, with the sides (switches x lanes) that kinks have there: how it begins may depend on them. Those of
+  // switches that move are their good ones.
+  virtual void begin(const std::int8_t* side) { (void)side; }
   // A switch that moves was met at the chart's origin: the lane is in the next piece, whose rates are asked for at once.
   // v and w may be changed there (a rate that comes to rest), of that lane alone. True: from there on the motion is stiff.
   virtual bool move(int lane, int which, double time, double* y) {

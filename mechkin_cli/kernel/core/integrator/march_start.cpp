@@ -6,6 +6,9 @@
 
 namespace {
 
+// What moves may begin otherwise on other sides of kinks, and these may then have other sides.
+constexpr int BEGINNINGS = 4;
+
 double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 }  // namespace
@@ -40,8 +43,15 @@ void March::start(const double* time, const std::vector<double>& y) {
 void March::first_sides(Flags* mask) {
   const int lanes = states_.lanes;
   if (states_.kinds.empty()) return;
-  for (std::size_t k = 0; k < states_.side.size(); ++k) states_.side[k] = states_.switch_value[k] < 0.0 ? -1 : 1;
-  settle_sides(Flags(lanes, 1), std::vector<int>(lanes, -1), true);
+  for (std::size_t k = 0; k < states_.side.size(); ++k)
+    states_.side[k] = states_.switch_value[k] < 0.0 && !states_.kinds[k / lanes].moves ? -1 : 1;
+  std::vector<std::int8_t> before;
+  for (int round = 0; round < BEGINNINGS && states_.side != before; ++round) {
+    settle_sides(Flags(lanes, 1), std::vector<int>(lanes, -1), true);
+    before = states_.side;
+    states_.motion.begin(before.data());
+    settle_sides(Flags(lanes, 1), std::vector<int>(lanes, -1), true);
+  }
   Flags stands(lanes, 1);
   states_.evaluate(states_.time.data(), states_.y.data(), true, &stands, states_.slope.data(),
                    states_.switch_value.data());

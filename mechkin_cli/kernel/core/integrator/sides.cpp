@@ -74,7 +74,7 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
   const int lanes = states_.lanes, switches = (int)states_.kinds.size();
   std::vector<double> slope(states_.entries), values(states_.side.size());
   Flags turned(states_.side.size(), 0);
-  const auto is_open = [&](int s, int i) { return s != known[i] && (is_start || states_.kinds[s].may_be_nothing()); };
+  const auto is_open = [&](int s, int i) { return s != known[i] && (states_.kinds[s].may_be_nothing() || (is_start && !states_.kinds[s].moves)); };
   const auto turn = [&](int s, int i) {
     const std::size_t at = (std::size_t)s * lanes + i;
     states_.turn(at, values[at]);

@@ -68,14 +68,32 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     lay_chart(l);
   }
   last_ = origin_, origin_inputs_ = inputs_;
+  std::fill(side_.begin(), side_.end(), 1.0);
+  begun_ = side_;
+  find_start();
+}
+
+// What follows from the start, on the sides of kinks in side_.
+void ChartedMotion::find_start() {
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
-  std::fill(side_.begin(), side_.end(), 1.0);
   if (plan_.frictions) begin_slips();
   evaluate(place_.data(), rate_.data(), &found_);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
   for (std::size_t k = 0; k < stop_start_.size(); ++k)
     stop_start_[k] = found_.watched[(std::size_t)plan_.law.kinks * lanes_ + k];
+}
+
+// Which joints slip depends on the loads' sides.
+void ChartedMotion::begin(const std::int8_t* side) {
+  if (!plan_.frictions) return;
+  Packed sides = side_;
+  std::copy_n(side, sides.size(), sides.begin());
+  if (sides == begun_) return;
+  side_ = begun_ = sides;
+  std::fill(place_.begin(), place_.end(), 0.0), std::fill(elapsed_.begin(), elapsed_.end(), 0.0);
+  for (int l = 0; l < lanes_; ++l) time_[l] = starts_[l].time, placed_[l] = PREDICTED, drive(l, time_[l]);
+  find_start();
 }
 
 ChartedMotion::Stage ChartedMotion::make_stage() const {

@@ -95,6 +95,7 @@ class ChartedMotion : public Motion {
   bool event(int lane, int which, bool rising, double time) override;
   int event_at_start(int lane) override;
   void touch(int lane, int which, double time) override;
+  void begin(const std::int8_t* side) override;
   bool move(int lane, int which, double time, double* y) override;
   bool finds_more(int lane) override;
   bool gives_up(int lane) const override;
@@ -133,6 +134,7 @@ class ChartedMotion : public Motion {
   // Without `turns` those of `found` stay as they are.
   void evaluate(const double* place, const double* rate, Stage* found, double* bend = nullptr, bool turns = true);
   void set_places(const Places& places);
+  void find_start();
   void drive(int lane, double time);
   int edges() const { return driven_ ? (int)driven_->edges().size() : 0; }
   void stand_still();
@@ -257,6 +259,7 @@ class ChartedMotion : public Motion {
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
   Packed inputs_, input_rates_, input_seconds_, time_, side_;
+  Packed begun_;                    // kinks: the sides on which slips have begun
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;
