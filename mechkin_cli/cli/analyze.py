@@ -95,6 +95,10 @@ def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
             )
 
 
+DECIMAL_MARKS = ("point", "comma")
+"""What `--decimal` takes."""
+
+
 class AnalyzeCommand(NamedTuple):
     """The options of the command, as `commands` declares them."""
 
@@ -102,6 +106,7 @@ class AnalyzeCommand(NamedTuple):
     out: Path | None = None
     format: list[str] | None = None
     units: bool = False
+    decimal: str = DECIMAL_MARKS[0]
     set_: list[str] | None = None
     mode: str | None = None
     table: list[str] | None = None
@@ -132,6 +137,17 @@ class AnalyzeCommand(NamedTuple):
         return formats
 
     @property
+    def decimal_comma(self) -> bool:
+        """Whether numbers of CSV are written with a comma.
+
+        Raises:
+            UsageError: the mark is not known.
+        """
+        if self.decimal not in DECIMAL_MARKS:
+            raise UsageError(f"--decimal {self.decimal}: marks are {' and '.join(DECIMAL_MARKS)}")
+        return self.decimal == DECIMAL_MARKS[1]
+
+    @property
     def writes(self) -> bool:
         """Whether files are written."""
         return not self.json or self.out is not None or bool(self.format) or self.view
@@ -158,7 +174,7 @@ def analyze_files(command: AnalyzeCommand) -> ExitCode:
     force_width(command.lanes)
     force_threads(command.threads)
     settings, files = parameters(command.set_), command.files
-    _ = command.formats  # refused before any file is run
+    _ = command.formats, command.decimal_comma  # refused before any file is run
     code = ExitCode.OK
     records: list[Record] = []
     folders = _folders(files, command.out)
@@ -289,6 +305,7 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
         analysis.run,
         analysis.errors.columns if command.errors else None,
         command.units,
+        command.decimal_comma,
     )
 
 

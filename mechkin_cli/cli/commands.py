@@ -168,6 +168,14 @@ ANALYZE = Command(
             offers="format_names",
         ),
         Word("units", "Write units into CSV headers: theta [deg].", ("--units",)),
+        Word(
+            "decimal",
+            "Mark of numbers in CSV: point or comma, which has semicolons between cells.",
+            ("--decimal",),
+            "text",
+            "MARK",
+            default="point",
+        ),
         SET,
         MODE,
         TABLE,
@@ -386,6 +394,7 @@ STUDY = Command(
             "Threads of each process (0: as many as pay).",
             ("--threads",),
             "whole",
+            "NUMBER",
             default=0,
         ),
         Word(
@@ -393,6 +402,7 @@ STUDY = Command(
             "Number of new processes (0: compute in this one).",
             ("--processes",),
             "whole",
+            "NUMBER",
             default=0,
         ),
         Word(

@@ -36,6 +36,8 @@ from mechkin_cli.verdict import CONDITION_LIMITS, Status
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
+    from numpy.typing import NDArray
+
     from mechkin_cli.mechanism import Joint, Mechanism, Problem, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Bools, Floats
@@ -188,14 +190,12 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
         if not numbers.size:
             continue
         worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
-        where = f"row {numbers[0] + 1}" if numbers.size == 1 else f"{numbers.size} rows"
-        first = "" if numbers.size == 1 else f", the first is row {numbers[0] + 1}"
         verb = "is" if numbers.size == 1 else "are"
         found.append(
             Diagnostic(
                 status.label,
                 "warning",
-                f"{where} {verb} {status.label}{first}: {cost}",
+                f"{named_rows(numbers)} {verb} {status.label}: {cost}",
                 measured=f"condition {worst:.2g}",
                 limit=f"{limit:g}",
                 hint="move the sweep by a fraction of its step, or keep away from the singular "
@@ -213,7 +213,7 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     return Diagnostic(
         "not-converged",
         "error",
-        f"{failed.size} rows did not close, the first is row {failed[0] + 1}",
+        f"{named_rows(failed)} did not close",
         measured=f"residual {worst:.2g}",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint="this may be a special position; move the sweep by a fraction of its step",
@@ -307,7 +307,7 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
 
 
 SHOWN = 6
-"""Rows that a message names one by one."""
+"""Ranges of rows that a message names."""
 
 
 def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -343,14 +343,16 @@ def actuation_notes(result: RunRows) -> list[Diagnostic]:
     names = ", ".join(".".join(pair) for pair in drives.actuators)
     notes = []
     if lost.any():
+        where = named_rows(np.flatnonzero(lost))
         text = (
-            f"the actuators {names} are a singular set in {_rows(lost)}: the mechanism can move "
+            f"the actuators {names} are a singular set in {where}: the mechanism can move "
             f"there while all of them rest; their efforts and the reactions stay empty"
         )
         notes.append(_note("singular-actuators", result, lost, text, tolerances.ACTUATORS_AT_REST))
     if near.any():
+        where = named_rows(np.flatnonzero(near))
         text = (
-            f"the actuators {names} are next to a singular set in {_rows(near)}: their efforts "
+            f"the actuators {names} are next to a singular set in {where}: their efforts "
             "are large and keep fewer than nine digits"
         )
         limit = 1.0 / tolerances.CONDITION_NEAR_SINGULAR
@@ -377,13 +379,21 @@ def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> D
     )
 
 
-def _rows(rows: Bools) -> str:
-    numbers = [str(int(k) + 1) for k in np.flatnonzero(rows)]
-    if len(numbers) == 1:
-        return f"row {numbers[0]}"
-    if len(numbers) <= SHOWN:
-        return f"rows {', '.join(numbers[:-1])} and {numbers[-1]}"
-    return f"{len(numbers)} rows, the first is row {numbers[0]}"
+def named_rows(rows: Sequence[int] | NDArray[np.intp]) -> str:
+    """Rows, by numbers from 0 that rise, as the numbers from 1 of their ranges.
+
+    Example:
+        >>> named_rows([3, 4, 5, 8])
+        'rows 4 to 6 and 9'
+    """
+    numbers = np.asarray(rows) + 1
+    ranges = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
+    words = [f"{each[0]} to {each[-1]}" if each.size > 1 else f"{each[0]}" for each in ranges]
+    if len(words) > SHOWN:
+        left = sum(each.size for each in ranges[SHOWN:])
+        words[SHOWN:] = [f"{left} more up to row {numbers[-1]}"]
+    first = "row" if numbers.size == 1 else "rows"
+    return f"{first} {' and '.join(filter(None, (', '.join(words[:-1]), words[-1])))}"
 
 
 def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:

@@ -67,11 +67,18 @@ def _latex(runs: Sequence[Results]) -> Iterator[File]:
             yield f"{table.name}.tex", latex_bytes(table, results.source)
 
 
+def _workbook(runs: Sequence[Results]) -> Iterator[File]:
+    from mechkin_cli.tables.workbook import workbook_bytes
+
+    yield "analysis.xlsx", workbook_bytes(runs)
+
+
 WRITERS: Mapping[str, Callable[[Sequence[Results]], Iterator[File]]] = {
     "csv": _csv,
     "md": _markdown,
     "json": _json,
     "tex": _latex,
+    "xlsx": _workbook,
 }
 """Format -> its files, in the order that help and messages list them."""
 

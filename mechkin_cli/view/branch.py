@@ -204,12 +204,13 @@ def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[i
     their verdicts, of others all."""
     if table.of_rows:
         table = replace(table, columns=tuple(column.part(rows) for column in table.columns))
-    cells = read_table_text("cells.csv", csv_bytes(table)).rows
+    exact = read_table_text("cells.csv", csv_bytes(table)).rows
     return {
         "name": table.name,
         "title": table.title,
         "run": run,
         "columns": [{"label": one.label, "unit": one.unit} for one in table.columns],
-        "rows": [list(row) for row in cells],
+        "rows": [list(row) for row in table.listing.rows],
+        "exact": [list(row) for row in exact],
         "status": codes if table.of_rows else [],
     }

@@ -114,6 +114,7 @@ DATA = _object(
             run=TEXT,
             columns=_list(COLUMN),
             rows=_list(_list(TEXT)),
+            exact=_list(_list(TEXT)),
             status=_list(INDEX),
         )
     ),

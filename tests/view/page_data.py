@@ -287,6 +287,10 @@ def four_bar(rows: int = 73, poses: int | None = None) -> dict[str, Any]:
                     [f"{np.degrees(one):.2f}" for one in row]
                     for row in zip(theta, own.psi, own.phi, strict=True)
                 ],
+                "exact": [
+                    [repr(float(np.degrees(one))) for one in row]
+                    for row in zip(theta, own.psi, own.phi, strict=True)
+                ],
                 "status": [1 if abs(np.degrees(one) - 180) < 6 else 0 for one in theta],
             }
         ],

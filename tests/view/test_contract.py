@@ -13,6 +13,7 @@ from view.contract import DATA
 from view.seen import array, data
 
 import mechkin_cli as mk
+from mechkin_cli.tables.columns import TableColumn, Words, column_texts
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.view.page import script_json
@@ -62,6 +63,13 @@ def test_the_form_is_told_from_another() -> None:
         jsonschema.validate(shown, DATA)
 
 
+def shown_cell(column: TableColumn, row: int) -> str:
+    """A cell as the terminal prints it."""
+    if isinstance(column.values, Words):
+        return column.values.texts([row])[0]
+    return column.texts(column_texts(column.values, column.decimals, column.rounding))[row]
+
+
 @pytest.mark.parametrize("stem", ["rcsr", "rcsr_response", "stewart", "bennett"])
 def test_tables_are_those_of_the_files(stem: str) -> None:
     model = mk.load(FILE_OF[stem])
@@ -74,7 +82,9 @@ def test_tables_are_those_of_the_files(stem: str) -> None:
         for table, found in zip((*every, rows), tables, strict=True):
             text = csv_bytes(table).decode()
             labels, *cells = csv.reader(io.StringIO(text, newline=""))
-            assert found["rows"] == [row or [""] for row in cells]
+            assert found["exact"] == [row or [""] for row in cells]
+            printed = [[shown_cell(c, k) for c in table.columns] for k in range(len(cells))]
+            assert found["rows"] == printed
             assert [one["label"] for one in found["columns"]] == [c.label for c in table.columns]
             assert [one["unit"] for one in found["columns"]] == [c.unit for c in table.columns]
             assert len(labels) == len(found["columns"])

@@ -2,7 +2,6 @@
 
 import { verdictColour } from "../colours.js";
 import { choice, element } from "../dom.js";
-import { told } from "../numbers.js";
 
 const ROW = 26; // pixels; the style sheet has the same
 const BEYOND = 10; // rows above and below what is seen
@@ -78,8 +77,8 @@ export class Tables {
   }
 
   #row(at) {
-    const shown = this.theme.printing ? rounded : (text) => text;
-    const cells = this.table.rows[at].map((text) => element("td", {}, shown(text)));
+    const exact = this.table.exact[at];
+    const cells = this.table.rows[at].map((text, k) => element("td", exact[k] === text ? {} : { title: exact[k] }, text));
     const row = element("tr", { data: { at } }, ...cells);
     const code = this.table.status?.[at];
     if (code !== undefined) {
@@ -130,9 +129,4 @@ export class Tables {
   #mark() {
     for (const row of this.body.children) row.classList.toggle("here", row.dataset.at === String(this.now));
   }
-}
-
-/** A number with so many digits that columns fit on paper; other texts as they are. */
-function rounded(text) {
-  return text.length > 9 && /^-?\d*\.\d+(e[-+]?\d+)?$/i.test(text) ? told(Number(text)) : text;
 }

@@ -1,6 +1,6 @@
 // What is on the stage: the mechanism at the row that is shown, ghosts of other modes, paths, arrows, names.
 
-import { CURVES, MOST_COMPARED } from "../colours.js";
+import { curveColour } from "../colours.js";
 import { Arrows } from "./arrows.js";
 import { posesAt } from "./between.js";
 import { Labels } from "./labels.js";
@@ -11,7 +11,6 @@ import { vector } from "./vectors.js";
 import { diagonal, firstDirection, placesOf, withRoom } from "./viewpoint.js";
 
 const FLOOR = 2.6; // below the lowest joint, in joint sizes
-const MOST_VALUES = 8; // arrows whose values are written beside them
 const LOST = 0.35; // opacity of the mechanism in a row without position
 
 /** Draws the state. */
@@ -26,6 +25,7 @@ export class Theatre {
     this.ghosts = [];
     this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
+    this.noRoom = host.querySelector("#no-room");
     this.stage.afterDraw = () => this.#name();
     this.stage.whenSized = () => this.home();
     // until somebody turns or moves it, the view fits the stage, however large that becomes
@@ -88,8 +88,8 @@ export class Theatre {
     this.ghosts = [];
     if (!this.state.compare) return;
     const others = this.state.branches().filter((branch) => branch !== this.state.branch && branch.poseCount > 0);
-    this.ghosts = others.slice(0, MOST_COMPARED).map((branch) => {
-      const colour = CURVES[this.state.branches().indexOf(branch) % CURVES.length];
+    this.ghosts = others.map((branch) => {
+      const colour = curveColour(this.state.branches().indexOf(branch));
       const mechanism = new Mechanism(this.data, branch, this.unit, colour);
       const paths = new Paths(this.data, branch, this.unit, 0.4);
       this.stage.scene.add(mechanism.object, paths.object);
@@ -152,14 +152,16 @@ export class Theatre {
       }
     }
     const arrows = this.arrows.all.filter(({ group, tip }) => group.visible && tip);
-    for (const { arrow, group, magnitude, tip } of arrows.length > MOST_VALUES ? [] : arrows) {
+    for (const { arrow, group, magnitude, tip } of this.arrows.object.visible ? arrows : []) {
       // what a name says in brackets stands in the list of arrows
       const name = arrow.name.replace(/ \(.*\)$/, "*");
       wanted.unshift({
         key: `arrow ${arrow.name}`, text: `${name} ${magnitude.toPrecision(4)} ${arrow.unit}`, places: [tip, group.position], kind: arrow.kind,
       });
     }
-    this.labels.show(wanted, camera, width, height);
+    const left = this.labels.show(wanted, camera, width, height).filter((key) => key.startsWith("arrow ")).length;
+    this.noRoom.hidden = left === 0;
+    this.noRoom.textContent = `${left} of ${arrows.length} values have no room: come nearer, or choose fewer under forces`;
   }
 
   /** Looks from where the page looked first, so that everything is seen. */
