@@ -1,4 +1,4 @@
-"""Joints that loops let slip in fewer directions than their surfaces could, against closed forms."""
+"""Joints that loops let slip in fewer directions than their surfaces could: closed forms."""
 
 from __future__ import annotations
 
