@@ -178,14 +178,14 @@ class LoadBuilder:
             self._acting = self._runs_of(path, section.runs)
             self._add(path, section)
 
-    def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> Amount:
+    def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> JointLoad:
         """The effort along a coordinate that exists, in one run."""
         self._acting = (run,)
         joint, _, coordinate = name.rpartition(".")
         dimension = MOMENT if is_angle(coordinate) else FORCE
-        amount = self._value(path, value, dimension, name)
-        self._put(JointLoad(joint, coordinate, amount))
-        return amount
+        load = JointLoad(joint, coordinate, self._value(path, value, dimension, name))
+        self._put(load)
+        return load
 
     def of_run(
         self, run: str, mechanism: Mechanism

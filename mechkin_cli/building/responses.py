@@ -25,8 +25,8 @@ from mechkin_cli.mechanism import (
     Assembly,
     CrossingEnd,
     DeadCentreEnd,
-    Effort,
     Joint,
+    JointLoad,
     Moments,
     MotionInputs,
     Problem,
@@ -35,7 +35,6 @@ from mechkin_cli.mechanism import (
     Stop,
     TurnsEnd,
     is_angle,
-    renumbered_amount,
     response_problem,
 )
 from mechkin_cli.record import replace
@@ -271,11 +270,6 @@ def build_responses(
     return built
 
 
-def _numbered(efforts: Iterable[Effort], numbers: Mapping[int, int]) -> tuple[Effort, ...]:
-    """Efforts with the laws of their amounts by the numbers of their own run."""
-    return tuple(e._replace(amount=renumbered_amount(e.amount, numbers)) for e in efforts)
-
-
 class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
@@ -302,7 +296,7 @@ class _ResponseBuilder:
             place=self.fields.document.key_place(path),
             start=start,
             assembly=self._assembly(path, section),
-            efforts=_numbered(efforts, numbers),
+            efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
             course=driven.course,
             moments=clock.time,
@@ -324,7 +318,7 @@ class _ResponseBuilder:
             known,
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
-            efforts=_numbered(efforts, numbers),
+            efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
@@ -382,7 +376,7 @@ class _ResponseBuilder:
             return self.problem.assembly
         return replace(self.problem.assembly, near=near, mode=section.mode)
 
-    def _efforts(self, path: Path, section: written.Response, run: str) -> tuple[Effort, ...]:
+    def _efforts(self, path: Path, section: written.Response, run: str) -> list[JointLoad]:
         efforts = []
         for name, value in section.efforts.items():
             place = (*path, "efforts", name)
@@ -392,8 +386,8 @@ class _ResponseBuilder:
                 text = f"{name} is driven, so the effort of its drive follows from the motion"
                 self.fields.key_error("effort-and-drive", place, text, "remove one of the two")
                 continue
-            efforts.append(Effort(*_split(name), self.loads.add_effort(place, name, value, run)))
-        return tuple(efforts)
+            efforts.append(self.loads.add_effort(place, name, value, run))
+        return efforts
 
     def _tolerance(self, path: Path, text: str | None) -> float:
         if text is None:

@@ -70,7 +70,6 @@ if TYPE_CHECKING:
         Tensor as Tensor,
         Varying as Varying,
         diagonal as diagonal,
-        renumbered_amount as renumbered_amount,
         without_effort as without_effort,
     )
     from mechkin_cli.mechanism.motion import (
@@ -139,7 +138,6 @@ if TYPE_CHECKING:
         CrossingEnd as CrossingEnd,
         Cycle as Cycle,
         DeadCentreEnd as DeadCentreEnd,
-        Effort as Effort,
         Flywheel as Flywheel,
         Harmonics as Harmonics,
         LoadWork as LoadWork,
@@ -180,7 +178,7 @@ __getattr__, __dir__ = lazy_names(
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
-        "Varying diagonal renumbered_amount without_effort",
+        "Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Moments MotionInputs ORDERS "
         "Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
@@ -192,7 +190,7 @@ __getattr__, __dir__ = lazy_names(
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities",
-        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Effort Flywheel Harmonics LoadWork "
+        "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem StartValue Stop TurnsEnd",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot frame_about norm perpendicular "
         "scale subtract turned_shortest turned_tensor unit upright",

@@ -211,7 +211,7 @@ class LinkLoad(_Load):
 
     def renumbered(self, numbers: Mapping[int, int]) -> Self:
         """As of every load."""
-        x, y, z = (renumbered_amount(amount, numbers) for amount in self.value)
+        x, y, z = (_renumbered(amount, numbers) for amount in self.value)
         return replace(self, value=(x, y, z))
 
 
@@ -222,12 +222,17 @@ class JointLoad(_Load):
 
     joint: str
     coordinate: str
-    value: Amount
+    amount: Amount
+
+    @property
+    def name(self) -> str:
+        """The coordinate's full name, `O1.theta`."""
+        return f"{self.joint}.{self.coordinate}"
 
     @property
     def amounts(self) -> tuple[Amount, ...]:
-        """The value."""
-        return (self.value,)
+        """Its amount."""
+        return (self.amount,)
 
     @property
     def acts_at(self) -> Coordinate:
@@ -236,7 +241,7 @@ class JointLoad(_Load):
 
     def renumbered(self, numbers: Mapping[int, int]) -> Self:
         """As of every load."""
-        return replace(self, value=renumbered_amount(self.value, numbers))
+        return replace(self, amount=_renumbered(self.amount, numbers))
 
 
 class _Element(_Load):
@@ -299,7 +304,7 @@ class Damper(_Element):
 Load = LinkLoad | JointLoad | Spring | Damper
 
 
-def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
+def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
     """The amount with its law, if it has one, under another number."""
     if isinstance(amount, Varying):
         return amount._replace(number=numbers[amount.number])

@@ -81,8 +81,8 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         return _link_load(layout, load)
     if isinstance(load, JointLoad):
         axis, reference, freedom, slide = load_coordinate(layout, load.joint, load.coordinate)
-        varies = isinstance(load.value, Varying)
-        constant = 0.0 if isinstance(load.value, Varying) else load.value
+        varies = isinstance(load.amount, Varying)
+        constant = 0.0 if isinstance(load.amount, Varying) else load.amount
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
         code = LoadCode.COORDINATE
         return record("add_load", code, axis, reference, freedom, ZERO, ZERO, value, varies)

@@ -177,7 +177,7 @@ def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]
     length = layout.length
     if isinstance(load, JointLoad):
         per = length * length if is_angle(load.coordinate) else length
-        return [_amount(load.value, values) / per]
+        return [_amount(load.amount, values) / per]
     assert isinstance(load, LinkLoad)
     per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
     components: Any = [_amount(amount, values) for amount in load.value]
