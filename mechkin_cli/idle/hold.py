@@ -64,6 +64,8 @@ from mechkin_cli.mechanism import (
     unit,
 )
 
+Triad = tuple[Vector, Vector, Vector]
+
 
 def _turns_with_line(
     mechanism: Mechanism, joint: Joint, link: str, line: Vector
@@ -91,9 +93,10 @@ def _turns_with_line(
     return joint._replace(parts=tuple(parts)), held
 
 
-def three_turns(joint: Joint) -> Joint:
-    """A joint whose ball is turns about x, y and z as drawn."""
-    x, y, z = GROUND.x, GROUND.y, GROUND.z
+def three_turns(joint: Joint, axes: Triad = (GROUND.x, GROUND.y, GROUND.z)) -> Joint:
+    """A joint whose ball is turns about three axes, square to each other, in its own axes as
+    drawn."""
+    x, y, z = axes
     parts: list[Part] = []
     for part in joint.parts:
         parts += _turns(part, [(x, y), (y, z), (z, x)]) if part.type.is_ball else [part]

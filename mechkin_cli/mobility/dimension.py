@@ -219,18 +219,24 @@ def component_at(
     raise Unclear("the rank changes from place to place")
 
 
-def excess_of(part: LoopPart, family: Sequence[AssemblyComponent], random: RandomStarts) -> int:
-    """How many motions more than dimensions the first order has everywhere along a family, as far
-    as a long move along it from each of its places shows."""
-    least = min(one.excess for one in family)
+def general_places(
+    part: LoopPart, family: Sequence[AssemblyComponent], random: RandomStarts
+) -> tuple[AssemblyComponent, ...]:
+    """Those places of a family at which the first order has the fewest motions, its own or one of
+    those to which long moves along it lead; where it has as many as dimensions they are the steps
+    along it, without the doubt of chords."""
+    known, least = list(family), min(one.excess for one in family)
     for one in family if least else ():
         heading = _scaled(_units(random, 1, one.dimension) @ one.tangents.T)
         moves = tolerances.MOBILITY_FAR_MOVE[0] * np.concatenate([heading, -heading])
         ends = closed(part, part.moved(np.repeat(one.state[None], 2, axis=0), moves))
-        for jacobian in ends.jacobians[ends.good(tolerances.MOBILITY_CLOSED)]:
-            rank = rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED)
-            least = min(least, max(rank.motions.shape[1] - one.dimension, 0))
-    return least
+        good = ends.good(tolerances.MOBILITY_CLOSED)
+        for state, jacobian in zip(ends.states[good], ends.jacobians[good], strict=True):
+            motions = rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions
+            if motions.shape[1] == one.dimension:
+                known.append(replace(one, state=state, tangents=motions, excess=0, alike=()))
+    least = min(one.excess for one in known)
+    return tuple(one for one in known if one.excess == least)
 
 
 def _chords(part: LoopPart, place: Floats, ends: Closed, moves: Floats) -> tuple[int, Floats]:

@@ -13,7 +13,7 @@ closed with all their equations, so that a coordinate that does not rest leaves 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,18 +23,23 @@ from mechkin_cli.idle import three_turns
 from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import (
     Attached,
+    Joint,
     LockedFreedom,
     Problem,
+    Vector,
+    cross,
+    is_unnamed,
     is_written,
     slide_name,
     turn_name,
+    unit,
 )
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart, home
 from mechkin_cli.mobility.dimension import (
     AssemblyComponent,
     LocalFreedom,
-    excess_of,
     freedom_of,
+    general_places,
 )
 from mechkin_cli.mobility.opened import rank_of
 from mechkin_cli.record import NamedTuple
@@ -82,17 +87,17 @@ def families_of(
     for part, freedom in freedoms:
         families = [family for family in freedom.families if family[0].dimension]
         random = RandomStarts()
-        excess = [excess_of(part, family, random) for family in families]
-        if len(families) < 2 and not any(excess):
+        general = [general_places(part, family, random) for family in families]
+        if len(families) < 2 and not any(places[0].excess for places in general):
             continue
         rests = [_resting(body, start.state, part, family) for family in families]
         always = set(rests[0]).intersection(*rests[1:]) if len(rests) > 1 else set()
-        for family, names, more in zip(families, rests, excess, strict=True):
+        for places, names in zip(general, rests, strict=True):
             own = tuple(name for name in names if name not in always)
             free = tuple(
-                f"{name}.{c}" for name, c in _free(body, start.state, part, family, driven)
+                f"{name}.{c}" for name, c in _free(body, start.state, part, places, driven)
             )
-            found.append(MotionFamily(family[0].dimension, more, own, free))
+            found.append(MotionFamily(places[0].dimension, places[0].excess, own, free))
     return tuple(dict.fromkeys(found))
 
 
@@ -122,17 +127,16 @@ def _resting(body: Body, start: Floats, part: LoopPart, family: Places) -> list[
     rods = {link for spin in mechanism.spins for link in spin.links}
     links = [link for link in body.links if link not in rods and is_written(link)]
     before = Configuration(body, start)
-    turned = dict.fromkeys(links, 0.0)
-    shifted = {name: np.zeros(3) for name, at in mechanism.points.items() if at.link in links}
-    for one in family:
-        place = Configuration(body, one.state)
-        for link in links:
-            off = np.abs(place.poses[link][0] - before.poses[link][0]).max()
-            turned[link] = max(turned[link], float(off))
-        for name in shifted:
-            at = mechanism.points[name]
-            off = _spot(place, at) - _spot(before, at)
-            shifted[name] = np.maximum(shifted[name], np.abs(off))
+    places = [Configuration(body, one.state) for one in family]
+    turned = {
+        link: _usual([np.abs(p.poses[link][0] - before.poses[link][0]).max() for p in places])
+        for link in links
+    }
+    shifted = {
+        name: _usual([np.abs(_spot(place, at) - _spot(before, at)) for place in places])
+        for name, at in mechanism.points.items()
+        if at.link in links
+    }
     least = tolerances.MOBILITY_CHORD_DOUBT
     names = [f"the turns of {link}" for link, off in turned.items() if off < least]
     names += [
@@ -144,6 +148,12 @@ def _resting(body: Body, start: Floats, part: LoopPart, family: Places) -> list[
     still = np.zeros(body.count, dtype=np.bool_)
     still[list(_still(part, start, family))] = True
     return list(dict.fromkeys([*names, *body.coordinates(still)]))
+
+
+def _usual(sizes: Sequence[Floats] | Floats) -> Floats:
+    """The lower median of sizes (places, ...): next to where families cross a double root is known
+    to less than elsewhere."""
+    return np.asarray(np.sort(np.asarray(sizes), axis=0)[(len(sizes) - 1) // 2])
 
 
 def _spot(place: Configuration, at: Attached) -> Floats:
@@ -167,19 +177,24 @@ def held_to_family(problem: Problem) -> tuple[LockedFreedom, ...]:
     start = home(body)
     if not start.assembled or _freedom_at_rest(body, start, driven) <= idle:
         return held
-    random, more = RandomStarts(), []
+    random, more, freedoms = RandomStarts(), [], int(body.free.size)
     for part in body.parts:
         freedom, columns = freedom_of(part, start.state, random), part.driven(body, driven)
-        fitting = [
-            family
-            for family in freedom.families
-            if _rank(part, start.state, family, columns) == len(columns)
-        ]
+        fitting = []
+        for family in freedom.families:
+            places = general_places(part, family, random)
+            if _rank(part, start.state, places, columns) == len(columns):
+                fitting.append((family, places[0]))
+        # what is least free is driven by the inputs, if any is
+        least = min((place.dimension for _, place in fitting), default=0)
+        fitting = [one for one in fitting if one[1].dimension == least]
         if freedom.doubt or len(fitting) != 1:
             return held
-        if excess_of(part, fitting[0], random):
-            more += _holds(problem, body, part, start.state, freedom.first.motions, fitting[0])
-    return (*held, *more)
+        freedoms += least
+        family, place = fitting[0]
+        if place.excess:
+            more += _holds(problem, body, part, start.state, freedom.first.motions, family)
+    return (*held, *more) if freedoms == len(driven) + idle else held
 
 
 def _freedom_at_rest(body: Body, place: Configuration, driven: Sequence[tuple[str, str]]) -> int:
@@ -200,17 +215,18 @@ def _holds(
     """Holds of coordinates that rest along a family, as many as there are more `motions` (columns,
     count) of first order at the drawing, so that with the inputs at rest none of these is left;
     none where too few coordinates are independent."""
-    candidates = _candidates(problem, body, part, _still(part, state, family))
     rows = motions[part.driven(body, problem.motion.driven)]
     left = motions @ rank_of(rows, tolerances.RANK_ZERO).motions
+    candidates = list(_candidates(problem, body, left, _still(part, state, family)))
+    rates = np.array([row for row, _ in candidates]).reshape(-1, left.shape[1])
     chosen: list[LockedFreedom] = []
     for _ in range(motions.shape[1] - family[0].dimension):
-        sizes = [np.sqrt(left[column] @ left[column]) for column, _ in candidates]
-        if not sizes or max(sizes) < tolerances.HELD_WELL:
+        sizes = np.sqrt(np.sum(rates * rates, axis=1))
+        if sizes.max(initial=0.0) < tolerances.HELD_WELL:
             return []
-        column, hold = candidates.pop(int(np.argmax(sizes)))
-        chosen.append(hold)
-        left = left @ rank_of(left[[column]], tolerances.RANK_ZERO).motions
+        best = int(np.argmax(sizes))
+        chosen.append(candidates[best][1])
+        rates = rates @ rank_of(rates[[best]], tolerances.RANK_ZERO).motions
     return chosen
 
 
@@ -218,50 +234,74 @@ def _still(part: LoopPart, state: Floats, family: Places) -> dict[int, int]:
     """Columns of the whole that rest along a family, where the drawing has them, with their numbers
     in the part."""
     starts = np.repeat(state[None], len(family), axis=0)
-    steps = np.abs(part.steps(np.array([one.state for one in family]), starts)).max(axis=0)
+    steps = _usual(np.abs(part.steps(np.array([one.state for one in family]), starts)))
     still = np.flatnonzero(steps < tolerances.MOBILITY_CHORD_DOUBT)
     return {int(part.columns[k]): int(k) for k in still}
 
 
 def _candidates(
-    problem: Problem, body: Body, part: LoopPart, still: dict[int, int]
-) -> list[tuple[int, LockedFreedom]]:
-    """What can be held, with its column: coordinates that are `still` and no input, turns of balls
-    of which all three are; no spheres of a rod, which stand for
-    a length."""
+    problem: Problem, body: Body, motions: Floats, still: dict[int, int]
+) -> Iterator[tuple[Floats, LockedFreedom]]:
+    """What can be held, with its rates in some motions (columns, count): coordinates that are
+    `still` and no input, turns of balls of which all three are; no spheres of a rod, which stand
+    for a length."""
     mechanism = problem.mechanism
     rods = {name for spin in mechanism.spins for name in spin.joints}
     driven = {name for name, _ in problem.driven}
-    found = []
     for joint in mechanism.joints.values():
         columns = body.columns[joint.name]
-        balls = {k for k, freedom in enumerate(joint.type.chain) if freedom.motion == "ball"}
+        balls = [k for k, freedom in enumerate(joint.type.chain) if freedom.motion == "ball"]
         if joint.name in rods or (balls and joint.name in driven):
             continue
-        told = three_turns(joint) if all(columns[k] in still for k in balls) else None
+        if balls and all(columns[k] in still for k in balls):
+            rates = motions[[still[columns[k]] for k in balls]]
+            axes, told = _turns_of(body, joint, columns[balls[0]], rates)
+            for k, axis in zip(balls, axes, strict=True):
+                yield axis @ rates, _hold(joint, k, turn_name(k), told)
         names = {k: name for name, k in joint.type.freedom_of.items()}
-        link = joint.second if is_written(joint.second) else joint.first
         for k, column in enumerate(columns):
-            turns, name = k in balls, names.get(k, slide_name(k))
-            if column not in still or (joint.name, name) in problem.driven:
-                continue
-            if turns and told is None:
-                continue
-            holding = f"{joint.name}.{name}.effort"
-            if turns or k not in names:
-                name = turn_name(k) if turns else name
-                holding = f"{link}.holding_{'moment' if turns else 'force'}_{k}"
-            hold = LockedFreedom(
-                (link,),
-                (joint.name,),
-                (joint.name, name),
-                frozenset(),
-                {link: None},
-                not turns,
-                holding,
-                told if turns else None,
-                everywhere=False,
-                idle=False,
-            )
-            found.append((still[column], hold))
-    return found
+            name = names.get(k, slide_name(k))
+            if k not in balls and column in still and (joint.name, name) not in problem.driven:
+                yield motions[still[column]], _hold(joint, k, name, None)
+
+
+def _turns_of(body: Body, joint: Joint, column: int, rates: Floats) -> tuple[Floats, Joint]:
+    """Three axes (3, 3) in which a ball's turns from a `column` on are told, that of the largest of
+    its rates (3, count) first, and the joint told by them."""
+    carrier = next(one for one in body.layout.carriers if one.column == column)
+    ball = next(part for part in joint.parts if part.type.is_ball)
+    axes = np.linalg.svd(rates)[0].T
+    # rounded, so that no plan holds digits that change with the linear algebra of a machine
+    x, y = (_rounded(axis) for axis in axes[:2])
+    x = unit(x)
+    z = unit(cross(x, y))
+    ground = [carrier.part.before.vector(axis) for axis in (x, cross(z, x), z)]
+    a, b, c = (ball.before.components(axis) for axis in ground)
+    return np.array([x, cross(z, x), z]), three_turns(joint, (a, b, c))
+
+
+def _rounded(axis: Floats) -> Vector:
+    x, y, z = (round(float(entry), tolerances.IDLE_DECIMALS) for entry in axis)
+    return (x, y, z)
+
+
+def _hold(joint: Joint, number: int, name: str, told: Joint | None) -> LockedFreedom:
+    """Of a freedom by its number, a turn of a ball where it is `told` as others."""
+    link = joint.second if is_written(joint.second) else joint.first
+    turns = told is not None
+    holding = f"{joint.name}.{name}.effort"
+    if is_unnamed(name):
+        holding = f"{link}.holding_{'moment' if turns else 'force'}_{number}"
+    where = (joint.name, name)
+    return LockedFreedom(
+        (link,),
+        (joint.name,),
+        where,
+        frozenset(),
+        {link: None},
+        not turns,
+        holding,
+        told,
+        everywhere=False,
+        idle=False,
+    )
