@@ -1,4 +1,4 @@
-"""Joints that loops let slip in fewer directions than their surfaces could: closed forms."""
+"""Joints that loops let slip in fewer directions than their surfaces, against closed forms."""
 
 from __future__ import annotations
 
@@ -56,6 +56,23 @@ def test_a_runner_beside_a_rail_comes_to_rest_and_turns_back(speed: float) -> No
     early, late = np.minimum(time, 1 / 3), np.maximum(time - 1 / 3, 0.0)
     want = np.sign(speed) * (1.5 * early - 2.25 * early**2 - 0.75 * late**2)
     assert np.abs(have - want).max() < 1e-10
+
+
+@pytest.mark.parametrize("speed", [1.5, -1.5])
+@pytest.mark.parametrize("radius", [0.05, 0.3])
+def test_a_rail_and_its_runner_come_to_rest_together_and_stay(speed: float, radius: float) -> None:
+    """Both rub, by 6 N together. Their forces at rest are not unique; the pendulum goes on."""
+    both = f"""coefficient: 0.3}}
+  - {{type: friction, joint: A, coefficient: 0.3, radius: {radius}"""
+    text = HEAD + SLED.format(coefficient="0", x="0 N", y="0 N", speed=speed)
+    text = text.replace("coefficient: 0}", both + "}")
+    found = mk.loads(text).respond("r", ["A.s", "A.s_dot", "B.theta", "time"])
+    assert not [d for d in found.diagnostics if d.severity == "error" and "ends" in d.message]
+    early = np.minimum(np.array(found["time"]), 0.5)
+    want = np.sign(speed) * 1.5 * early * (1 - early)
+    assert np.abs(np.array(found["A.s"]) - want).max() < 1e-10
+    assert np.abs(np.array(found["A.s_dot"])[6:]).max() < 1e-15
+    assert np.ptp(np.array(found["B.theta"])[6:]) > 0.5
 
 
 BALL = """

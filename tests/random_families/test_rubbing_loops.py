@@ -30,6 +30,14 @@ def test_no_motion_with_friction_creeps_or_is_lost(seed: int) -> None:
         assert not judge(text, motion_alone=True).fault
 
 
+@pytest.mark.parametrize("seed", [1150, 1290, 1328, 1393, 1486, 1573, 1637, 1682])
+def test_joints_that_rest_together_are_decided(seed: int) -> None:
+    """Rounding of where each begins to go is no room between them."""
+    text = rubbing_loop(seed)
+    assert text is not None
+    assert judge(text, motion_alone=True).word == "ok"
+
+
 def test_a_ball_whose_friction_feeds_itself_jams() -> None:
     """Its normal load grows without bound, by the dense equations, too."""
     text = rubbing_loop(401)

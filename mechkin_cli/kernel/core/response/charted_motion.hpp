@@ -181,7 +181,7 @@ class ChartedMotion : public Motion {
     std::vector<double> row;
     double rest = 0.0, size = 0.0;
   };
-  SlipRow slip_row(int lane, int c, const std::vector<SlipRow>& basis) const;
+  SlipRow slip_row(int lane, int k, int c, const std::vector<SlipRow>& basis) const;
   std::vector<SlipRow> held_rows(int lane, const std::vector<int>& joints) const;
   bool slips_beside(int lane, const Signs& way, const std::vector<int>& joints) const;
   bool aim(int lane, const std::vector<int>& joints, const Signs& way, const double* place, const double* rate,
