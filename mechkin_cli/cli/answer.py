@@ -4,6 +4,7 @@ mobility, modes and ranges.
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,7 @@ from mechkin_cli import tables
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
+    fitted,
     model_of,
     parameters,
     put,
@@ -32,6 +34,10 @@ if TYPE_CHECKING:
     from mechkin_cli.model import Model
     from mechkin_cli.modes import Modes, Ranges
     from mechkin_cli.tables import Columns
+
+
+INDENT = 13
+"""Characters before what a line of `mechkin mobility` says."""
 
 
 class _Answer(Protocol):
@@ -94,8 +100,14 @@ def mobility(
         ask=lambda model: model.mobility(),
         is_answered=lambda found: found.mobility is not None,
         record_of=lambda _, found: _record(found),
-        show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
+        show=lambda _, found: _print_mobility(found, quiet),
     )
+
+
+def _print_mobility(found: Mobility, quiet: bool) -> None:
+    head, *lines = _lines(found, quiet)
+    texts = (fitted(head, sys.stdout), *(fitted(line, sys.stdout, INDENT) for line in lines))
+    put("\n".join(texts) + "\n")
 
 
 def _record(found: Mobility) -> Record:
@@ -157,7 +169,7 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
     ]
     if found.fixed:
         rows.append(("fixed", f"{', '.join(found.fixed)} never move"))
-    return [*lines, *(f"  {name:<11}{text}" for name, text in rows)]
+    return [*lines, *(f"  {name:<{INDENT - 2}}{text}" for name, text in rows)]
 
 
 # `mechkin modes`: the ways to assemble a mechanism.
