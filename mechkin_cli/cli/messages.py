@@ -224,14 +224,18 @@ def _on_terminal() -> bool:
 
 
 def _fitted(text: str) -> str:
-    text = legible(text)
-    if not _on_terminal():
+    return fitted(legible(text), sys.stderr)
+
+
+def fitted(text: str, stream: TextIO | None, indent: int = 4) -> str:
+    """A line, on a terminal in as many as its width needs, those after the first indented."""
+    if stream is None or not stream.isatty():
         return text
     from shutil import get_terminal_size
     from textwrap import wrap
 
     width = max(get_terminal_size((80, 24)).columns, 40)
-    lines = wrap(text, width, subsequent_indent="    ", break_on_hyphens=False)
+    lines = wrap(text, width, subsequent_indent=" " * indent, break_on_hyphens=False)
     return "\n".join(lines)
 
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from typing import TYPE_CHECKING
 
 from mechkin_cli.cli.answer import answer
-from mechkin_cli.cli.messages import ExitCode, Record, put
+from mechkin_cli.cli.messages import ExitCode, Record, fitted, put
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from mechkin_cli.mobility import Mobility
+
+INDENT = 13
+"""Characters before what a line says."""
 
 
 def mobility(
@@ -26,8 +30,14 @@ def mobility(
         ask=lambda model: model.mobility(),
         is_answered=lambda found: found.mobility is not None,
         record_of=lambda _, found: _record(found),
-        show=lambda _, found: put("\n".join(_lines(found, quiet)) + "\n"),
+        show=lambda _, found: _print(found, quiet),
     )
+
+
+def _print(found: Mobility, quiet: bool) -> None:
+    head, *lines = _lines(found, quiet)
+    texts = (fitted(head, sys.stdout), *(fitted(line, sys.stdout, INDENT) for line in lines))
+    put("\n".join(texts) + "\n")
 
 
 def _record(found: Mobility) -> Record:
@@ -100,4 +110,4 @@ def _lines(found: Mobility, quiet: bool) -> list[str]:
     if found.fixed:
         rows.append(("fixed", f"{', '.join(found.fixed)} never move"))
     rows += [("family", family.sentence) for family in found.families]
-    return [*lines, *(f"  {name:<11}{text}" for name, text in rows)]
+    return [*lines, *(f"  {name:<{INDENT - 2}}{text}" for name, text in rows)]

@@ -171,3 +171,22 @@ def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
     np.testing.assert_allclose(np.hypot(drawn[:, 0], drawn[:, 1]), 20.0, rtol=2e-5)
     between = 0.5 * (drawn[1:] + drawn[:-1])
     assert np.hypot(between[:, 0], between[:, 1]).min() > 0.998 * 20.0
+
+
+def test_a_spring_ends_at_its_points(show: Show) -> None:
+    data = four_bar()
+    tie = {"kind": "spring", "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
+    data["runs"][0]["ties"] = [tie, {**tie, "kind": "damper"}]
+    browser = show(data)
+    bar = FourBar(np.radians([90.0]))
+    browser.evaluate("window.mechkin.seek(18)")
+    for k in (0, 1):
+        ends = browser.evaluate(f"""(() => {{
+          const {{ group }} = window.mechkin.theatre.ties.all[{k}];
+          group.updateMatrixWorld(true);
+          const whole = window.mechkin.theatre.ties.all[{k}].length;
+          const place = (y) => group.position.clone().set(0, y, 0);
+          const at = (y) => place(y).applyMatrix4(group.matrixWorld).toArray();
+          return [at(0), at(whole)];
+        }})()""")
+        np.testing.assert_allclose(ends, [[0, 50, 0], bar.crank[0]], atol=SINGLE * 300)

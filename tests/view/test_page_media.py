@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from view.browser import Browser
-from view.page_data import (
-    four_bar,
-)
+from view.page_data import four_bar, packed
 from view.watching import Show, colours, row
 
 
@@ -32,14 +31,16 @@ def test_dark_and_light(show: Show) -> None:
 def test_print_shows_picture_and_all_panels(show: Show, tmp_path: Path) -> None:
     data = four_bar()
     data["tables"][0]["rows"][0] = ["0.123457", "-1.5", "1.23457e-05"]
-    data["tables"][0]["exact"][0] = ["0.1234567890123", "-1.5", "1.23456789e-05"]
+    first_row = (0.1234567890123, -1.5, 1.23456789e-5)
+    for column, value in zip(data["tables"][0]["columns"], first_row, strict=True):
+        column["exact"] = packed("f64", np.full(73, value))
     browser = show(data, dark=True)
     first = (
         "[...document.querySelector('tr[data-at=\"0\"]').children].map((each) => each.textContent)"
     )
     assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
     titles = browser.evaluate(first.replace("textContent", "title"))
-    assert titles[:3] == ["0.1234567890123", "", "1.23456789e-05"]
+    assert titles[:3] == ["0.1234567890123", "", "0.0000123456789"]
     browser.media(media="print")
     assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
     shown = "getComputedStyle(document.querySelector('{0}')).display"

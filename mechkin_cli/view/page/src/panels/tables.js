@@ -1,6 +1,7 @@
 // Tables with verdicts. Only the rows that are seen are elements, so that 20 000 rows scroll as ten do.
 
 import { verdictColour } from "../colours.js";
+import { numbers } from "../data.js";
 import { choice, element } from "../dom.js";
 
 const ROW = 26; // pixels; the style sheet has the same
@@ -43,6 +44,8 @@ export class Tables {
     const run = table.status?.length ? this.state.data.runs.find((each) => each.name === table.run) : undefined;
     this.run = run ?? null;
     this.own = run ? this.state.branches(run)[0] : null;
+    const curves = this.own?.columns.filter((each) => each.table === table.name) ?? [];
+    this.exact = table.columns.map(({ exact, label }) => numbers(exact ?? curves.find((each) => each.label === label)?.values));
     this.places = new Map();
     if (run) table.rows.forEach((_, at) => this.places.set(this.#runRow(at), at));
     const cells = table.columns.map(({ label, unit }) =>
@@ -77,8 +80,7 @@ export class Tables {
   }
 
   #row(at) {
-    const exact = this.table.exact[at];
-    const cells = this.table.rows[at].map((text, k) => element("td", exact[k] === text ? {} : { title: exact[k] }, text));
+    const cells = this.table.rows[at].map((text, k) => element("td", allDigits(this.exact[k]?.[at], text), text));
     const row = element("tr", { data: { at } }, ...cells);
     const code = this.table.status?.[at];
     if (code !== undefined) {
@@ -129,4 +131,9 @@ export class Tables {
   #mark() {
     for (const row of this.body.children) row.classList.toggle("here", row.dataset.at === String(this.now));
   }
+}
+
+/** What a cell shows on hover: all digits of its number, where the text has fewer. */
+function allDigits(number, text) {
+  return Number.isFinite(number) && Number(text) !== number ? { title: String(number) } : {};
 }
