@@ -121,12 +121,20 @@ class Loop:
         return np.asarray(motions[int((values > rank).sum()) :])
 
     def _dimension(self, q: Floats) -> int:
-        """Of the motion through q, at a place near it: in q itself several may meet again."""
-        motions = self.kernel(q, 1e-6)
-        if len(motions) > 1:
+        """Of the motion through q, the least at places near it: in q itself several may meet."""
+        least = len(self.kernel(q, 1e-6))
+        for _ in range(4):
+            motions = self.kernel(q, 1e-6)
+            if least <= 1:
+                break
             there = self.closed(q + motions.T @ self.rng.normal(size=len(motions)) * 0.05, 0.05)
             if there is not None:
-                q, motions = there, self.kernel(there, 1e-6)
+                least = min(least, self._spread(there))
+        return least
+
+    def _spread(self, q: Floats) -> int:
+        """How many independent directions short moves from q take that close again."""
+        motions = self.kernel(q, 1e-6)
         if len(motions) <= 1:
             return len(motions)
         moves = []

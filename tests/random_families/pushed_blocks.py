@@ -60,7 +60,7 @@ class Stop:
 def _push(rng: np.random.Generator) -> Push:
     kind = int(rng.integers(0, 8))
     a, b = (round(float(x), 3) for x in rng.uniform(-8, 8, 2))
-    c, t = round(float(rng.uniform(-0.8, 0.8)), 3), round(float(rng.uniform(0.1, 1)), 3)
+    c, t = round(float(rng.uniform(-0.8, 0.8)), 1), round(float(rng.uniform(0.1, 1)), 1)
     end = round(t + float(rng.uniform(0.05, 0.8)), 3)
     place: Value = lambda _, x, __: x - c  # noqa: E731
     later: Value = lambda time, *_: time - t  # noqa: E731
@@ -96,7 +96,7 @@ def _at(moment: float) -> Value:
 
 
 def _stop(rng: np.random.Generator) -> Stop:
-    kind, c = int(rng.integers(0, 5)), round(float(rng.uniform(-0.6, 0.6)), 3)
+    kind, c = int(rng.integers(0, 7)), round(float(rng.uniform(-0.6, 0.6)), 1)
     direction, count = int(rng.integers(-1, 2)), int(rng.integers(1, 4))
     keys: dict[str, Any] = {"direction": ("any", "up", "down")[direction], "count": count}
     if kind == 0:
@@ -112,6 +112,12 @@ def _stop(rng: np.random.Generator) -> Stop:
         return Stop(
             {"value": "S.s_dot", "at": "0 m/s", **keys}, lambda _, __, v: v, direction, count
         )
+    if kind == 4:
+        moment = round(1 + c, 1)
+        return Stop({"value": "time", "at": f"{moment} s"}, lambda t, _, __: t - moment, 0, 1)
+    if kind == 5:
+        condition = {"value": f"S.s > {c} m", "count": count}
+        return Stop(condition, lambda _, x, __: x - c, 1, count)
     keys |= {"value": f"max(S.s - {c} m, 2*(S.s - {c} m))", "at": "0 m"}
     return Stop(keys, lambda _, x, __: max(x - c, 2 * (x - c)), direction, count)
 
@@ -124,7 +130,7 @@ class Block:
         self.pushes = [_push(rng) for _ in range(int(rng.integers(1, 4)))]
         self.switches = [g for push in self.pushes for g in push.switches]
         self.mass = round(float(rng.uniform(0.5, 3)), 3)
-        self.spring = round(float(rng.uniform(5, 60)), 3)
+        self.spring = round(float(rng.uniform(5, 60)), 3) if rng.random() < 0.6 else 0.0
         self.static = round(float(rng.uniform(0.1, 0.5)), 3) if rng.random() < 0.6 else 0.0
         self.sliding = self.static if rng.random() < 0.5 else round(self.static * 0.7, 4)
         self.normal = self.mass * 9.81
@@ -132,7 +138,13 @@ class Block:
         self.start = round(float(rng.uniform(-1, 1)), 3), rate
         self.times = np.linspace(0, round(float(rng.uniform(0.5, 2)), 2), int(rng.integers(3, 15)))
         stops = [_stop(rng) for _ in range(int(rng.integers(0, 3)))]
-        self.stops = [stop for stop in stops if not (self.static and stop.keys["at"] == "0 m/s")]
+        self.stops = [stop for stop in stops if self._is_clear(stop)]
+
+    def _is_clear(self, stop: Stop) -> bool:
+        """No rate of zero at which friction may keep the block; no condition met at once."""
+        if "at" in stop.keys:
+            return not (self.static and stop.keys["at"] == "0 m/s")
+        return stop.value(0.0, *self.start) < 0
 
     def document(self) -> dict[str, Any]:
         """The sections of the file."""
@@ -140,8 +152,11 @@ class Block:
         loads: list[dict[str, Any]] = [
             {"type": "gravity", "g": [0, 0, -9.81]},
             {"type": "force", "joint": "S", "value": push},
-            {"type": "spring", "joint": "S", "coordinate": "s", "stiffness": f"{self.spring} N/m"},
         ]
+        if self.spring:
+            stiffness = f"{self.spring} N/m"
+            spring = {"type": "spring", "joint": "S", "coordinate": "s", "stiffness": stiffness}
+            loads.append(spring)
         if self.static:
             coefficient = {"static": self.static, "sliding": self.sliding}
             loads.append({"type": "friction", "joint": "S", "coefficient": coefficient})
