@@ -197,12 +197,12 @@ def say(text: str = "") -> None:
     _say(_fitted(text))
 
 
-def _say(text: str, end: str = "\n") -> None:
+def _say(text: str) -> None:
     if sys.stderr is None:
         return
     _clear_progress()
     try:
-        sys.stderr.write(text + end)
+        sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
     except OSError:
         discard(sys.stderr)

@@ -11,26 +11,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.structure.build import build_graph as build_graph
-    from mechkin_cli.structure.graph import (
-        Block as Block,
-        Loop as Loop,
-        SolverGraph as SolverGraph,
-        TreeEdge as TreeEdge,
-        UnsolvableGraph as UnsolvableGraph,
-        charted as charted,
-        exchanged as exchanged,
-        graph_of as graph_of,
-        is_redundant as is_redundant,
-        listed as listed,
-        structure_of as structure_of,
-    )
-    from mechkin_cli.structure.network import (
-        connections_of as connections_of,
-        reduce as reduce,
-        whole_link as whole_link,
-    )
-    from mechkin_cli.structure.rank import Rates as Rates, middle_and_size as middle_and_size
+    from mechkin_cli.structure.build import *
+    from mechkin_cli.structure.graph import *
+    from mechkin_cli.structure.network import *
+    from mechkin_cli.structure.rank import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -158,11 +158,10 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
                 place = Attached(load.link, link.center_of_mass if link else load.point)
             yield f"{load.kind} on {load.link}", kind, place, own(vector, kind)
         elif isinstance(load, JointLoad):
-            name = f"{load.joint}.{load.coordinate}"
             kind = KINDS[1] if is_angle(load.coordinate) else KINDS[0]
-            values = own(_amount(analysis, load.value), kind)
-            for one, place, along in _along_joint(analysis, name, values):
-                yield f"load at {name}", one, place, along
+            values = own(_amount(analysis, load.amount), kind)
+            for one, place, along in _along_joint(analysis, load.name, values):
+                yield f"load at {load.name}", one, place, along
         elif isinstance(load, Spring) and load.between is not None:
             if not all(end.link in links for end in load.between):
                 continue
