@@ -19,6 +19,7 @@ MAY_ASK = {
     "idle/idle.py": "what acts on a link that moves idly",
     "plan/plan.py": "records of the plan",
     "plan/programs.py": "values of the plan",
+    "view/arrows.py": "where the arrows of each are drawn",
 }
 
 

@@ -177,3 +177,17 @@ def test_a_force_that_begins_with_a_later_jump_leaves_a_block_at_rest_until_then
     have = rows("0.33", "2.5 N*(1 + sign(time - 1 s))", 7)
     want = 1.7 * np.maximum(np.linspace(0, 3, 7) - 1, 0) ** 2 / 2
     assert np.abs(have[:, 0] - want).max() < 1e-10
+
+
+@pytest.mark.parametrize("stop", ["A.s_dot <= 0 m/s", "not (A.s_dot > 0 m/s)"])
+@pytest.mark.parametrize("count", [2, 4, 7, 8])
+def test_a_condition_on_a_rate_holds_where_friction_brings_it_to_rest(
+    stop: str, count: int
+) -> None:
+    text = BLOCK.format(coefficient="0.2", force="0 N", count=count).replace("0 m/s", "3 m/s")
+    end = f"count: {count}}}"
+    text = text.replace(end, f'{end}, stop: [{{value: "{stop}"}}]')
+    found = mk.loads(text).respond("r", ["A.s", "A.s_dot"])
+    assert found["time"][-1] == pytest.approx(1.5, abs=1e-12)
+    assert found["A.s"][-1] == pytest.approx(2.25, abs=1e-10)
+    assert str(found["row.event"][-1])
