@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from cli import files
-from references import RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli
 
@@ -193,11 +193,10 @@ def test_a_script_ends_without_a_word_about_what_was_remembered(tmp_path: Path) 
     script = (
         "import mechkin_cli as mk, sys\n"
         "errors = mk.load(sys.argv[1]).analyze().errors\n"
-        "errors['O2.theta']\n"
-        "errors['O3.s']\n"
+        "errors['O2.turn']\n"
     )
     found = subprocess.run(
-        [sys.executable, "-P", "-c", script, str(RCSR)],
+        [sys.executable, "-P", "-c", script, str(FILE_OF["rssr"])],
         cwd=tmp_path,
         capture_output=True,
         text=True,
