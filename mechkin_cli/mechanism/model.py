@@ -19,7 +19,7 @@ from mechkin_cli.mechanism.constraint import (
 )
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
-from mechkin_cli.mechanism.vectors import ZERO, Vector
+from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
 
@@ -395,8 +395,6 @@ class Mechanism:
 def diagonal(points: list[Vector]) -> float:
     """Diagonal of the box of some points; 1 where they all coincide (a mechanism without
     lengths)."""
-    from mechkin_cli.mechanism.vectors import norm, subtract
-
     if not points:
         return 1.0
     low = tuple(smallest(*(p[i] for p in points)) for i in range(3))
