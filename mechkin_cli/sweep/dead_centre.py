@@ -36,7 +36,7 @@ from mechkin_cli.session import (
     RowInputs,
     precise_inputs,
 )
-from mechkin_cli.sweep.messages import named_rows
+from mechkin_cli.sweep.messages import condition_text, named_rows
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
@@ -355,7 +355,7 @@ def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Excep
         "note",
         f"{named_rows(numbers)} may have few digits of rates, accelerations and forces; how many "
         f"could not be measured: {lost}",
-        measured=f"condition {condition[numbers].max():.2g}",
+        measured=condition_text(float(condition[numbers].max())),
         limit=f"{CONDITION_FEW_DIGITS:g}",
         hint="their parts that are wrong are about 1e-16 of the condition's square",
     )
@@ -379,7 +379,7 @@ def _few_digits_note(
         "warning",
         f"{where}: {told}, as measured in double-double, in parts of the largest of each kind in "
         "the row",
-        measured=f"condition {condition[row - 1]:.2g}",
+        measured=condition_text(float(condition[row - 1])),
         hint="mechkin analyze --errors measures every cell; drive another coordinate there, or end "
         "the sweep before",
         numbers=tuple(Number(f"digits of {n}", float(f[worst])) for n, f in digits.items()),

@@ -196,7 +196,7 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
                 status.label,
                 "warning",
                 f"{named_rows(numbers)} {verb} {status.label}: {cost}",
-                measured=f"condition {worst:.2g}",
+                measured=condition_text(worst),
                 limit=f"{limit:g}",
                 hint="move the sweep by a fraction of its step, or keep away from the singular "
                 "position",
@@ -204,6 +204,12 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
             )
         )
     return found
+
+
+def condition_text(value: float) -> str:
+    """A condition as measured; of one beyond the reach of doubles that it is."""
+    most = 1.0 / np.finfo(float).eps
+    return f"condition {value:.2g}" if value <= most else f"condition above {most:.2g}"
 
 
 def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
