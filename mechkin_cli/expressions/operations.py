@@ -38,6 +38,7 @@ Condition = NDArray[np.bool_] | np.bool_
 # 2 pi in two parts. The first has 22 significant bits, so its product with a whole number of turns
 # below 2^31 is exact; the second is what is left, to 4e-23.
 _TURN_HIGH = 6.283184051513672
+_WRAP_ROUNDING = 1e-15
 _TURN_LOW = Exact(1.2556659146019252e-06, 2 * PI - Fraction(_TURN_HIGH))
 
 
@@ -111,9 +112,13 @@ def wrap(angle: Scalar) -> Scalar:
 def _wrap_recorded(angle: Any) -> Any:
     turns = scalars.whole(angle / TURN)
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
-    turned = (turned > math.pi).choose(turned - TURN, turned)
-    turned = (turned <= -math.pi).choose(turned + TURN, turned)
-    return (angle > -math.pi).choose((angle <= math.pi).choose(angle, turned), turned)
+    # Only rounding is taken back: where a motion looks beyond half a turn with the turns it has,
+    # the angle goes on.
+    most = math.pi + _WRAP_ROUNDING * (1.0 + turns * turns)
+    above = (turned <= most).choose(turned - TURN, turned)
+    turned = (turned > math.pi).choose(above, turned)
+    below = (turned >= -most).choose(turned + TURN, turned)
+    return (turned <= -math.pi).choose(below, turned)
 
 
 def branch(condition: Any, value: Scalar, other: Scalar) -> Scalar:

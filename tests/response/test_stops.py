@@ -363,3 +363,43 @@ def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
     assert off(touched["time"][-1], 5.0) < EXACT
     (note,) = [one for one in touched.diagnostics if one.code == "stop-touched"]
     assert f"touched at {moment:.6g} s" in note.message
+
+
+ROTOR = """format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{bar: {{mass: 1, center_of_mass: [0, 0], inertia: 1}}}}
+joints: {{A: {{type: R, links: [ground, bar], point: [0, 0]}}}}
+responses:
+  run:
+    start: {{A.theta: 0.1, A.theta_dot: 20}}
+    time: {{from: 0, to: 5, count: {rows}}}
+    stop: [{{value: "{value}", at: {at}, direction: {direction}, count: {count}}}]
+"""
+
+
+@pytest.mark.parametrize("rows", [2, 41])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 9])
+@pytest.mark.parametrize(
+    ("value", "at", "direction", "angle"),
+    [
+        ("wrap(A.theta)", "3 rad", "up", 3.0),
+        ("wrap(A.theta)", "3 rad", "down", math.pi),
+        ("wrap(-A.theta)", "-3 rad", "down", 3.0),
+        ("wrap(A.theta)", "-3 rad", "up", 2 * math.pi - 3),
+        ("mod(A.theta, 360 deg)", "3 rad", "up", 3.0),
+        ("mod(A.theta, 360 deg)", "3 rad", "down", 2 * math.pi),
+        ("sin(A.theta)", "0.99", "up", math.asin(0.99)),
+        ("cos(5*A.theta)", "0.3", "down", math.acos(0.3) / 5),
+    ],
+)
+def test_passages_of_what_turns_are_counted(
+    value: str, at: str, direction: str, angle: float, count: int, rows: int
+) -> None:
+    """What comes again with each turn, and jumps between; the angle is 0.1 rad + 20 rad/s t."""
+    file = ROTOR.format(value=value, at=at, direction=direction, count=count, rows=rows)
+    period = 2 * math.pi / (5 if "5*" in value else 1)
+    passed = angle + period * (count - 1)
+    found = mk.loads(file).respond("run")
+    assert last_time(found) == pytest.approx((passed - 0.1) / 20, rel=1e-10)
+    assert found["A.theta"][-1] == pytest.approx(passed, rel=1e-10)
