@@ -57,6 +57,8 @@ namespace {
 constexpr double ON_PARABOLA = 1e-4;
 // Times that Newton begins again: its steps take that to the root of rounding: on the fold each halves the distance.
 constexpr int COMING_DOWN = 4;
+// Least singular value of a block from which on derivatives of the base are well known: 1e-4 from a fold it is far smaller.
+constexpr double NARROW = 1e-2;
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
@@ -94,6 +96,17 @@ bool come_down(Stepper& stepper, const Node& node, Node* target) {
   return is_on_parabola(node, 1.0, 1.0 - node.sigma, node.state) &&
          newton_beside_fold(stepper, 1.0, node.state, target) &&
          is_on_parabola(node, 1.0, 1.0 - node.sigma, target->state);
+}
+
+// Whether some block's least singular value is so small that derivatives by the plan may be rounding.
+bool is_narrow(const Plan& plan, const Node& node) {
+  long at = 0;
+  for (int b = 0; b < plan.blocks; ++b) {
+    Matrix matrix(plan.block[b].rows, plan.block[b].size);
+    for (double& entry : matrix.a) entry = node.jacobian[at++];
+    if (!(Factored(matrix).squares.least_singular_bound() >= NARROW)) return true;
+  }
+  return false;
 }
 
 // Leaves a place so near to a fold that its derivatives are rounding, for the farthest one on the parabola, whose own
@@ -140,7 +153,7 @@ bool step_to_target(Stepper& stepper, Node* node) {
 bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
   if (stepper.begin(0.0, start, node) && step_to_target(stepper, node)) return true;
   Node base, next;
-  if (!stepper.stand(0.0, start, &base) || !go_up(stepper, base, &next)) return false;
+  if (!stepper.stand(0.0, start, &base) || !is_narrow(stepper.plan(), base) || !go_up(stepper, base, &next)) return false;
   *node = next;
   return step_to_target(stepper, node);
 }
