@@ -130,12 +130,6 @@ double length_of(const std::vector<double>& v) {
   return std::sqrt(square);
 }
 
-double largest(const std::vector<double>& v) {
-  double most = 0.0;
-  for (double x : v) most = std::fabs(x) <= most ? most : std::fabs(x);  // a NaN wins
-  return most;
-}
-
 bool is_finite(const std::vector<double>& v) {
   for (double x : v)
     if (!std::isfinite(x)) return false;
@@ -183,8 +177,7 @@ bool Arc::close_by(std::vector<double> state, double sigma, const std::vector<do
     look(state.data(), false, none, 1.0, none, 0.0, limits_.iterations, DEMAND_VELOCITY, node, &seen);
     state = node->state;
     node->extended = with_column(own_jacobian(*node), seen.first, 1.0 / scale_);
-    // the blocks before are closed anew each time: in a narrow place their rounding alone may be more than is accepted
-    if (short_step && largest(seen.equations) <= limits_.accept) break;
+    if (short_step) break;
     std::vector<double> right(rows_ + 1);
     for (int i = 0; i < rows_; ++i) right[i] = -seen.equations[i];
     right[rows_] = target;
