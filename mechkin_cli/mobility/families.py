@@ -218,6 +218,8 @@ def _holds(
     rows = motions[part.driven(body, problem.motion.driven)]
     left = motions @ rank_of(rows, tolerances.RANK_ZERO).motions
     candidates = list(_candidates(problem, body, left, _still(part, state, family)))
+    if not candidates or not left.size:
+        return []
     rates = np.array([row for row, _ in candidates]).reshape(-1, left.shape[1])
     chosen: list[LockedFreedom] = []
     for _ in range(motions.shape[1] - family[0].dimension):
