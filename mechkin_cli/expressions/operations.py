@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli import tolerances
 from mechkin_cli.exact import PI, TURN, Exact, nearest as exact_nearest
 from mechkin_cli.expressions.quantity import (
     MAX_EXPONENT,
@@ -38,7 +39,6 @@ Condition = NDArray[np.bool_] | np.bool_
 # 2 pi in two parts. The first has 22 significant bits, so its product with a whole number of turns
 # below 2^31 is exact; the second is what is left, to 4e-23.
 _TURN_HIGH = 6.283184051513672
-_WRAP_ROUNDING = 1e-15
 _TURN_LOW = Exact(1.2556659146019252e-06, 2 * PI - Fraction(_TURN_HIGH))
 
 
@@ -114,7 +114,7 @@ def _wrap_recorded(angle: Any) -> Any:
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
     # Only rounding is taken back: where a motion looks beyond half a turn with the turns it has,
     # the angle goes on.
-    most = math.pi + _WRAP_ROUNDING * (1.0 + turns * turns)
+    most = math.pi + tolerances.WRAP_ROUNDING * (1.0 + turns * turns)
     above = (turned <= most).choose(turned - TURN, turned)
     turned = (turned > math.pi).choose(above, turned)
     below = (turned >= -most).choose(turned + TURN, turned)

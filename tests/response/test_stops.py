@@ -365,7 +365,7 @@ def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
     assert f"touched at {moment:.6g} s" in note.message
 
 
-ROTOR = """format: 1
+BAR = """format: 1
 plane: xy
 units: {{length: m, angle: rad}}
 links: {{bar: {{mass: 1, center_of_mass: [0, 0], inertia: 1}}}}
@@ -397,7 +397,7 @@ def test_passages_of_what_turns_are_counted(
     value: str, at: str, direction: str, angle: float, count: int, rows: int
 ) -> None:
     """What comes again with each turn, and jumps between; the angle is 0.1 rad + 20 rad/s t."""
-    file = ROTOR.format(value=value, at=at, direction=direction, count=count, rows=rows)
+    file = BAR.format(value=value, at=at, direction=direction, count=count, rows=rows)
     period = 2 * math.pi / (5 if "5*" in value else 1)
     passed = angle + period * (count - 1)
     found = mk.loads(file).respond("run")
