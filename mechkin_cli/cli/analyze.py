@@ -27,7 +27,7 @@ from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import listed
-from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
+from mechkin_cli.tables import NEEDS_OPENPYXL, USUAL_FORMATS, WRITERS, Results, written_files
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class AnalyzeCommand(NamedTuple):
         """The formats of tables.
 
         Raises:
-            UsageError: one is not known.
+            UsageError: one is not known, or needs a library that is not installed.
         """
         asked = [name for text in self.format or () for name in text.split(",")]
         formats = tuple(dict.fromkeys(asked or USUAL_FORMATS))
@@ -134,6 +134,11 @@ class AnalyzeCommand(NamedTuple):
             if name not in WRITERS:
                 cure = f"; for messages write --messages {name}" if name in FORMS else ""
                 raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
+        if "xlsx" in formats:  # refused before anything is computed
+            from importlib.util import find_spec
+
+            if find_spec("openpyxl") is None:
+                raise UsageError(NEEDS_OPENPYXL)
         return formats
 
     @property

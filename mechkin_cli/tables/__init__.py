@@ -43,7 +43,7 @@ __getattr__, __dir__ = lazy_names(
         "results": "Results",
         "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "
         "root_mean_square row_weights statistics summary_of",
-        "table": "Columns evaluate summary_table",
+        "table": "NEEDS_OPENPYXL Columns evaluate summary_table",
         "writers": "Claim OutputFolder USUAL_FORMATS WRITERS write_files written_files",
     },
 )

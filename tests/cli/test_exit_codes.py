@@ -1,5 +1,6 @@
 """Exit codes: 0 ok, 1 differences, 2 usage, 3 invalid file, 4 rows are missing, 70 internal."""
 
+import sys
 from importlib import metadata
 
 import pytest
@@ -85,6 +86,14 @@ def test_a_command_that_cannot_be_done_says_why_and_what_to_do(
     run = mechkin(*command.split())
     assert (run.code, run.out) == (2, "")
     assert words in run.err
+
+
+def test_a_workbook_without_its_library_is_refused_before_the_run(mechkin, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    monkeypatch.setattr("mechkin_cli.model.load", lambda *_: 1 / 0)
+    run = mechkin("analyze", "crank.yaml", "--format", "csv,xlsx")
+    assert (run.code, run.out) == (2, "")
+    assert "pip install 'mechkin[xlsx]'" in run.err
 
 
 def test_a_mode_without_a_letter_is_quoted(mechkin) -> None:
