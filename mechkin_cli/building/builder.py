@@ -136,8 +136,12 @@ def build(
     problem = replace(problem, follow=build_follow(fields, file.follow, problem.mechanism.joints))
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
-        problem = replace(problem, held=mobility.held_to_family(problem))
     graph = _graph(fields, file, problem)
+    if isinstance(graph, SolverGraph):
+        held = mobility.held_to_family(problem)
+        if held != problem.held:
+            problem = replace(problem, held=held)
+            graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
         check_spins(fields, problem, own)
         problem = settled(problem)
