@@ -94,7 +94,7 @@ def true_states(scene: BenchScene) -> State:
     values, turned = coordinates_of(scene, at)
     q, (rates, accelerations) = _wide(values), (np.zeros_like(_wide(values)) for _ in range(2))
     for k, number in enumerate(chain.inputs):
-        unit = _wide(chain.length if chain.coordinates[number].is_length else 1.0)
+        unit = _wide(chain.length if number in chain.lengths else 1.0)
         q[number] = _wide(inputs.reduced[k, real]) * unit
         rates[number] = _wide(inputs.rates[k, real]) * unit
         accelerations[number] = _wide(inputs.accelerations[k, real]) * unit
@@ -168,10 +168,10 @@ def named_values(chain: BodyTree, state: State) -> Values:
     """Coordinates and points by name, with their derivatives."""
     q = [Jet(*entry) for entry in zip(state.values, state.rates, state.accelerations, strict=True)]
     found: Values = {}
-    for coordinate, entry in zip(chain.coordinates, q, strict=True):
-        if coordinate.name:
+    for name, entry in zip(chain.coordinates, q, strict=True):
+        if name:
             for end, value in zip(("", "_dot", "_ddot"), _orders(entry), strict=True):
-                found[coordinate.name + end] = _filled(value, state.values)[None, :]
+                found[name + end] = _filled(value, state.values)[None, :]
     placing = Placing(chain, JETS)
     places = placing.places(q, state.turned)
     for name, body, at in chain.points:
@@ -229,4 +229,4 @@ def named_motion(
     """Positions, velocities and accelerations by name; arrays (coordinates, rows)."""
     state = State(q, rates, accelerations, rows.orientations(orientations))
     found = named_values(rows.chain, state)
-    return {name: found[name] for name in rows.scene.asked.level("motion")}
+    return {name: found[name] for name in rows.scene.names("motion")}

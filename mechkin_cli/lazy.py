@@ -1,4 +1,8 @@
-"""A room's door: its public names, each loaded from its chapter when it is first used."""
+"""A room's door: its public names, each loaded from its chapter when it is first used.
+
+A door says its names once, in `lazy_names`; type checkers get the chapters whole, or by name where
+two chapters have different things of one name.
+"""
 
 from __future__ import annotations
 

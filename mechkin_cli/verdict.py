@@ -100,6 +100,14 @@ class Status(IntEnum):
             "infinite, the others are empty."
         ),
     )
+    unsupported = (
+        11,
+        "position, rates",
+        (
+            "the loads push along a motion that the constraints do not stop to first order, so no "
+            "finite reactions hold them."
+        ),
+    )
 
     has_solution: bool
     has_rates: bool

@@ -28,6 +28,7 @@ LABELS = {
     "singular-inertia": 8,
     "step-limit": 9,
     "dead-centre": 10,
+    "unsupported": 11,
 }
 
 
@@ -44,7 +45,8 @@ def test_every_status_has_a_sentence(status):
 
 def test_rows_with_a_position_have_a_solution():
     solved = {status.label for status in Status if status.has_solution}
-    assert solved == {"ok", "near-singular", "rank-unclear", "friction-undecided", "dead-centre"}
+    judged = {"ok", "near-singular", "rank-unclear", "friction-undecided", "dead-centre"}
+    assert solved == {*judged, "unsupported"}
 
 
 @pytest.mark.parametrize("status", Status)

@@ -11,18 +11,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.analysis.analysis import Analysis as Analysis, Solvable as Solvable
-    from mechkin_cli.analysis.certificate import Certificate as Certificate
-    from mechkin_cli.analysis.design import Design as Design
-    from mechkin_cli.analysis.runs import (
-        RunOptions as RunOptions,
-        a_packing as a_packing,
-        input_values as input_values,
-        respond as respond,
-        response_name as response_name,
-        run_name as run_name,
-        run_sweep as run_sweep,
-    )
+    from mechkin_cli.analysis.analysis import *
+    from mechkin_cli.analysis.certificate import *
+    from mechkin_cli.analysis.design import *
+    from mechkin_cli.analysis.runs import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -30,6 +22,6 @@ __getattr__, __dir__ = lazy_names(
         "analysis": "Analysis Solvable",
         "certificate": "Certificate",
         "design": "Design",
-        "runs": "RunOptions a_packing input_values respond response_name run_name run_sweep",
+        "runs": "a_packing input_values respond response_name run_name run_sweep",
     },
 )

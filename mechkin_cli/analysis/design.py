@@ -50,7 +50,7 @@ class Design:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickled and copied as the text of the file and of the tables that it names."""
-        document = self.built.read.document
+        document = self.built.document
         source = (document.text, document.file, dict(document.overrides), document.folder)
         return _from_text, (*source, self.stem, document.is_data, dict(document.tables))
 
@@ -161,7 +161,7 @@ def _from_text(
         source = building.open_data(json.loads(text), file, overrides, folder, tables)
     else:
         source = building.open_text(text, file, overrides, folder, tables)
-    return Design(building.build(source), stem)
+    return Design(building.build(*source), stem)
 
 
 @remembered

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import response as response_room
+from mechkin_cli import response as response_room, tolerances
 from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.arguments import (
     Setting,
@@ -24,7 +24,7 @@ from mechkin_cli.expressions import ExpressionError, constant_in_file_units, loo
 from mechkin_cli.kernel.functions import check_threads, check_width
 from mechkin_cli.mechanism import Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.session import Packing, Session
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import analyze, refuse_loaded_spin
@@ -39,18 +39,6 @@ QUANTITIES = (
     "quantities are such as J.theta, J.force of a joint J, or p.position of a point p, or "
     "expressions of them: J.force.x"
 )
-
-
-class RunOptions(NamedTuple):
-    """What a caller wants of a run: the arguments of `Model.analyze` and `Model.respond`."""
-
-    quantities: Iterable[str] | None = None
-    tables: Sequence[str] | None = None
-    mode: str | None = None
-    closed_at: Sequence[str] | None = None
-    lanes: int = 0
-    threads: int = 0
-    errors: bool = False
 
 
 def a_packing(lanes: object, threads: object) -> Packing:
@@ -135,6 +123,9 @@ def _input_value(problem: Problem, name: str, value: Setting) -> float:
         found = constant_in_file_units(text, dimension, problem.units, resolve)
         if is_tiny_length(problem.units.to_si(found, dimension), dimension):
             raise ExpressionError("this length is too small", 0, "check its exponent and unit")
+        if not abs(found) <= tolerances.LARGEST_NUMBER:
+            large = f"this is too large to compute with (limit {tolerances.LARGEST_NUMBER:g})"
+            raise ExpressionError(large, 0, "check its exponent and unit")
         return found
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""
@@ -219,23 +210,33 @@ def known_mode(analysis: Analysis) -> Analysis:
     return analysis
 
 
-def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
-    """Runs the sweep of a model; errors are those of `Model.analyze`."""
-    packing, mode = a_packing(options.lanes, options.threads), options.mode
+def run_sweep(
+    model: Solvable,
+    quantities: Iterable[str] | None,
+    *,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    closed_at: Sequence[str] | None,
+    lanes: int,
+    threads: int,
+    errors: bool,
+) -> Analysis:
+    """Runs the sweep of a model; arguments and errors are those of `Model.analyze`."""
+    packing = a_packing(lanes, threads)
     if SWEEP not in model.runs:
         raise UsageError(
             f"{model.name} has no sweep: its file has no motion:; its responses are run by "
             f'respond("{model.runs[0]}")'
         )
     session, problem = model.design.session, model.problem
-    if options.closed_at is not None:
-        session = _closed_at(problem, options.closed_at)
+    if closed_at is not None:
+        session = _closed_at(problem, closed_at)
     if mode is not None:
         a_text("mode", mode, '"A"')
         session = session.in_mode(mode)
-    layouts = chosen_tables(model.built, options.tables, SWEEP)
-    balances = chosen(model.built.balances, options.tables)
-    named = wanted_names(session, SWEEP, (), options.quantities)
+    layouts = chosen_tables(model.built, tables, SWEEP)
+    balances = chosen(model.built.balances, tables)
+    named = wanted_names(session, SWEEP, (), quantities)
     names = [*wanted_names(session, SWEEP, layouts, None), *named]
     asked = tuple(names)
     if balances:
@@ -245,10 +246,10 @@ def run_sweep(model: Solvable, options: RunOptions) -> Analysis:
     own = tuple(table for table in layouts if table.name == SWEEP)
     unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
     result = analyze(session.packed(packing), names, unasked=unasked)
-    systems = chosen(model.built.coefficients, options.tables)
+    systems = chosen(model.built.coefficients, tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
     analysis = analysis if mode is None else known_mode(analysis)
-    if options.errors:
+    if errors:
         _ = analysis.errors
     return analysis
 
@@ -271,9 +272,18 @@ def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
         raise UsageError(f"{why}; {cure}") from None
 
 
-def respond(model: Solvable, name: str | None, options: RunOptions) -> Analysis:
-    """Runs a response of a model; errors are those of `Model.respond`."""
-    packing, mode = a_packing(options.lanes, options.threads), options.mode
+def respond(
+    model: Solvable,
+    name: str | None,
+    quantities: Iterable[str] | None,
+    *,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Analysis:
+    """Runs a response of a model; arguments and errors are those of `Model.respond`."""
+    packing = a_packing(lanes, threads)
     design = model.design.at_responses
     problem = design.problem
     run = response_name(problem, name)
@@ -284,8 +294,8 @@ def respond(model: Solvable, name: str | None, options: RunOptions) -> Analysis:
         assembly = replace(response.assembly, near={}, mode=mode)
         response = replace(response, assembly=assembly)
         session = session.assembled(assembly)
-    layouts = chosen_tables(design.built, options.tables, run)
-    names = wanted_names(session, run, layouts, options.quantities)
+    layouts = chosen_tables(design.built, tables, run)
+    names = wanted_names(session, run, layouts, quantities)
     result = response_room.respond(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
     return analysis if mode is None else known_mode(analysis)

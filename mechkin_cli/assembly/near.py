@@ -239,7 +239,7 @@ def box_about(session: Session, named: Named, radius: float) -> Within:
 
 def _unique(session: Session, state: Floats, condition: float) -> float:
     """Distance from an assembly (states,) within which there is no other; 0 where none is known."""
-    if not all(closing.constraint.has_coordinates for closing in session.graph.closings):
+    if not all(closing.has_coordinates for closing in session.graph.closings):
         return 0.0
     least = inf
     for block in session.graph.blocks:
@@ -260,10 +260,9 @@ def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
     """The path round a loop through its joints' points and along its slides, in parts of the size,
     and by how much it grows at most for a ball of radius 1: no point of the loop is farther from
     any of its axes."""
-    closing = layout.graph.closings[number]
     size = layout.mechanism.box_diagonal()
     total = slides = 0.0
-    edges = {edge for edge, _ in closing.loop}
+    edges = {edge for edge, _ in layout.graph.loops[number]}
     for carrier in layout.carriers:
         if carrier.edge not in edges:
             continue
@@ -276,7 +275,7 @@ def _reach(layout: Layout, number: int, state: Floats) -> tuple[float, float]:
                 total, slides = total + value * layout.length, slides + 1.0
             elif pitch:
                 total, slides = total + (value + 1.0) * pitch, slides + pitch / size
-    joint = closing.joint
+    joint = layout.graph.closings[number].joint
     for link, frame in ((joint.first, joint.on_first), (joint.second, joint.on_second)):
         if link != GROUND_NAME:
             total += norm(layout.link_frame[link].local(frame.o))
@@ -331,10 +330,10 @@ def _failed_loop(session: Session, assemblies: Assemblies) -> str:
     graph = session.graph
     names: dict[str, None] = {}
     closings = graph.blocks[assemblies.failed].closings
-    for closing in (graph.closings[c] for c in closings):
-        joints = closing.constraint.joints
+    for c in closings:
+        joints, loop = graph.closings[c].joints, graph.loops[c]
         # outward to the cut joint's first link, and back
-        paths = ([e for e, s in closing.loop if e >= 0 and s == sign] for sign in (-1, 1))
+        paths = ([e for e, s in loop if e >= 0 and s == sign] for sign in (-1, 1))
         there, back = ([graph.edges[e].joint.name for e in sorted(path)] for path in paths)
         names.update(dict.fromkeys((*there, *joints, *reversed(back))))
     shown = [name for name in names if name in session.problem.mechanism.joints]

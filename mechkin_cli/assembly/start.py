@@ -40,8 +40,8 @@ from mechkin_cli.search import (
     with_assemblies,
 )
 from mechkin_cli.session import (
+    Between,
     Continued,
-    ContinuedFrom,
     Followed,
     Session,
     input_numbers,
@@ -80,38 +80,37 @@ def choose_start(session: Session) -> AssemblyStart:
 def continued_start(session: Session) -> Continued | None:
     """The first assembly of a session that continues another's; None where it is to be chosen:
     nothing is continued, the base has no first assembly, or another structure."""
-    first = session.first
-    return _brought(session, first) if isinstance(first, ContinuedFrom) else first
+    return session.first if session.base is None else _brought(session, *session.base)
 
 
-def _brought(session: Session, line: ContinuedFrom) -> Continued | None:
+def _brought(session: Session, base: Session, between: Between) -> Continued | None:
     """The first assembly of the base brought to a session with a plan of its own, along the
     straight line in the parameters: the sessions between are built one by one, and the steps are
     those of every continuation (docs/numerics.md, Variants)."""
-    base = line.base
     start = choose_start(base)
     if start.state is None or structure_of(session.graph) != structure_of(base.graph):
         return None
     rows = session.problem.motion.rows
     row = start.row if rows == base.problem.motion.rows else 0
-    first, last = base.inputs.values[:, start.row], session.inputs.values[:, row]
-    return Continued(_end_of_line(session, line, start.state, first, last), row)
+    ends = base.inputs.values[:, start.row], session.inputs.values[:, row]
+    return Continued(_end_of_line(session, base, between, start.state, ends), row)
 
 
 def _end_of_line(
-    session: Session, line: ContinuedFrom, state: Floats, first: Floats, last: Floats
+    session: Session, base: Session, between: Between, state: Floats, ends: tuple[Floats, Floats]
 ) -> Floats | None:
     """States at the end of the line from inputs to inputs; None where the branch ends before."""
-    plans = {0.0: line.base.plan, 1.0: session.plan}
+    first, last = ends
+    plans = {0.0: base.plan, 1.0: session.plan}
     structure, unit = structure_of(session.graph), session.layout.length
 
     def plan(place: float) -> Plan:
         if place not in plans:
-            between = line.between(place)
-            if structure_of(between.graph) != structure:
+            there = between(place)
+            if structure_of(there.graph) != structure:
                 raise MechkinError("another structure on the way")
-            problem = between.problem
-            laid = Layout(problem.laid_mechanism, between.graph, unit, problem.laws)
+            problem = there.problem
+            laid = Layout(problem.laid_mechanism, there.graph, unit, problem.laws)
             plans[place] = build_plan(laid)
         return plans[place]
 
@@ -281,10 +280,11 @@ def _by_name(modes: NamedModes, name: str) -> AssemblyStart:
     for i, letter in modes.letters.items():
         if letter == name:
             return AssemblyStart(modes.found.states[:, i], name, "by name")
+    shown = name[:LONGEST_NAME] or '""'
     diagnostic = Diagnostic(
         "no-such-mode",
         "error",
-        f"there is no mode {name[:LONGEST_NAME]} at the first row",
+        f"there is no mode {shown} at the first row",
         measured=f"modes {_letters(list(modes.letters.values()))}",
         hint="take one of these",
     )

@@ -6,13 +6,9 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.balances.dense import row_motion as row_motion
-    from mechkin_cli.balances.newton_euler import (
-        DenseSystem as DenseSystem,
-        coefficient_tables as coefficient_tables,
-        dense_system as dense_system,
-    )
-    from mechkin_cli.balances.runs import balance_table as balance_table
+    from mechkin_cli.balances.dense import *
+    from mechkin_cli.balances.newton_euler import *
+    from mechkin_cli.balances.runs import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -161,7 +161,7 @@ class _Acting:
         if isinstance(load, LinkLoad):
             yield load.link, self._on_link(load)
         elif isinstance(load, JointLoad):
-            yield from self._on_joint(load.joint, load.coordinate, self._amount(load.value))
+            yield from self._on_joint(load.joint, load.coordinate, self._amount(load.amount))
         elif load.between is not None:
             yield from self._between(load, load.between)
         else:

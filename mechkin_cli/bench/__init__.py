@@ -9,28 +9,10 @@ whose rows are known; `report` writes them. Only `mechkin bench` loads the chapt
 from mechkin_cli.lazy import TYPE_CHECKING, lazy_names
 
 if TYPE_CHECKING:
-    from mechkin_cli.bench.measurement import Bench as Bench
-    from mechkin_cli.bench.report import (
-        NAMES as NAMES,
-        ReportTable as ReportTable,
-        bench_table as bench_table,
-        key_of as key_of,
-        machine as machine,
-        plain_text as plain_text,
-        record as record,
-        write as write,
-    )
-    from mechkin_cli.bench.runs import (
-        FULL as FULL,
-        QUICK as QUICK,
-        SUITE as SUITE,
-        Rounds as Rounds,
-        Suite as Suite,
-        bench as bench,
-        judge_hard_mechanisms as judge_hard_mechanisms,
-        stress_table as stress_table,
-    )
-    from mechkin_cli.bench.scene import BenchScene as BenchScene
+    from mechkin_cli.bench.measurement import *
+    from mechkin_cli.bench.report import *
+    from mechkin_cli.bench.runs import *
+    from mechkin_cli.bench.scene import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

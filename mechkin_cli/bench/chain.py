@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from mechkin_cli.mechanism import Frame
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Joint, Part
+    from mechkin_cli.mechanism import Constraint, Joint, Part
     from mechkin_cli.plan import Layout
-    from mechkin_cli.structure import CutJoint
 
 
 GROUND = -1
@@ -76,25 +75,20 @@ class CommonFrame(NamedTuple):
 Closed = CommonPoint | Distance | CommonFrame
 
 
-class TreeCoordinate(NamedTuple):
-    """A coordinate: its name in the file ("" without one), and whether it is a length."""
-
-    name: str
-    is_length: bool
-
-
 @dataclass(frozen=True)
 class BodyTree:
     """Bodies in placing order (None where one hangs), closings, coordinates.
 
-    `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states` says for
-    each coordinate where it stands in the kernel's states, a ball's first one with its quaternion;
-    None for coordinates of cut joints. `points` are (name, body, place).
+    `coordinates` are names in the file, "" without one; `lengths` are the numbers of those that are
+    lengths. `inputs` and `unknowns` are numbers of coordinates; the rest are held at zero. `states`
+    says for each coordinate where it stands in the kernel's states, a ball's first one with its
+    quaternion; None for coordinates of cut joints. `points` are (name, body, place).
     """
 
     bodies: tuple[TreeBody | None, ...]
     closings: tuple[Closed, ...]
-    coordinates: tuple[TreeCoordinate, ...]
+    coordinates: tuple[str, ...]
+    lengths: frozenset[int]
     inputs: tuple[int, ...]
     unknowns: tuple[int, ...]
     states: tuple[int | None, ...]
@@ -120,7 +114,8 @@ def chain_of(layout: Layout, points: dict[str, tuple[str, Place]]) -> BodyTree:
 class _Builder:
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
-        self.coordinates: list[TreeCoordinate] = []
+        self.coordinates: list[str] = []
+        self.lengths: set[int] = set()
         self.states: list[int | None] = []
         self.balls: list[int] = []
         self.bodies: list[TreeBody | None] = []
@@ -140,6 +135,7 @@ class _Builder:
             tuple(self.bodies),
             closings,
             tuple(self.coordinates),
+            frozenset(self.lengths),
             inputs,
             unknowns,
             tuple(self.states),
@@ -175,12 +171,14 @@ class _Builder:
         for local, freedom in enumerate(kind.freedoms):
             name = by_freedom.get(first_freedom + local, "")
             full = f"{joint.name}.{name}" if name and not kind.is_ball else ""
-            self.coordinates.append(TreeCoordinate(full, freedom.is_slide))
+            if freedom.is_slide:
+                self.lengths.add(len(self.coordinates))
+            self.coordinates.append(full)
             self.states.append(None if state is None else state + (0 if kind.is_ball else local))
         return TreeDisplacement(part.letter, part.before, part.after, joint.pitch, first)
 
-    def _closing(self, closing: CutJoint) -> Closed:
-        joint, constraint, bodies = closing.joint, closing.constraint, self.layout.link_number
+    def _closing(self, constraint: Constraint) -> Closed:
+        joint, bodies = constraint.joint, self.layout.link_number
         first, second = bodies[constraint.first], bodies[constraint.second]
         if constraint.length is not None:
             one, other = (at.vector for at in constraint.points)

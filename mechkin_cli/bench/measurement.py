@@ -8,14 +8,14 @@ of the machine meanwhile; whole processes by the clock on the wall.
 from __future__ import annotations
 
 import gc
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from time import thread_time
 from typing import Any, TypeVar
 
 import numpy as np
 
-from mechkin_cli.bench.scene import Asked, BenchScene, Values
+from mechkin_cli.bench.scene import BenchScene, Values
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -116,15 +116,6 @@ class Unable(Exception):
 
 
 @dataclass(frozen=True)
-class Skipped:
-    """A method that cannot run here, and why."""
-
-    scene: str
-    family: str
-    reason: str
-
-
-@dataclass(frozen=True)
 class Measurement:
     """A method's time and errors on a scene.
 
@@ -156,11 +147,12 @@ class Measurement:
 
 @dataclass(frozen=True)
 class Bench:
-    """All that a scene was measured by; errors are against `exact`."""
+    """All that a scene was measured by; errors are against `exact`. `skipped` says of families why
+    not all of their methods can run."""
 
     scene: BenchScene
     measurements: tuple[Measurement, ...]
-    skipped: tuple[Skipped, ...]
+    skipped: Mapping[str, str]
     exact: str
 
     def record(self) -> dict[str, Any]:
@@ -174,7 +166,7 @@ class Bench:
             "equations": chain.equations,
             "exact": self.exact,
             "measurements": [m.record() for m in self.measurements],
-            "skipped": [{"family": s.family, "reason": s.reason} for s in self.skipped],
+            "skipped": [{"family": name, "reason": why} for name, why in self.skipped.items()],
         }
 
 
@@ -194,7 +186,9 @@ def measured(
     return Measurement(scene, *named, median, least, timing.spread, ratio, *kinds)
 
 
-def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values) -> dict[str, Any]:
+def errors_of(
+    asked: Mapping[str, Sequence[str]], lengths: Collection[str], found: Values, true: Values
+) -> dict[str, Any]:
     """Largest errors by kind, each in parts of its quantity's largest value.
 
     Args:
@@ -204,7 +198,7 @@ def errors_of(asked: Asked, lengths: frozenset[str], found: Values, true: Values
     """
     worst: dict[str, Any] = {}
     for kind in ERROR_KINDS:
-        known = [name for name in getattr(asked, kind) if name in found and name in true]
+        known = [name for name in asked[kind] if name in found and name in true]
         # what is zero by its nature is rounding of the numbers that are right
         sizes = {name: float(np.max(np.abs(true[name]))) for name in known}
         nothing = ZERO * max(sizes.values(), default=0.0)

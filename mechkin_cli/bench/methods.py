@@ -27,7 +27,7 @@ import numpy as np
 from mechkin_cli.balances import DenseSystem, dense_system, row_motion
 from mechkin_cli.bench.chain import Entries, Placing, Turned
 from mechkin_cli.bench.measurement import Method, Unable
-from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, BenchScene, Values
+from mechkin_cli.bench.scene import ALONE, BATCH, LEVELS, ORDERS, BenchScene, Values
 from mechkin_cli.kernel.functions import widths
 from mechkin_cli.session import Batch, Packing, follow, step_limits
 from mechkin_cli.show import Floats
@@ -82,14 +82,14 @@ def _sweeps(scene: BenchScene) -> Iterator[Method]:
             yield Method(FAMILY, FOLLOWED, level, level, call, rows, read)
     for level in LEVELS:
         for verdicts, curve in ((True, ANALYZED), (False, "sweep, no verdicts")):
-            call = partial(analyze, session, scene.asked.level(level), verdicts=verdicts)
+            call = partial(analyze, session, scene.names(level), verdicts=verdicts)
             read = partial(_values, scene, level, call)
             yield Method(FAMILY, curve, level, level, call, rows, read)
 
 
 def _values(scene: BenchScene, level: str, call: Callable[[], Result]) -> Values:
     columns = call().columns
-    names = scene.asked.level(level)
+    names = scene.names(level)
     return {name: columns[name][:, scene.places] for name in names if name in columns}
 
 
@@ -147,7 +147,7 @@ def dense_methods(scene: BenchScene) -> Iterator[Method]:
 
 def loads(scene: BenchScene, systems: list[DenseSystem], solution: Floats) -> Values:
     """Efforts (1, rows) and wrenches (3, rows) about the joints' points, by name."""
-    names = scene.asked.loads
+    names = scene.asked["loads"]
     found: Values = {n: np.zeros((1 if n.endswith(".effort") else 3, scene.rows)) for n in names}
     for k, (system, values) in enumerate(zip(systems, solution, strict=True)):
         motion = row_motion(scene.result, int(scene.places[k]))
@@ -184,7 +184,7 @@ class RowByRow:
         self.placing = Placing(self.chain, Entries(cos, sin))
         self.unknowns = list(self.chain.unknowns)
         self.driven = list(self.chain.inputs)
-        lengths = [self.chain.coordinates[k].is_length for k in self.driven]
+        lengths = [k in self.chain.lengths for k in self.driven]
         units = np.where(lengths, self.chain.length, 1.0)[:, None]
         inputs = scene.session.inputs
         self.inputs: Floats = inputs.values[:, scene.places] * units
@@ -257,14 +257,13 @@ class RowByRow:
         placing = Placing(self.chain, Entries(np.cos, np.sin))
         places = placing.places(q, turned)
         found: Values = {
-            coordinate.name: values[None, :]
-            for coordinate, values in zip(self.chain.coordinates, q, strict=True)
+            name: values[None, :] for name, values in zip(self.chain.coordinates, q, strict=True)
         }
         for name, body, at in self.chain.points:
             found[f"{name}.position"] = np.array(
                 [np.zeros(q.shape[1]) + x for x in placing.image(places, body, at)]
             )
-        return {name: found[name] for name in self.scene.asked.position}
+        return {name: found[name] for name in self.scene.asked["position"]}
 
     def orientations(self, rows: list[dict[int, Any]]) -> dict[int, Any]:
         """What balls count from, (3, 3, rows) by ball."""
@@ -279,12 +278,12 @@ def coordinates_of(scene: BenchScene, rows: Any) -> tuple[Any, Turned]:
     chain, states = scene.chain, scene.states[:, rows]
     values = np.zeros((len(chain.coordinates), states.shape[1]))
     turned = {}
-    for k, (coordinate, place) in enumerate(zip(chain.coordinates, chain.states, strict=True)):
+    for k, (name, place) in enumerate(zip(chain.coordinates, chain.states, strict=True)):
         if place is None:
-            if coordinate.name in scene.closing_values:
-                values[k] = scene.closing_values[coordinate.name][0, rows]
+            if name in scene.closing_values:
+                values[k] = scene.closing_values[name][0, rows]
         elif not any(0 <= k - ball < len(BALL) for ball in chain.balls):
-            values[k] = states[place] * (chain.length if coordinate.is_length else 1.0)
+            values[k] = states[place] * (chain.length if k in chain.lengths else 1.0)
     for ball in chain.balls:
         place = chain.states[ball]
         if place is not None:
@@ -350,7 +349,8 @@ def differences(rows: RowByRow, solve: Solve, step: float) -> Values:
         for t in (-time, 0.0, time)
     )
     asked, found = rows.scene.asked, dict(here)
-    for name, first, second in zip(asked.position, asked.velocity, asked.acceleration, strict=True):
+    orders = (asked[order] for order in ORDERS)
+    for name, first, second in zip(*orders, strict=True):
         found[first] = (after[name] - before[name]) / (2.0 * time)
         found[second] = (after[name] - 2.0 * here[name] + before[name]) / (time * time)
     return found

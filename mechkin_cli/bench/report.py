@@ -152,7 +152,7 @@ def bench_table(bench: Bench) -> ReportTable:
     """Every method at every setting, and what could not run."""
     rows = [m.record() for m in bench.measurements]
     scene, chain = bench.scene, bench.scene.chain
-    skipped = [f"{s.family} is left out: {s.reason}" for s in bench.skipped]
+    skipped = [f"{family} is left out: {why}" for family, why in bench.skipped.items()]
     title = (
         f"{scene.name}: {scene.result.rows} rows, {chain.equations} equations in "
         f"{len(chain.unknowns)} unknowns"

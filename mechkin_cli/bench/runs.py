@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from mechkin_cli.bench.measurement import (
     Bench,
     Method,
-    Skipped,
     Timing,
     Unable,
     errors_of,
@@ -69,15 +68,14 @@ DEMAND_COLUMNS = (
 
 def steps(scene: BenchScene) -> list[tuple[str, tuple[str, ...], Demand]]:
     """Each part with the quantities of the parts up to it, and what is demanded beside them."""
-    asked = scene.asked
-    efforts = tuple(name for name in asked.loads if name.endswith(".effort"))
-    first = (*asked.position, *asked.velocity)
-    moving = asked.level("motion")
-    parts = [("position", asked.position), ("+ velocity", first), ("+ acceleration", moving)]
+    asked, moving = scene.asked, scene.names("motion")
+    efforts = tuple(name for name in asked["loads"] if name.endswith(".effort"))
+    first = (*asked["position"], *asked["velocity"])
+    parts = [("position", asked["position"]), ("+ velocity", first), ("+ acceleration", moving)]
     if efforts:
         parts.append(("+ effort", (*moving, *efforts)))
-    if len(asked.loads) > len(efforts):
-        parts.append(("+ reactions of all joints", asked.level("everything")))
+    if len(asked["loads"]) > len(efforts):
+        parts.append(("+ reactions of all joints", scene.names("everything")))
     verdicts = ("+ verdicts of all rows", parts[-1][1], scene.verdicts("everything"))
     return [*((name, names, Demand.POSITION) for name, names in parts), verdicts]
 
@@ -212,29 +210,27 @@ class Suite(NamedTuple):
 SUITE = Suite("mechkin bench", templates, FAMILIES, setting_tables, "demand plan, threads")
 
 
-def methods_of(scene: BenchScene, family: str, make: Family) -> list[Method | Skipped]:
-    """All methods of a family that can run, then the reason why others cannot."""
-    found: list[Method | Skipped] = []
+def methods_of(scene: BenchScene, make: Family) -> tuple[list[Method], str]:
+    """All methods of a family that can run, and why others cannot; "" where all can."""
+    found: list[Method] = []
     try:
         found.extend(make(scene))
     except ImportError as error:
         name = str(error.name or "").partition(".")[0]
-        found.append(
-            Skipped(scene.name, family, f"{name} is not installed (pip install 'mechkin[bench]')")
-        )
+        return found, f"{name} is not installed (pip install 'mechkin[bench]')"
     except Unable as reason:
-        found.append(Skipped(scene.name, family, str(reason)))
-    return found
+        return found, str(reason)
+    return found, ""
 
 
 def bench(scene: BenchScene, rounds: Rounds, families: Mapping[str, Family] = FAMILIES) -> Bench:
     """Measures a scene by some families of methods; ours is always among them."""
     wanted = {FAMILY: kernel_methods, **families}
-    found = [each for name, make in wanted.items() for each in methods_of(scene, name, make)]
-    methods = [each for each in found if isinstance(each, Method)]
-    skipped = tuple(each for each in found if isinstance(each, Skipped))
+    found = {name: methods_of(scene, make) for name, make in wanted.items()}
+    methods = [method for some, _ in found.values() for method in some]
+    skipped = {name: why for name, (_, why) in found.items() if why}
     true, exact = exact_values(scene)
-    lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
+    lengths = frozenset(scene.chain.coordinates[k] for k in scene.chain.lengths)
     units = {m.level: m for m in methods if m.family == FAMILY and m.curve == UNIT}
     measurements = []
     for method, timing, by, values in _timed(methods, units, rounds):
@@ -253,7 +249,7 @@ def exact_values(scene: BenchScene) -> tuple[Values, str]:
     Arrays (width, places) of numpy's widest numbers, from the rows repeated in double-double; none
     where the text cannot be followed in it.
     """
-    wanted = scene.wanted(scene.asked.level("everything"))
+    wanted = scene.wanted(scene.names("everything"))
     try:
         wide = wide_run(scene.result)
     except NotRepeated as reason:

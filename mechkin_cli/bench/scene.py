@@ -8,7 +8,6 @@ their velocities and accelerations), `everything` (with efforts and joint reacti
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -47,23 +46,6 @@ Values = dict[str, "Floats"]
 """Quantities by name: (1, rows), vectors (3, rows); SI."""
 
 
-@dataclass(frozen=True)
-class Asked:
-    """Names of what is asked for, by order; `loads` are efforts and reactions."""
-
-    position: tuple[str, ...]
-    velocity: tuple[str, ...]
-    acceleration: tuple[str, ...]
-    loads: tuple[str, ...]
-
-    def level(self, name: str) -> tuple[str, ...]:
-        """The names of a level."""
-        moving = (*self.position, *self.velocity, *self.acceleration)
-        return {"position": self.position, "motion": moving, "everything": (*moving, *self.loads)}[
-            name
-        ]
-
-
 class BenchScene:
     """A mechanism whose sweep is closed.
 
@@ -92,12 +74,12 @@ class BenchScene:
                 f"{name} has nothing that is solved for: all its coordinates are inputs; bench "
                 "takes mechanisms with closed loops"
             )
-        if not self.asked.position:
+        if not self.asked["position"]:
             raise UsageError(
                 f"{name} has nothing by which errors could be measured: no unknown coordinate has "
                 "a name; write points: on a link that moves"
             )
-        self.result = analyze(model.session.packed(ALONE), self.asked.level("everything"))
+        self.result = analyze(model.session.packed(ALONE), self.names("everything"))
         self.solved = np.flatnonzero(self.result.row_states.reached)
         if not self.solved.size:
             said = next((str(d) for d in self.result.diagnostics if d.severity != "note"), "")
@@ -184,7 +166,15 @@ class BenchScene:
 
     def names(self, level: str | Sequence[str]) -> tuple[str, ...]:
         """The names of a level; other names as they are."""
-        return self.asked.level(level) if isinstance(level, str) else tuple(level)
+        if not isinstance(level, str):
+            return tuple(level)
+        asked = self.asked
+        moving = (*asked["position"], *asked["velocity"], *asked["acceleration"])
+        return {
+            "position": asked["position"],
+            "motion": moving,
+            "everything": (*moving, *asked["loads"]),
+        }[level]
 
     @property
     def is_whole(self) -> bool:
@@ -202,8 +192,8 @@ class BenchScene:
     def closing_values(self) -> Values:
         """Named coordinates of cut joints (1, rows) in the closed rows."""
         names = [
-            c.name
-            for c, at in zip(self.chain.coordinates, self.chain.states, strict=True)
+            name
+            for name, at in zip(self.chain.coordinates, self.chain.states, strict=True)
             if at is None
         ]
         names = [name for name in names if name in self.quantities]
@@ -211,18 +201,19 @@ class BenchScene:
 
     def verdicts(self, level: str) -> Demand:
         """What `analyze` computes for the verdicts of the rows beside a level."""
-        wanted = self.wanted(self.asked.level(level))
+        wanted = self.wanted(self.names(level))
         _, demand = at_once(self.session, wanted, verdicts=True)
         return demand
 
-    def _asked(self, session: Session) -> Asked:
+    def _asked(self, session: Session) -> dict[str, tuple[str, ...]]:
+        """Names of what is asked for, by order; `loads` are efforts and reactions."""
         coordinates, points = _unknown_coordinates(session), list(self._points())
         names = {
             order: [name + ends[0] for name in coordinates] + [name + ends[1] for name in points]
             for order, ends in ORDERS.items()
         }
         known = {o: tuple(n for n in each if n in self.quantities) for o, each in names.items()}
-        return Asked(**known, loads=self._loads(session))
+        return known | {"loads": self._loads(session)}
 
     def _loads(self, session: Session) -> tuple[str, ...]:
         """Efforts; and the wrenches of all joints, where they are unique."""

@@ -10,6 +10,7 @@ from math import inf
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
+from mechkin_cli import mobility
 from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
@@ -32,7 +33,6 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
-from mechkin_cli.building.source import MechanismSource
 from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
@@ -65,7 +65,7 @@ from mechkin_cli.mechanism import (
     differentiation,
 )
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
-from mechkin_cli.reading import in_order
+from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import MechanismFile
 from mechkin_cli.session import solver_graph
@@ -87,15 +87,16 @@ _NO_GRAPHS: Mapping[str, SolverGraph | Diagnostic] = MappingProxyType({})
 
 class Built(NamedTuple):
     """The problem of a file, its solver graph (or why it cannot be solved as it is driven), its
-    tables, the source it names, the file as read, its runs by name, the solver graphs at the starts
-    of its responses, coefficients, balances, and the settings of its view."""
+    tables, the source it names, the file as read and its document, its runs by name, the solver
+    graphs at the starts of its responses, coefficients, balances, and the settings of its view."""
 
     problem: Problem
     graph: SolverGraph | Diagnostic
     tables: tuple[TableLayout, ...]
     own_tables: bool
     source: str
-    read: MechanismSource
+    file: MechanismFile
+    document: Document
     runs: tuple[str, ...] = (SWEEP,)
     response_graphs: Mapping[str, SolverGraph | Diagnostic] = _NO_GRAPHS
     coefficients: tuple[CoefficientsLayout, ...] = ()
@@ -107,18 +108,19 @@ class Built(NamedTuple):
         return tuple(table for table in self.tables if table.run == run)
 
 
-def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> Built:
+def build(
+    file: MechanismFile, document: Document, given: Mapping[str, Quantity] = _NOTHING
+) -> Built:
     """Builds everything that a file describes; `given` values replace those of some parameters.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
     """
-    file = source.file
-    fields = read_fields(source, given)
+    fields = read_fields(file, document, given)
     problem = build_problem(fields, file)
     datum = datum_of(problem.mechanism)
     if datum != ZERO:
-        fields = read_fields(source, given, datum=datum)
+        fields = read_fields(file, document, given, datum=datum)
         problem = build_problem(fields, file)
     problem = replace(problem, hold_idle=file.idle == "hold")
     problem = _with_definitions(fields, file, problem)
@@ -138,6 +140,11 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph):
+        held = mobility.held_to_family(problem)
+        if held != problem.held:
+            problem = replace(problem, held=held)
+            graph = _graph(fields, file, problem)
+    if isinstance(graph, SolverGraph):
         check_spins(fields, problem, own)
         problem = settled(problem)
     graphs: Graphs = {}
@@ -151,7 +158,7 @@ def build(source: MechanismSource, given: Mapping[str, Quantity] = _NOTHING) -> 
     if file.parameters:
         note_unused(fields)
     problem = replace(problem, diagnostics=tuple(in_order(fields.diagnostics)))
-    read = (bool(file.tables), file.source or "", source)
+    read = (bool(file.tables), file.source or "", file, document)
     others = (coefficients, balances, view)
     return Built(problem, graph, tables, *read, runs_of(file), graphs, *others)
 
@@ -189,7 +196,8 @@ def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings
 
 
 def read_fields(
-    source: MechanismSource,
+    file: MechanismFile,
+    document: Document,
     given: Mapping[str, Quantity] = _NOTHING,
     moved: Move | None = None,
     *,
@@ -197,13 +205,13 @@ def read_fields(
 ) -> Fields:
     """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
     places are measured from the `datum` (m). Errors are noted."""
-    units, errors = read_units(source.document, source.file.units)
-    fields = Fields(source.document, units, diagnostics=errors, plane=source.file.in_plane)
-    read_parameters(fields, source.file.parameters, given, moved)
+    units, errors = read_units(document, file.units)
+    fields = Fields(document, units, diagnostics=errors, plane=file.in_plane)
+    read_parameters(fields, file.parameters, given, moved)
     if datum != ZERO:
-        fields.datum = Datum(datum, source.file.parameters, given, units)
-    if source.file.quantities:
-        read_quantities(fields, source.file.quantities)
+        fields.datum = Datum(datum, file.parameters, given, units)
+    if file.quantities:
+        read_quantities(fields, file.quantities)
     return fields
 
 
@@ -299,7 +307,7 @@ def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
         if block.equations <= MOST_EQUATIONS:
             continue
         closings = [graph.closings[c] for c in block.closings]
-        members = {graph.edges[k].joint.name for closing in closings for k, _ in closing.loop}
+        members = {graph.edges[k].joint.name for k in graph.passed(block)}
         joints = sorted(members | {closing.joint.name for closing in closings})
         fields.error(
             "block-too-large",

@@ -197,7 +197,7 @@ class _Reading:
         first = self.fields.written((*path, "from"), section.first, TIME)
         last = self.fields.written((*path, "to"), section.last, TIME)
         assert self.motion.time is not None
-        self.clock = Clock(self.motion.time.written, first, last)
+        self.clock = Clock(self.motion.time, first, last)
 
     def add(self, name: str, item: WithRates | Law) -> None:
         """An input that does not follow others."""
@@ -318,7 +318,7 @@ class _Reading:
         first: Any = self.fields.written((*path, "from"), law.first, dimension)
         last: Any = self.fields.written((*path, "to"), law.last, dimension)
         start, duration = span(self.fields, path, law, clock)
-        at = (clock.moments - as_recorded(start)) / as_recorded(duration)
+        at = (clock.time.written - as_recorded(start)) / as_recorded(duration)
         rising = self._where((at >= 0.0) & (at <= 1.0))
         risen = self._where(at >= 1.0)
         u = (self.moment - start) / duration
@@ -337,7 +337,7 @@ class _Reading:
         assert self.clock is not None
         curve = joined_curve(*table, *joining_of(law))
         knots = np.array([as_recorded(x) for x in table[0]])
-        piece = np.searchsorted(knots, self.clock.moments, side="right") - 1
+        piece = np.searchsorted(knots, self.clock.time.written, side="right") - 1
         piece = np.clip(piece, 0, knots.size - 1)
 
         def picked(numbers: Any) -> Any:

@@ -38,8 +38,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.reading import CORRECT_FIRST, MOST_DIAGNOSTICS, Document, in_order
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
-from mechkin_cli.schema import HeldCoordinate, InputMotion, MechanismFile, UnitsSection
-from mechkin_cli.show import Floats
+from mechkin_cli.schema import MechanismFile, UnitsSection
 from mechkin_cli.tape import is_number
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import (
@@ -460,19 +459,8 @@ def note_force_unit(fields: Fields) -> None:
 
 
 class Clock(NamedTuple):
-    """The moments of the rows, and `from` and `to` of `time`, in the file's units."""
+    """The moments of the rows, and `from` and `to` of `time` in the file's units."""
 
-    moments: Floats
+    time: Moments
     first: float
     last: float
-
-
-class Written(NamedTuple):
-    """Driven coordinates as written in a section, its path, the moments and clock of their laws,
-    and the two inputs of a grid, the slow one first."""
-
-    inputs: Mapping[str, InputMotion | HeldCoordinate]
-    path: Path
-    time: Moments | None = None
-    clock: Clock | None = None
-    grid: tuple[str, ...] = ()

@@ -63,7 +63,7 @@ from mechkin_cli.tape import Recorder, Tape, Traced, TraceLost, cos, is_traced, 
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.building.fields import Written
+    from mechkin_cli.schema import InputMotion
 
 
 def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clock) -> Floats:
@@ -78,7 +78,7 @@ def _of_powers(fields: Fields, path: Path, law: PowerLaw, coordinate: str, clock
     numbers = coefficients(fields, path, law, coordinate)
     if isinstance(law, Polynomial):
         _check_units(fields, (*path, "coefficients"), law, coordinate)
-    t = clock.moments - clock.first
+    t = clock.time.written - clock.first
     orders = np.zeros((4, t.size))
     for order in range(4):
         for k in range(len(numbers) - 1, order - 1, -1):
@@ -144,7 +144,7 @@ def _rise(
     first = fields.written((*path, "from"), law.first, dimension_of(coordinate))
     last = fields.written((*path, "to"), law.last, dimension_of(coordinate))
     start, duration = span(fields, path, law, clock)
-    u = (clock.moments - start) / duration
+    u = (clock.time.written - start) / duration
     rising = (u >= 0.0) & (u <= 1.0)
     rise = last - first
     orders = np.stack(shape(np.clip(u, 0.0, 1.0)))
@@ -157,7 +157,7 @@ def _rise(
 
 
 def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Clock) -> Floats:
-    orders = np.zeros((4, clock.moments.size))
+    orders = np.zeros((4, clock.time.written.size))
     place = (*path, "file")
     rows = read_rows(fields, place, law.file, TIME, dimension_of(coordinate))
     curve = None if rows is None else join(fields, place, *rows, *joining_of(law))
@@ -165,7 +165,7 @@ def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Cl
         return orders
     note_overshoot(fields, place, curve, None)
     unit = fields.units.label(TIME)
-    for moment in (float(clock.moments[0]), float(clock.moments[-1])):
+    for moment in (float(clock.time.written[0]), float(clock.time.written[-1])):
         if not curve.first <= moment <= curve.last:
             fields.error(
                 "table-range",
@@ -176,7 +176,7 @@ def _table(fields: Fields, path: Path, law: TableLaw, coordinate: str, clock: Cl
                 limit=f"{curve.first:g} to {curve.last:g} {unit}",
             )
             return orders
-    values = curve.evaluate(clock.moments)
+    values = curve.evaluate(clock.time.written)
     for order in range(4):
         orders[order] = over_time(fields.units, coordinate, 0, order).apply(values[order])
     return orders
@@ -271,27 +271,34 @@ _NO_LAWS = (SweptInput, ListedInput, HeldInput, FollowingInput, HeldCoordinate)
 
 def build_course(
     fields: Fields,
-    written: Written,
+    path: Path,
+    sections: Mapping[str, InputMotion | HeldCoordinate],
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
+    clock: Clock | None,
+    *,
+    grid: bool,
 ) -> Course | None:
     """The course of inputs without errors; None where they only run straight from row to row.
 
     Args:
         fields: of the file, with units and parameters.
-        written: the inputs as written, and the moments of the rows.
+        path: of the section with the driven coordinates.
+        sections: the coordinates as written.
         inputs: with their values in all rows, in the order of the file.
         expressions: of the inputs that follow, in an order in which they can be evaluated.
+        clock: of the laws, where the rows are moments.
+        grid: whether the rows are those of a grid.
 
     Raises:
         TraceLost: the inputs depend on a parameter that is recorded.
     """
     rows = inputs[0].values.size if inputs else 0
-    if rows < 2 or not (expressions or written.time is not None):
+    if rows < 2 or not (expressions or clock is not None):
         return None
     if any(is_traced(item.values) for item in inputs):
         raise TraceLost("the course of inputs depends on a varied parameter")
-    sources = _sources(fields, written, inputs, expressions)
+    sources = _sources(fields, path, sections, inputs, expressions, clock, grid=grid)
     if sources is None:
         return None
     parameter, at, _ = sources
@@ -303,19 +310,22 @@ def build_course(
 
 def _sources(
     fields: Fields,
-    written: Written,
+    path: Path,
+    sections: Mapping[str, InputMotion | HeldCoordinate],
     inputs: Sequence[DrivenInput],
     expressions: Mapping[str, Expression],
+    clock: Clock | None,
+    *,
+    grid: bool,
 ) -> tuple[Parameter, Floats, Mapping[str, LawPieces]] | None:
     """The parameter, its values in the rows, and the inputs that are functions of it alone."""
-    time, clock = written.time, written.clock
-    if time is not None and clock is not None:
+    if clock is not None:
         laws = {
-            name: law_pieces(fields, (*written.path, name), item, name.rpartition(".")[2], clock)
-            for name, item in written.inputs.items()
+            name: law_pieces(fields, (*path, name), item, name.rpartition(".")[2], clock)
+            for name, item in sections.items()
             if not isinstance(item, _NO_LAWS)
         }
-        return Parameter("time", TIME), time.written, laws
+        return Parameter("time", TIME), clock.time.written, laws
     moving = [i for i in inputs if i.name not in expressions and (i.written != i.written[0]).any()]
     follow = [i for i in inputs if i.name in expressions and (i.values != i.values[0]).any()]
     if not moving or not follow:
@@ -327,9 +337,7 @@ def _sources(
         return Parameter(name, dimension), moving[0].written, {name: itself}
     numbers = np.arange(moving[0].written.size, dtype=np.float64)
     chords = {
-        i.name: _chords(
-            i.written, isinstance(written.inputs[i.name], SweptInput) and not written.grid
-        )
+        i.name: _chords(i.written, isinstance(sections[i.name], SweptInput) and not grid)
         for i in moving
     }
     return Parameter("row"), numbers, chords

@@ -49,11 +49,9 @@ from mechkin_cli.mechanism import (
     dot,
     is_angle,
     norm,
-    renumbered,
     scale,
     subtract,
     unit,
-    varying,
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
@@ -180,14 +178,14 @@ class LoadBuilder:
             self._acting = self._runs_of(path, section.runs)
             self._add(path, section)
 
-    def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> Amount:
+    def add_effort(self, path: Path, name: str, value: str | TableValue, run: str) -> JointLoad:
         """The effort along a coordinate that exists, in one run."""
         self._acting = (run,)
         joint, _, coordinate = name.rpartition(".")
         dimension = MOMENT if is_angle(coordinate) else FORCE
-        amount = self._value(path, value, dimension, name)
-        self._put(JointLoad(joint, coordinate, amount))
-        return amount
+        load = JointLoad(joint, coordinate, self._value(path, value, dimension, name))
+        self._put(load)
+        return load
 
     def of_run(
         self, run: str, mechanism: Mechanism
@@ -206,9 +204,9 @@ class LoadBuilder:
             if not isinstance(item, Load):
                 gravity = add(gravity, item)
                 continue
-            for amount in varying(item):
+            for amount in item.varying:
                 numbers.setdefault(amount.number, len(numbers))
-            loads.append(renumbered(item, numbers))
+            loads.append(item.renumbered(numbers))
         laws = () if self.fields.error_count else tuple(self._laws.laws[n] for n in numbers)
         acting = replace(mechanism, loads=tuple(loads), gravity=gravity, frictions=tuple(frictions))
         return acting, laws, numbers

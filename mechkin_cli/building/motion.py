@@ -27,7 +27,6 @@ from mechkin_cli.building.fields import (
     Clock,
     Fields,
     Path,
-    Written,
     dimension_of,
     is_coordinate,
     refuse_efforts,
@@ -60,6 +59,7 @@ from mechkin_cli.schema import (
     FollowingInput,
     HeldCoordinate,
     HeldInput,
+    InputMotion,
     ListedInput,
     MechanismFile,
     MotionSection,
@@ -198,12 +198,10 @@ def build_motion(
         return MotionInputs((), 1)
     errors = fields.error_count
     grid = section.with_rows if section.grid else ()
-    written = Written(section.inputs, ("motion", "inputs"), grid=grid)
+    path, clock = ("motion", "inputs"), None
     if section.time is not None:
-        moments, last = spaced_moments(fields, ("motion", "time"), section.time, per_row)
-        clock = Clock(moments.written, float(moments.written[0]), last)
-        written = written._replace(time=moments, clock=clock)
-    motion = build_inputs(fields, written, joints, per_row)
+        clock = spaced_moments(fields, ("motion", "time"), section.time, per_row)
+    motion = build_inputs(fields, path, section.inputs, joints, per_row, clock, grid)
     if motion is not None and fields.error_count == errors:
         return motion
     fields.failed.add(SWEEP)
@@ -213,24 +211,40 @@ def build_motion(
 
 
 def build_inputs(
-    fields: Fields, written: Written, joints: Mapping[str, Joint], per_row: int
+    fields: Fields,
+    path: Path,
+    sections: Mapping[str, InputMotion | HeldCoordinate],
+    joints: Mapping[str, Joint],
+    per_row: int,
+    clock: Clock | None = None,
+    pair: tuple[str, ...] = (),
 ) -> MotionInputs | None:
-    """Driven coordinates over the rows and between them; None where an error was noted."""
+    """Driven coordinates over the rows and between them; None where an error was noted.
+
+    Args:
+        fields: of the file, with units and parameters.
+        path: of the section with the driven coordinates.
+        sections: the coordinates as written.
+        joints: by name.
+        per_row: numbers that a row takes.
+        clock: of their laws, where the rows are moments.
+        pair: the two inputs of a grid, the slow one first.
+    """
     errors = fields.error_count
-    time = written.time
+    time = None if clock is None else clock.time
     with np.errstate(all="ignore"):
-        orders, following = _orders(fields, written, joints, per_row)
-    rows = time.written.size if time else _row_count(fields, written.grid, orders)
+        orders, following = _orders(fields, path, sections, joints, per_row, clock)
+    rows = time.written.size if time else _row_count(fields, pair, orders)
     grid = None
-    if fields.error_count == errors and not has_too_many_rows(fields, written.path, rows, per_row):
-        grid = _all_pairs(orders, written.grid)
+    if fields.error_count == errors and not has_too_many_rows(fields, path, rows, per_row):
+        grid = _all_pairs(orders, pair)
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
     if fields.error_count == errors and following:
         from mechkin_cli.building.laws import Following
 
         coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
-        followers = Following(fields, orders, rows, time, written.path)
+        followers = Following(fields, orders, rows, time, path)
         followers.add_all(following, coordinates)
         expressions = followers.expressions
         if fields.error_count == errors:
@@ -238,13 +252,13 @@ def build_inputs(
     if fields.error_count > errors:
         return None
     inputs = tuple(
-        _driven(fields, (*written.path, name), orders[name], rows, name in following)
-        for name in written.inputs
+        _driven(fields, (*path, name), orders[name], rows, name in following)
+        for name in sections
         if name in orders
     )
     if fields.error_count > errors:
         return None
-    unrated = () if time else _unrated(fields, written.path, inputs)
+    unrated = () if time else _unrated(fields, path, inputs)
     motion = MotionInputs(inputs, rows, time, unrated=unrated, grid=grid)
     if constraint_rates:
         number = {item.name: k for k, item in enumerate(inputs)}
@@ -257,16 +271,13 @@ def build_inputs(
         return motion
     from mechkin_cli.building.laws import build_course, build_paths
 
-    course = build_course(fields, written, inputs, expressions)
+    course = build_course(fields, path, sections, inputs, expressions, clock, grid=bool(pair))
     paths = build_paths(fields, inputs, expressions, time) if expressions else motion.paths
     return motion._replace(course=course, paths=paths)
 
 
-def spaced_moments(
-    fields: Fields, path: Path, section: TimeSection, per_row: int
-) -> tuple[Moments, float]:
-    """The moments of a section, which run forwards, and its end in the file's unit; errors are
-    noted, with one moment."""
+def spaced_moments(fields: Fields, path: Path, section: TimeSection, per_row: int) -> Clock:
+    """The moments of a section, which run forwards; errors are noted, with one moment."""
     errors = fields.error_count
     written = spaced(fields, path, section, TIME, per_row)
     last = float(written[0])
@@ -278,46 +289,52 @@ def spaced_moments(
         text = f"time stands still over {written.size} rows"
         fields.error("zero-step", (*path, "to"), text, "give a later moment, or count: 1")
         written = written[:1]
-    return Moments(fields.units.to_si(written.copy(), TIME), written), last
+    moments = Moments(fields.units.to_si(written.copy(), TIME), written)
+    return Clock(moments, float(written[0]), last)
 
 
 def _orders(
-    fields: Fields, written: Written, joints: Mapping[str, Joint], per_row: int
+    fields: Fields,
+    path: Path,
+    sections: Mapping[str, InputMotion | HeldCoordinate],
+    joints: Mapping[str, Joint],
+    per_row: int,
+    clock: Clock | None,
 ) -> tuple[dict[str, Floats], dict[str, FollowingInput]]:
     """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
     and the sections of those that follow."""
     orders: dict[str, Floats] = {}
     following: dict[str, FollowingInput] = {}
-    for name, item in written.inputs.items():
-        path: Path = (*written.path, name)
-        if not is_coordinate(fields, path, name, joints) or _driven_twice(fields, path, joints):
+    for name, item in sections.items():
+        own = (*path, name)
+        if not is_coordinate(fields, own, name, joints) or _driven_twice(fields, own, joints):
             continue
         coordinate = name.rpartition(".")[2]
         if isinstance(item, FollowingInput):
             following[name] = item
         elif isinstance(item, HeldCoordinate):
-            at = fields.written((*path, "at"), item.at, dimension_of(coordinate))
+            at = fields.written((*own, "at"), item.at, dimension_of(coordinate))
             orders[name] = with_rates(of_numbers([at]), [0.0, 0.0, 0.0])
         elif isinstance(item, (SweptInput, ListedInput, HeldInput)):
-            values = _values(fields, path, item, coordinate, per_row)
-            rates = _constant_rates(fields, path, item, coordinate, written.time)
+            values = _values(fields, own, item, coordinate, per_row)
+            rates = _constant_rates(fields, own, item, coordinate, timed=clock is not None)
             orders[name] = with_rates(values, rates)
         else:
             from mechkin_cli.building.laws import law_values
 
-            assert written.clock is not None  # the schema refuses a law without time
-            orders[name] = law_values(fields, path, item, coordinate, written.clock)
+            assert clock is not None  # the schema refuses a law without time
+            orders[name] = law_values(fields, own, item, coordinate, clock)
     return orders, following
 
 
 def _constant_rates(
-    fields: Fields, path: Path, item: WithRates, coordinate: str, time: Moments | None
+    fields: Fields, path: Path, item: WithRates, coordinate: str, *, timed: bool
 ) -> list[float]:
     rates = []
     for order, key in enumerate(_RATES, start=1):
         dimension = dimension_of(coordinate, order)
         rates.append(fields.written((*path, key), getattr(item, key), dimension))
-        if time is not None and rates[-1] != 0.0:
+        if timed and rates[-1] != 0.0:
             text = "an input that is held while time runs has no rate"
             hint = "write law: constant-rate, or another law"
             fields.key_error("held-rate", (*path, key), text, hint)

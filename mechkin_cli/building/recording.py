@@ -69,7 +69,7 @@ def record_exactly(
     recorder = recorder or ExactRecorder()
     with exact_numbers(recorder):
         fields = _fields(built, given, recorder, moved)
-        file = built.read.file
+        file = built.file
         problem = build_problem(fields, file, responses=False, motion=base.motion)
         motion = exact_motion(fields, file.motion, base.motion, recorder)
     _refuse_errors(fields)
@@ -96,7 +96,9 @@ def _fields(
         name: Quantity(recorder.written(float(one.value), Fraction(one.value)), one.dimension)  # type: ignore[arg-type]
         for name, one in given.items()
     }
-    return read_fields(built.read, recorded, moved, datum=built.problem.mechanism.datum)
+    return read_fields(
+        built.file, built.document, recorded, moved, datum=built.problem.mechanism.datum
+    )
 
 
 def _held(base: Problem, problem: Problem, recorder: ExactRecorder) -> tuple[LockedFreedom, ...]:
@@ -149,7 +151,7 @@ def precise_response(
     if response.driven:
         raise TraceLost("a coordinate that is driven by a law of time")
     recorder = ExactRecorder()
-    file, name = built.read.file, response.name
+    file, name = built.file, response.name
     with exact_numbers(recorder):
         fields = _fields(built, given, recorder)
         base = built.problem
@@ -180,8 +182,8 @@ def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:
         name: Quantity(Traced(recorder, number), quantity.dimension)  # type: ignore[arg-type]
         for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
     }
-    fields = read_fields(built.read, given, datum=base.mechanism.datum)
-    problem = build_problem(fields, built.read.file, responses=False)
+    fields = read_fields(built.file, built.document, given, datum=base.mechanism.datum)
+    problem = build_problem(fields, built.file, responses=False)
     problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables_of(SWEEP))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import idle, mobility, tolerances
-from mechkin_cli.building.fields import Clock, Fields, Path, Written, dimension_of, is_coordinate
+from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, has_too_many_rows, spaced_moments
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
@@ -25,8 +25,8 @@ from mechkin_cli.mechanism import (
     Assembly,
     CrossingEnd,
     DeadCentreEnd,
-    Effort,
     Joint,
+    JointLoad,
     Moments,
     MotionInputs,
     Problem,
@@ -35,7 +35,6 @@ from mechkin_cli.mechanism import (
     Stop,
     TurnsEnd,
     is_angle,
-    renumbered_amount,
     response_problem,
 )
 from mechkin_cli.record import replace
@@ -271,11 +270,6 @@ def build_responses(
     return built
 
 
-def _numbered(efforts: Iterable[Effort], numbers: Mapping[int, int]) -> tuple[Effort, ...]:
-    """Efforts with the laws of their amounts by the numbers of their own run."""
-    return tuple(e._replace(amount=renumbered_amount(e.amount, numbers)) for e in efforts)
-
-
 class _ResponseBuilder:
     """Builds one response after another; arguments as those of `build_responses`."""
 
@@ -287,27 +281,28 @@ class _ResponseBuilder:
     def response(self, name: str, section: written.Response) -> ResponseProblem:
         """The response of a name."""
         path: Path = ("responses", name)
-        timed = self._timed(path, section)
-        driven = build_inputs(self.fields, timed, self.joints, self.per_row) or MotionInputs((), 1)
+        clock = self._clock(path, section)
+        driven = build_inputs(
+            self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
+        ) or MotionInputs((), 1)
         self._check_ties(path, driven)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         start = build_start(self.fields, path, section, self.joints)
         known: Mapping[str, Wanted] = self.loads.runs[name]
         stops = StopBuilder(self.fields, self.joints, name, known)
-        assert timed.time is not None
         return ResponseProblem(
             name=name,
             place=self.fields.document.key_place(path),
             start=start,
             assembly=self._assembly(path, section),
-            efforts=_numbered(efforts, numbers),
+            efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             driven=driven.inputs,
             course=driven.course,
-            moments=timed.time,
+            moments=clock.time,
             stops=stops.build(path, section.stop),
             tolerance=self._tolerance(path, section.tolerance),
-            fixed_step=self._fixed_step(path, section.fixed_step, timed.time),
+            fixed_step=self._fixed_step(path, section.fixed_step, clock.time),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
@@ -323,7 +318,7 @@ class _ResponseBuilder:
             known,
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
-            efforts=_numbered(efforts, numbers),
+            efforts=tuple(effort.renumbered(numbers) for effort in efforts),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
@@ -350,22 +345,20 @@ class _ResponseBuilder:
             )
             self.fields.error("tie-left-out", path, text, hint)
 
-    def _timed(self, path: Path, section: written.Response) -> Written:
-        """The driven coordinates as written, with the moments of the rows."""
+    def _clock(self, path: Path, section: written.Response) -> Clock:
+        """The moments of the rows."""
         place = (*path, "time")
         errors = self.fields.error_count
         if isinstance(section.time, TimeSection):
-            moments, last = spaced_moments(self.fields, place, section.time, self.per_row)
+            clock = spaced_moments(self.fields, place, section.time, self.per_row)
         else:
-            moments = self._listed(place, section.time)
-            last = float(moments.written[-1])
-        if moments.written.size < 2 and self.fields.error_count == errors:
+            clock = self._listed(place, section.time)
+        if clock.time.written.size < 2 and self.fields.error_count == errors:
             text = "a response needs two moments, its start and a later one"
             self.fields.error("one-moment", place, text, "give time: {from, to, step}")
-        clock = Clock(moments.written, float(moments.written[0]), last)
-        return Written(section.driven, (*path, "driven"), moments, clock)
+        return clock
 
-    def _listed(self, place: Path, section: written.ListedTime) -> Moments:
+    def _listed(self, place: Path, section: written.ListedTime) -> Clock:
         texts = enumerate(section.values)
         values = [self.fields.written((*place, "values", i), text, TIME) for i, text in texts]
         for i in range(1, len(values)):
@@ -375,7 +368,8 @@ class _ResponseBuilder:
                 self.fields.error("time-backwards", (*place, "values", i), text, hint)
         has_too_many_rows(self.fields, (*place, "values"), len(values), self.per_row)
         moments = np.array(values)
-        return Moments(self.fields.units.to_si(moments.copy(), TIME), moments)
+        time = Moments(self.fields.units.to_si(moments.copy(), TIME), moments)
+        return Clock(time, float(moments[0]), float(moments[-1]))
 
     def _assembly(self, path: Path, section: written.Response) -> Assembly:
         """The response's own choice, else the file's."""
@@ -384,7 +378,7 @@ class _ResponseBuilder:
             return self.problem.assembly
         return replace(self.problem.assembly, near=near, mode=section.mode)
 
-    def _efforts(self, path: Path, section: written.Response, run: str) -> tuple[Effort, ...]:
+    def _efforts(self, path: Path, section: written.Response, run: str) -> list[JointLoad]:
         efforts = []
         for name, value in section.efforts.items():
             place = (*path, "efforts", name)
@@ -394,8 +388,8 @@ class _ResponseBuilder:
                 text = f"{name} is driven, so the effort of its drive follows from the motion"
                 self.fields.key_error("effort-and-drive", place, text, "remove one of the two")
                 continue
-            efforts.append(Effort(*_split(name), self.loads.add_effort(place, name, value, run)))
-        return tuple(efforts)
+            efforts.append(self.loads.add_effort(place, name, value, run))
+        return efforts
 
     def _tolerance(self, path: Path, text: str | None) -> float:
         if text is None:

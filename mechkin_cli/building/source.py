@@ -19,23 +19,18 @@ from mechkin_cli.reading import (
     read_document,
     read_regular,
 )
-from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.record import replace
 from mechkin_cli.schema import InvalidDataError, MechanismFile, UnitsSection, validate
 
 _NONE: Mapping[str, str] = MappingProxyType({})
 _NO_TABLES: Mapping[str, bytes] = MappingProxyType({})
 
 
-class MechanismSource(NamedTuple):
+def open_file(
+    path: str | Path, parameters: Mapping[str, str] = _NONE
+) -> tuple[MechanismFile, Document]:
     """The content of a mechanism file, in space if it is of a plane, and the document with the
-    place of each value."""
-
-    file: MechanismFile
-    document: Document
-
-
-def open_file(path: str | Path, parameters: Mapping[str, str] = _NONE) -> MechanismSource:
-    """Read a mechanism file; `parameters` replace values of its `parameters:`, as `--set` does.
+    place of each value; `parameters` replace values of its `parameters:`, as `--set` does.
 
     Raises `UsageError` for a file that cannot be read or an unknown parameter, `InvalidFile` with
     all independent diagnostics for content that is not format 1.
@@ -49,7 +44,7 @@ def open_text(
     parameters: Mapping[str, str] = _NONE,
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
-) -> MechanismSource:
+) -> tuple[MechanismFile, Document]:
     """As `open_file`, for a text; `name` stands for the file in messages, `folder` has the files
     that the text names; `tables` are contents of such files that were read already."""
     document = replace(document_from_text(text, name), folder=folder, tables=dict(tables))
@@ -62,13 +57,13 @@ def open_data(
     parameters: Mapping[str, str] = _NONE,
     folder: Path | None = None,
     tables: Mapping[str, bytes] = _NO_TABLES,
-) -> MechanismSource:
+) -> tuple[MechanismFile, Document]:
     """As `open_text`, for the plain data of a program; places are paths of keys."""
     document = replace(reading.document_from_data(data, name, folder), tables=dict(tables))
     return _checked(document.with_parameters(parameters))
 
 
-def _checked(document: Document) -> MechanismSource:
+def _checked(document: Document) -> tuple[MechanismFile, Document]:
     try:
         file = validate(document.data)
     except InvalidDataError as invalid:
@@ -78,8 +73,8 @@ def _checked(document: Document) -> MechanismSource:
     if with_units != document.overrides:
         return _checked(replace(document, overrides=with_units))
     if isinstance(file, MechanismFile):
-        return MechanismSource(file, document)
-    return MechanismSource(schema.in_space(file), document)
+        return file, document
+    return schema.in_space(file), document
 
 
 def _with_units(document: Document, section: UnitsSection) -> dict[str, str]:

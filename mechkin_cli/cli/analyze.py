@@ -27,13 +27,12 @@ from mechkin_cli.cli.progress import Tell, working
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import listed
-from mechkin_cli.tables import USUAL_FORMATS, WRITERS, Results, written_files
+from mechkin_cli.tables import NEEDS_OPENPYXL, USUAL_FORMATS, WRITERS, Results, written_files
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.model import Model
-    from mechkin_cli.tables import RunFiles
 
 
 def run_all(
@@ -96,6 +95,10 @@ def _refuse_unknown(model: Model, tables: Sequence[str]) -> None:
             )
 
 
+DECIMAL_MARKS = ("point", "comma")
+"""What `--decimal` takes."""
+
+
 class AnalyzeCommand(NamedTuple):
     """The options of the command, as `commands` declares them."""
 
@@ -103,6 +106,7 @@ class AnalyzeCommand(NamedTuple):
     out: Path | None = None
     format: list[str] | None = None
     units: bool = False
+    decimal: str = DECIMAL_MARKS[0]
     set_: list[str] | None = None
     mode: str | None = None
     table: list[str] | None = None
@@ -122,7 +126,7 @@ class AnalyzeCommand(NamedTuple):
         """The formats of tables.
 
         Raises:
-            UsageError: one is not known.
+            UsageError: one is not known, or needs a library that is not installed.
         """
         asked = [name for text in self.format or () for name in text.split(",")]
         formats = tuple(dict.fromkeys(asked or USUAL_FORMATS))
@@ -130,7 +134,23 @@ class AnalyzeCommand(NamedTuple):
             if name not in WRITERS:
                 cure = f"; for messages write --messages {name}" if name in FORMS else ""
                 raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
+        if "xlsx" in formats:  # refused before anything is computed
+            from importlib.util import find_spec
+
+            if find_spec("openpyxl") is None:
+                raise UsageError(NEEDS_OPENPYXL)
         return formats
+
+    @property
+    def decimal_comma(self) -> bool:
+        """Whether numbers of CSV are written with a comma.
+
+        Raises:
+            UsageError: the mark is not known.
+        """
+        if self.decimal not in DECIMAL_MARKS:
+            raise UsageError(f"--decimal {self.decimal}: marks are {' and '.join(DECIMAL_MARKS)}")
+        return self.decimal == DECIMAL_MARKS[1]
 
     @property
     def writes(self) -> bool:
@@ -159,7 +179,7 @@ def analyze_files(command: AnalyzeCommand) -> ExitCode:
     force_width(command.lanes)
     force_threads(command.threads)
     settings, files = parameters(command.set_), command.files
-    _ = command.formats  # refused before any file is run
+    _ = command.formats, command.decimal_comma  # refused before any file is run
     code = ExitCode.OK
     records: list[Record] = []
     folders = _folders(files, command.out)
@@ -188,7 +208,7 @@ def _one(
         model = model_of(path, settings)
         if command.errors:
             _refuse_own_errors(model, command.table)
-        analyses, notes, files = _run(model, folder, command, tell)
+        analyses, notes, written, removed = _run(model, folder, command, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
     diagnostics = dict.fromkeys(one for analysis in analyses for one in analysis.diagnostics)
@@ -203,30 +223,31 @@ def _one(
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(shown(path), analyses, folder, files, command)
+        _report(shown(path), analyses, folder, written, removed, command)
     enough = all(_is_enough(analysis, command) for analysis in analyses)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
 
 
 def _run(
     model: Model, folder: Path, command: AnalyzeCommand, tell: Tell
-) -> tuple[list[Analysis], tuple[Diagnostic, ...], RunFiles]:
-    """The runs, notes on what is not proven or not removed, and the files written: alone in their
-    folder from before the work on, so that nothing is computed that cannot be written."""
+) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path], list[str]]:
+    """The runs, notes on what is not proven or not removed, the files written and the names of
+    those removed: alone in their folder from before the work on, so that nothing is computed that
+    cannot be written."""
     with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
         analyses = run_all(model, command.table, command.mode, tell)
         tell("proving rows" if command.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if command.certify else ()
         if output is None:
-            return analyses, notes, table_room.RunFiles([], [], [])
+            return analyses, notes, [], []
         tell("measuring true errors" if command.errors else "writing tables")
         results = [_results(analysis, command) for analysis in analyses]
         files = written_files(results, command.formats)
         if command.view:
             files[view.PAGE_NAME], left_out = view.view_page(analyses)
             notes = (*notes, *left_out)
-        found = output.write_run(files)
-        return analyses, (*notes, *_changed_notes(folder, found.changed)), found
+        written, removed, changed = output.write_run(files)
+        return analyses, (*notes, *_changed_notes(folder, changed)), written, removed
 
 
 def _changed_notes(folder: Path, names: Sequence[str]) -> list[Diagnostic]:
@@ -289,11 +310,17 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
         analysis.run,
         analysis.errors.columns if command.errors else None,
         command.units,
+        command.decimal_comma,
     )
 
 
 def _report(
-    file: str, analyses: list[Analysis], folder: Path, files: RunFiles, command: AnalyzeCommand
+    file: str,
+    analyses: list[Analysis],
+    folder: Path,
+    written: list[Path],
+    removed: list[str],
+    command: AnalyzeCommand,
 ) -> None:
     if command.explain:
         from mechkin_cli.cli.show import explanation
@@ -309,4 +336,4 @@ def _report(
     for analysis in analyses:
         for line in summary(file, analysis, errors=command.errors):
             say(line)
-    say(files_line(folder, files.written, files.removed))
+    say(files_line(folder, written, removed))

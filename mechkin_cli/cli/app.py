@@ -302,6 +302,12 @@ def run() -> int:
         return int(app(standalone_mode=False, prog_name="mechkin") or 0)
     except typer.Abort:
         return ExitCode.INTERRUPTED
+    except SystemExit as ended:
+        # help whose reader has gone away is no failure, though typer ends with 1
+        if isinstance(ended.__context__, BrokenPipeError):
+            discard(sys.stdout)
+            return ExitCode.OK
+        raise
     except Exception as error:
         if not (hasattr(error, "exit_code") and hasattr(error, "show")):
             raise

@@ -72,7 +72,7 @@ def _input_faults(model: Model) -> list[Diagnostic]:
             path = ("responses", run, "start")
             problem = mechanism.response_problem(model.problem, model.problem.responses[run])
         if structure.is_redundant(_graph(model, run)):
-            place = model.built.read.document.place(path)
+            place = model.built.document.place(path)
             faults += [fault._replace(place=place) for fault in mobility.drawn_faults(problem)]
     return faults
 
@@ -80,8 +80,8 @@ def _input_faults(model: Model) -> list[Diagnostic]:
 def _missing_print(model: Model) -> list[Diagnostic]:
     """One warning of all missing files of printed values, which tables only need for comparison;
     a note where none is there, as beside a copied mechanism file."""
-    read = model.built.read
-    folder, tables = read.document.folder, read.file.tables
+    document, tables = model.built.document, model.built.file.tables
+    folder = document.folder
     printed = {i: table.published.file for i, table in enumerate(tables) if table.published}
     if folder is None:
         return []
@@ -90,12 +90,12 @@ def _missing_print(model: Model) -> list[Diagnostic]:
         return []
     first, *others = missing
     path: tuple[str | int, ...] = ("tables", first, "published")
-    at = path if read.document.node((*path, "file")) is None else (*path, "file")
+    at = path if document.node((*path, "file")) is None else (*path, "file")
     more = f", nor in {len(others)} other{'s' * (len(others) > 1)}" if others else ""
     text = f"there are no printed values in {folder / printed[first]}{more}"
     hint = "the path leads from the folder of the mechanism file; put the file there"
     severity: Severity = "note" if len(missing) == len(printed) else "warning"
-    place = read.document.place(at)
+    place = document.place(at)
     return [Diagnostic("published-missing", severity, text, place, hint=hint)]
 
 

@@ -168,6 +168,14 @@ ANALYZE = Command(
             offers="format_names",
         ),
         Word("units", "Write units into CSV headers: theta [deg].", ("--units",)),
+        Word(
+            "decimal",
+            "Mark of numbers in CSV: point or comma, which has semicolons between cells.",
+            ("--decimal",),
+            "text",
+            "MARK",
+            default="point",
+        ),
         SET,
         MODE,
         TABLE,
@@ -242,7 +250,7 @@ CHECK = Command(
 )
 MODES = Command(
     "modes",
-    "answer:modes",
+    "modes:modes",
     """List the assembly modes: the ways to put a mechanism together.""",
     (
         FILE,
@@ -271,7 +279,7 @@ MODES = Command(
 )
 RANGES = Command(
     "ranges",
-    "answer:ranges",
+    "ranges:ranges",
     """Find the range of an input in each assembly mode.
 
     Lists dead centres, branch points and full turns, and the circuits that the modes form.
@@ -301,7 +309,7 @@ RANGES = Command(
 )
 MOBILITY = Command(
     "mobility",
-    "answer:mobility",
+    "mobility:mobility",
     """Find the mobility, idle freedoms and redundant constraints.
 
     Compares Kutzbach's count with the true mobility. Inputs need not be declared.
@@ -386,6 +394,7 @@ STUDY = Command(
             "Threads of each process (0: as many as pay).",
             ("--threads",),
             "whole",
+            "NUMBER",
             default=0,
         ),
         Word(
@@ -393,6 +402,7 @@ STUDY = Command(
             "Number of new processes (0: compute in this one).",
             ("--processes",),
             "whole",
+            "NUMBER",
             default=0,
         ),
         Word(

@@ -108,6 +108,8 @@ def content_of(path: Path) -> bytes:
     """
     try:
         return reading.read_regular(path, reading.MOST_TABLE_BYTES)
+    except FileNotFoundError:
+        raise UsageError(f"there is no file {path}; check its name, and the folder") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(f"cannot read {path}: {reason}; make it readable") from None
@@ -195,12 +197,12 @@ def say(text: str = "") -> None:
     _say(_fitted(text))
 
 
-def _say(text: str, end: str = "\n") -> None:
+def _say(text: str) -> None:
     if sys.stderr is None:
         return
     _clear_progress()
     try:
-        sys.stderr.write(text + end)
+        sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
     except OSError:
         discard(sys.stderr)
@@ -222,14 +224,18 @@ def _on_terminal() -> bool:
 
 
 def _fitted(text: str) -> str:
-    text = legible(text)
-    if not _on_terminal():
+    return fitted(legible(text), sys.stderr)
+
+
+def fitted(text: str, stream: TextIO | None, indent: int = 4) -> str:
+    """A line, on a terminal in as many as its width needs, those after the first indented."""
+    if stream is None or not stream.isatty():
         return text
     from shutil import get_terminal_size
     from textwrap import wrap
 
     width = max(get_terminal_size((80, 24)).columns, 40)
-    lines = wrap(text, width, subsequent_indent="    ", break_on_hyphens=False)
+    lines = wrap(text, width, subsequent_indent=" " * indent, break_on_hyphens=False)
     return "\n".join(lines)
 
 
@@ -306,12 +312,14 @@ def parameters(settings: list[str] | None) -> dict[str, str]:
     """NAME=VALUE texts as a mapping.
 
     Raises:
-        UsageError: a text without `=`.
+        UsageError: a text without `=`, or a name given twice.
     """
     values = {}
     for text in settings or ():
         name, equals, value = text.partition("=")
         if not equals or not name.strip() or not value.strip():
             raise UsageError(f"--set {text}: expected NAME=VALUE, for example --set P1=0.6in")
+        if name.strip() in values:
+            raise UsageError(f"--set gives {name.strip()} twice; leave one of them out")
         values[name.strip()] = value.strip()
     return values

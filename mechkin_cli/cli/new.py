@@ -55,9 +55,11 @@ def _write_new(path: Path, text: str) -> None:
                 raise
     except FileExistsError:
         raise UsageError(f"{path} is there already; choose another name") from None
+    except FileNotFoundError:
+        raise UsageError(f"there is no folder {path.parent}; make it first") from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise UsageError(f"cannot write {path}: {reason}") from None
+        raise UsageError(f"cannot write {path}: {reason}; choose another place") from None
 
 
 MECHANISM = "mechanism"

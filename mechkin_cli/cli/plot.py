@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mechkin_cli import expressions, plots, tables
+from mechkin_cli.analysis import run_name
 from mechkin_cli.cli.analyze import run_all
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -112,13 +113,24 @@ def _run(model: Model, run: str | None, mode: str | None) -> Analysis:
 def _tables(
     model: Model, names: list[str] | None, run: str | None, mode: str | None
 ) -> dict[str, Drawn]:
-    """The tables that are drawn, by name, with their runs."""
-    return {
+    """The tables that are drawn, by name, with their runs.
+
+    Raises:
+        UsageError: there is no such run, or it has no such table.
+    """
+    if run is not None:
+        run_name(model.runs, run)
+    drawn: dict[str, Drawn] = {
         layout.name: (analysis, layout.name)
         for analysis in run_all(model, names, mode)
         for layout in analysis.layouts
         if run in (None, analysis.run)
     }
+    if not drawn:
+        whose = f"run {run} has" if run is not None else "the file has"
+        which = "no table of that name" if names else "no table"
+        raise UsageError(f"{whose} {which}; name what is drawn, for example --y A.theta")
+    return drawn
 
 
 def _write(file: Path, out: Path | None, files: dict[str, bytes], quiet: bool) -> None:

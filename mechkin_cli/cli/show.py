@@ -228,13 +228,12 @@ def _branch(analysis: Analysis) -> str:
 def _driven(analysis: Analysis) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
     mechanism = analysis.model.problem.mechanism
-    freedoms = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    count = freedoms - mechanism.space * mechanism.loops - len(mechanism.couplings)
+    count = mechanism.kutzbach
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [spin.idle_words for spin in mechanism.spins]
-    several = Counter(held.words for held in analysis.model.problem.held)
+    several = Counter(held.words for held in analysis.model.problem.held if held.idle)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN
@@ -246,8 +245,8 @@ def _loops(analysis: Analysis) -> str:
     graph = analysis.result.graph
     if not graph.closings:
         return "none (open chain)"
-    coupled = ", ".join(c.name for c in graph.closings if c.constraint.terms)
-    closed = ", ".join(c.constraint.label for c in graph.closings if not c.constraint.terms)
+    coupled = ", ".join(c.name for c in graph.closings if c.terms)
+    closed = ", ".join(c.label for c in graph.closings if not c.terms)
     words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
     loops = analysis.model.problem.mechanism.loops
@@ -353,18 +352,18 @@ def explanation(analysis: Analysis) -> str:
         words = "" if edge.forward else ", passed from its second link to its first"
         words = ", hung between its spheres" if edge.hung else words
         lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, words)}")
-    closed = [closing for closing in graph.closings if not closing.constraint.terms]
+    closed = [pair for pair in zip(graph.closings, graph.loops, strict=True) if not pair[0].terms]
     lines.append("  loops closed at" if closed else "  no loops")
-    for closing in closed:
-        loop = ", ".join(graph.edges[k].joint.name for k, _ in closing.loop)
+    for closing, passed in closed:
+        loop = ", ".join(graph.edges[k].joint.name for k, _ in passed)
         count = closing.equations
         equations = f", {count} equation{'s' * (count > 1)}"
-        if closing.constraint.words:
-            equations += f": {closing.constraint.words}"
+        if closing.words:
+            equations += f": {closing.words}"
         lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
-    coupled = [closing for closing in graph.closings if closing.constraint.terms]
+    coupled = [closing for closing in graph.closings if closing.terms]
     lines += ["  coupled by"] * bool(coupled)
-    lines += [f"    {closing.name}, {closing.constraint.words}" for closing in coupled]
+    lines += [f"    {closing.name}, {closing.words}" for closing in coupled]
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):

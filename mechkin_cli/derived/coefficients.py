@@ -33,10 +33,8 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     REACTION_LEVEL,
     ZERO,
-    Damper,
     Input,
     RigidLink,
-    Spring,
     Wanted,
     accelerated,
     base_name,
@@ -233,16 +231,6 @@ def _with_load(session: Session, number: int) -> Session:
     return session.loaded(replace(problem, mechanism=mechanism))
 
 
-def is_stored(load: Load | str) -> bool:
-    """Whether its work is potential energy."""
-    return load == GRAVITY or isinstance(load, Spring)
-
-
-def dissipates(load: Load | str) -> bool:
-    """Whether it takes energy away for good."""
-    return isinstance(load, Damper)
-
-
 def ledger(run: BasisQuantities) -> dict[str, Floats]:
     """`work`, `dissipated` (J) and `energy_error` over the rows (rows,)."""
     problem = run.session.problem
@@ -270,9 +258,11 @@ def _powers(run: BasisQuantities) -> Floats:
     for power in effort_powers(run, run.session.inputs).values():
         put_in += power
     for load, power in load_powers(run):
-        if dissipates(load):
+        if isinstance(load, str) or load.has_potential:  # gravity has one, too
+            continue
+        if load.dissipates:
             taken -= power
-        elif not is_stored(load):
+        else:
             put_in += power
     rubbed = friction_power(run, run.session.inputs)
     if rubbed is not None:

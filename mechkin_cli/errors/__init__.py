@@ -6,16 +6,9 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.errors.errors import Errors as Errors, true_values as true_values
+    from mechkin_cli.errors.errors import *
     from mechkin_cli.errors.response import repetition as repetition
-    from mechkin_cli.errors.rows import (
-        WORDS as WORDS,
-        KernelRows as KernelRows,
-        NotRepeated as NotRepeated,
-        Repeated as Repeated,
-        reason_of as reason_of,
-        wide_run as wide_run,
-    )
+    from mechkin_cli.errors.rows import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

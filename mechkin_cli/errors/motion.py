@@ -29,7 +29,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.errors.rows import NOT_RESOLVED, as_number, as_parts
 from mechkin_cli.kernel.functions import cos, power
-from mechkin_cli.mechanism import Damper, Load, Spring
+from mechkin_cli.mechanism import Load
 from mechkin_cli.plan import Demand, Layout
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.response import with_loads
@@ -359,8 +359,8 @@ class Marching:
         self.sums = sum_of_products(integrals, self.to_coefficients.T)
         # what a load gives counts as work where it has no potential and is no damper
         self.working = (
-            motion.without(lambda load: not isinstance(load, Damper | Spring)),
-            motion.without(lambda load: isinstance(load, Damper)),
+            motion.without(lambda load: not (load.has_potential or load.dissipates)),
+            motion.without(lambda load: load.dissipates),
         )
         self.path, self.level = 0.0, 0.0
 

@@ -291,7 +291,7 @@ class ResponseRows(KernelRows):
         response = self.precise.problem.response
         assert response is not None
         at = (wanted.owner, wanted.coordinate)
-        amounts = [e.amount for e in response.efforts if (e.joint, e.coordinate) == at]
+        amounts = [e.amount for e in response.efforts if e.acts_at == at]
         constant = [amount for amount in amounts if not isinstance(amount, Varying)]
         numbers = iter(double_doubles(self.precise.tape(constant)))
         return [

@@ -11,43 +11,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.expressions.differentiation import (
-        Jet as Jet,
-        constant_jet as constant_jet,
-        derivatives as derivatives,
-        differentiated as differentiated,
-    )
-    from mechkin_cli.expressions.expression import (
-        Definitions as Definitions,
-        Differentiate as Differentiate,
-        Expression as Expression,
-        Move as Move,
-        constant as constant,
-        constant_in_file_units as constant_in_file_units,
-        evaluate_parameters as evaluate_parameters,
-        exact_literal as exact_literal,
-        in_order as in_order,
-        literal as literal,
-        number_of as number_of,
-        parse as parse,
-        scalar as scalar,
-    )
-    from mechkin_cli.expressions.grammar import parse_nodes as parse_nodes
-    from mechkin_cli.expressions.quantity import (
-        MAX_QUOTED as MAX_QUOTED,
-        ExpressionError as ExpressionError,
-        Name as Name,
-        Node as Node,
-        NumberNode as NumberNode,
-        OperationNode as OperationNode,
-        Quantity as Quantity,
-        Resolve as Resolve,
-        UnknownName as UnknownName,
-        Value as Value,
-        Vector as Vector,
-        lookup as lookup,
-        numbers_read_by as numbers_read_by,
-    )
+    from mechkin_cli.expressions.differentiation import *
+    from mechkin_cli.expressions.expression import *
+    from mechkin_cli.expressions.grammar import *
+    from mechkin_cli.expressions.quantity import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

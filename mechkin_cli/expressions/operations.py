@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mechkin_cli import tolerances
 from mechkin_cli.exact import PI, TURN, Exact, nearest as exact_nearest
 from mechkin_cli.expressions.quantity import (
     MAX_EXPONENT,
@@ -111,9 +112,13 @@ def wrap(angle: Scalar) -> Scalar:
 def _wrap_recorded(angle: Any) -> Any:
     turns = scalars.whole(angle / TURN)
     turned = (angle - turns * _TURN_HIGH) - turns * _TURN_LOW
-    turned = (turned > math.pi).choose(turned - TURN, turned)
-    turned = (turned <= -math.pi).choose(turned + TURN, turned)
-    return (angle > -math.pi).choose((angle <= math.pi).choose(angle, turned), turned)
+    # Only rounding is taken back: where a motion looks beyond half a turn with the turns it has,
+    # the angle goes on.
+    most = math.pi + tolerances.WRAP_ROUNDING * (1.0 + turns * turns)
+    above = (turned <= most).choose(turned - TURN, turned)
+    turned = (turned > math.pi).choose(above, turned)
+    below = (turned >= -most).choose(turned + TURN, turned)
+    return (turned <= -math.pi).choose(below, turned)
 
 
 def branch(condition: Any, value: Scalar, other: Scalar) -> Scalar:

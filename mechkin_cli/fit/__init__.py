@@ -6,7 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.fit.result import Fit as Fit, fit_of as fit_of
+    from mechkin_cli.fit.result import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

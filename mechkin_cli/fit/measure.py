@@ -121,7 +121,7 @@ class FitModels:
 
     def _with(self, rows: dict[str, Any]) -> Solvable:
         """The same mechanism under another motion of the moving input."""
-        document = self.model.built.read.document
+        document = self.model.built.document
         data: dict[str, Any] = {k: v for k, v in document.data.items() if k not in LEFT_OUT}
         motion: dict[str, Any] = data["motion"]
         inputs = {}
@@ -136,7 +136,7 @@ class FitModels:
                 inputs[driven.name] = written
         data["motion"] = motion | {"inputs": inputs}
         source = open_data(data, document.file, folder=document.folder, tables=document.tables)
-        model = self.model.of(Design(build(source), self.model.design.stem))
+        model = self.model.of(Design(build(*source), self.model.design.stem))
         own = self.model.design.values
         if not own:
             return model

@@ -10,30 +10,15 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.idle.find import (
-        PLACES as PLACES,
-        LinkMotion as LinkMotion,
-        RigidGroup as RigidGroup,
-    )
-    from mechkin_cli.idle.hold import (
-        exact_holds as exact_holds,
-        held_freedoms as held_freedoms,
-        held_groups as held_groups,
-    )
-    from mechkin_cli.idle.idle import (
-        conventional_notes as conventional_notes,
-        holding_notes as holding_notes,
-        idle_freedoms as idle_freedoms,
-        nearly_common_notes as nearly_common_notes,
-        spin_errors as spin_errors,
-        without_spin as without_spin,
-    )
+    from mechkin_cli.idle.find import *
+    from mechkin_cli.idle.hold import *
+    from mechkin_cli.idle.idle import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "find": "LinkMotion PLACES RigidGroup",
-        "hold": "exact_holds held_freedoms held_groups",
+        "hold": "exact_holds held_freedoms held_groups three_turns",
         "idle": "conventional_notes holding_notes idle_freedoms nearly_common_notes spin_errors "
         "without_spin",
     },

@@ -64,6 +64,8 @@ from mechkin_cli.mechanism import (
     unit,
 )
 
+Triad = tuple[Vector, Vector, Vector]
+
 
 def _turns_with_line(
     mechanism: Mechanism, joint: Joint, link: str, line: Vector
@@ -91,9 +93,10 @@ def _turns_with_line(
     return joint._replace(parts=tuple(parts)), held
 
 
-def _three_turns(joint: Joint) -> Joint:
-    """A joint whose ball is turns about x, y and z as drawn."""
-    x, y, z = GROUND.x, GROUND.y, GROUND.z
+def three_turns(joint: Joint, axes: Triad = (GROUND.x, GROUND.y, GROUND.z)) -> Joint:
+    """A joint whose ball is turns about three axes, square to each other, in its own axes as
+    drawn."""
+    x, y, z = axes
     parts: list[Part] = []
     for part in joint.parts:
         parts += _turns(part, [(x, y), (y, z), (z, x)]) if part.type.is_ball else [part]
@@ -271,7 +274,7 @@ class Holder:
         joint, number, name = best
         self.split.add(joint.name)
         motion = group.take((joint.name, number), self.basis)
-        turns = _three_turns(joint) if joint.type.is_oriented else None
+        turns = three_turns(joint) if joint.type.is_oriented else None
         self._put(group, (joint.name, name), motion, {}, told=turns)
         return True
 

@@ -28,16 +28,13 @@ from mechkin_cli.mechanism import (
     ORIENTATION_KINDS,
     Attached,
     Coordinate as NamedCoordinate,
-    Damper,
     DistanceConstraint,
     Joint,
-    JointLoad,
     Line,
     LinkLoad,
     Load,
     Problem,
     RigidLink,
-    Spring,
     Vector,
     Wanted,
     base_name,
@@ -46,7 +43,6 @@ from mechkin_cli.mechanism import (
     dot,
     norm,
     scale,
-    varying,
 )
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.tape import largest
@@ -82,6 +78,8 @@ def idle_freedoms(problem: Problem) -> Iterator[Idle]:
         yield _of_spin(spin)
     length = problem.mechanism.box_diagonal() if problem.held else 0.0
     for h in problem.held:
+        if not h.idle:
+            continue
         motion = h.words, h.links, h.axes, h.slides, h.moves
         yield Idle(*motion, length, h.convention, h.cure, h.holding)
 
@@ -230,11 +228,8 @@ def _works_askew(problem: Problem, idle: Idle, owner: str, slides: bool) -> bool
     if joint is None:  # a pair that holds
         return False
     worked = {name for driven, name in problem.motion.driven if driven == owner}
-    worked |= {
-        load.coordinate
-        for load in problem.mechanism.loads
-        if isinstance(load, JointLoad | Spring | Damper) and load.joint == owner and load.coordinate
-    }
+    at = [load.acts_at for load in problem.mechanism.loads if load.acts_at is not None]
+    worked |= {name for loaded, name in at if loaded == owner}
     return any(
         _axis_moves(idle, joint, known)
         for known in (joint.type.coordinate[name] for name in sorted(worked))
@@ -344,25 +339,21 @@ def _load_cause(problem: Problem, idle: Idle, link: str, load: Load) -> tuple[st
                 return f"a force acts on {link} off that line", off
             if load.axes == "link" and not _acts_along(load, line):
                 return f"a force across that line turns with {link}", "its axes are the link's"
-    if (
-        isinstance(load, JointLoad | Spring | Damper)
-        and (load.joint, load.coordinate) in idle.moves
-    ):
-        return f"a load acts on {load.joint}.{load.coordinate}", "which moves with it"
-    if isinstance(load, Spring | Damper) and load.between:
-        for end in load.between:
-            if end.link != link:
-                continue
-            if line is None:
-                return f"a spring or damper pulls at {link}", "which moves with it"
-            if off := _off_line(problem, idle, line, end.vector):
-                return f"a spring or damper pulls at {link} off that line", off
+    if load.acts_at is not None and load.acts_at in idle.moves:
+        return f"a load acts on {'.'.join(load.acts_at)}", "which moves with it"
+    for end in load.ends:
+        if end.link != link:
+            continue
+        if line is None:
+            return f"a spring or damper pulls at {link}", "which moves with it"
+        if off := _off_line(problem, idle, line, end.vector):
+            return f"a spring or damper pulls at {link} off that line", off
     return None
 
 
 def _acts_along(load: LinkLoad, line: Line) -> bool:
     """Whether a constant force acts along a line."""
-    if varying(load) or line.along is None:
+    if load.varying or line.along is None:
         return False
     across = cross(load.value, line.along)  # type: ignore[arg-type]
     return norm(across) <= tolerances.ON_LINE * norm(load.value)  # type: ignore[arg-type]

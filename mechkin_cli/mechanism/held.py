@@ -26,7 +26,9 @@ class LockedFreedom(NamedTuple):
     about lines of its own; `slides` whether it slides without a turn; `holding` names the effort
     that holds it. `everywhere`: it is idle wherever these joints are, not only where the mechanism
     takes them. `miss`: the twist (rad, parts of the size) by which the joints have the motion in
-    common but for, where it is of speed one.
+    common but for, where it is of speed one. Not `idle`: the loops stop it, but not to first order,
+    wherever the inputs take the mechanism, so that it rests in every row and its equation is one
+    that the loops imply.
     """
 
     links: tuple[str, ...]
@@ -40,6 +42,7 @@ class LockedFreedom(NamedTuple):
     stop: Joint | None = None
     everywhere: bool = True
     miss: float = 0.0
+    idle: bool = True
 
     @property
     def name(self) -> str:
@@ -66,6 +69,8 @@ class LockedFreedom(NamedTuple):
     @property
     def convention(self) -> str:
         """What is told of it by convention."""
+        if not self.idle:
+            return "it rests in every row"
         if self.coordinate is None:
             return f"it stays at {self.joints[0]} as it is drawn"
         joint, coordinate = self.coordinate
@@ -88,7 +93,10 @@ class LockedFreedom(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The idle freedom in an engineer's words."""
+        """The freedom in an engineer's words."""
+        if not self.idle:
+            moves = "turns" if self.turns else "moves"
+            return f"{' and '.join(self.links)} {moves} to first order only"
         spins = any(self.axes.values())
         kind = "slide" if self.slides else "spin" if spins else "move"
         verb = f"{kind}s" if len(self.links) == 1 else f"{kind} together"

@@ -20,11 +20,13 @@ from mechkin_cli.mechanism.constraint import (
 )
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
-from mechkin_cli.mechanism.vectors import ZERO, Vector
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
 
 if TYPE_CHECKING:
+    from typing import Self
+
     from mechkin_cli.mechanism.wanted import Wanted
 
 
@@ -150,7 +152,51 @@ Amount = float | Varying
 """A force (N) or moment (N m)."""
 
 
-class LinkLoad(NamedTuple):
+class _Load:
+    """What is asked of a load, with the answers of a kind that has none of its own."""
+
+    @property
+    def amounts(self) -> tuple[Amount, ...]:
+        """Its values that may be others in every row."""
+        return ()
+
+    @property
+    def varying(self) -> tuple[Varying, ...]:
+        """Its values that are others in every row."""
+        return tuple(amount for amount in self.amounts if isinstance(amount, Varying))
+
+    @property
+    def reads_rates(self) -> bool:
+        """Whether its force depends on rates."""
+        return any(amount.moving for amount in self.varying)
+
+    @property
+    def has_potential(self) -> bool:
+        """Whether its work is stored as potential energy."""
+        return False
+
+    @property
+    def dissipates(self) -> bool:
+        """Whether its work is taken away for good."""
+        return False
+
+    @property
+    def acts_at(self) -> Coordinate | None:
+        """The joint coordinate at which it acts; None: it acts elsewhere."""
+        return None
+
+    @property
+    def ends(self) -> tuple[Attached, ...]:
+        """The points that it pulls towards each other, if any."""
+        return ()
+
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """The load with the laws of its values under other numbers."""
+        return self
+
+
+@dataclass(frozen=True)
+class LinkLoad(_Load):
     """A force (N, at a point of the link) or torque (N m) on a link, in ground or link axes."""
 
     kind: Literal["force", "torque"]
@@ -160,26 +206,67 @@ class LinkLoad(NamedTuple):
     point: Vector = ZERO
 
     @property
-    def amounts(self) -> tuple[Amount, Amount, Amount]:
+    def amounts(self) -> tuple[Amount, ...]:
         """The three components."""
         return self.value
 
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """As of every load."""
+        x, y, z = (_renumbered(amount, numbers) for amount in self.value)
+        return replace(self, value=(x, y, z))
 
-class JointLoad(NamedTuple):
+
+@dataclass(frozen=True)
+class JointLoad(_Load):
     """A torque on a joint's theta (N m) or a force on its s (N): on the second link, opposite on
     the first."""
 
     joint: str
     coordinate: str
-    value: Amount
+    amount: Amount
 
     @property
-    def amounts(self) -> tuple[Amount]:
-        """The value."""
-        return (self.value,)
+    def name(self) -> str:
+        """The coordinate's full name, `O1.theta`."""
+        return f"{self.joint}.{self.coordinate}"
+
+    @property
+    def amounts(self) -> tuple[Amount, ...]:
+        """Its amount."""
+        return (self.amount,)
+
+    @property
+    def acts_at(self) -> Coordinate:
+        """As of every load."""
+        return self.joint, self.coordinate
+
+    def renumbered(self, numbers: Mapping[int, int]) -> Self:
+        """As of every load."""
+        return replace(self, amount=_renumbered(self.amount, numbers))
 
 
-class Spring(NamedTuple):
+class _Element(_Load):
+    """A spring or a damper: between two points, or on a joint coordinate."""
+
+    between: tuple[Attached, Attached] | None
+    joint: str | None
+    coordinate: str | None
+
+    @property
+    def acts_at(self) -> Coordinate | None:
+        """As of every load."""
+        if self.joint is None or self.coordinate is None:
+            return None
+        return self.joint, self.coordinate
+
+    @property
+    def ends(self) -> tuple[Attached, ...]:
+        """As of every load."""
+        return self.between or ()
+
+
+@dataclass(frozen=True)
+class Spring(_Element):
     """A spring between two points (N/m) or on a joint coordinate (N/m or N m/rad)."""
 
     between: tuple[Attached, Attached] | None
@@ -189,8 +276,14 @@ class Spring(NamedTuple):
     free: float
     preload: float
 
+    @property
+    def has_potential(self) -> bool:
+        """It stores all that it takes."""
+        return True
 
-class Damper(NamedTuple):
+
+@dataclass(frozen=True)
+class Damper(_Element):
     """A viscous damper between two points (N s/m) or on a joint coordinate (or N m s/rad)."""
 
     between: tuple[Attached, Attached] | None
@@ -198,27 +291,21 @@ class Damper(NamedTuple):
     coordinate: str | None
     damping: float
 
+    @property
+    def reads_rates(self) -> bool:
+        """Its force is that of a rate."""
+        return True
+
+    @property
+    def dissipates(self) -> bool:
+        """It gives nothing back."""
+        return True
+
 
 Load = LinkLoad | JointLoad | Spring | Damper
 
 
-def varying(load: Load) -> tuple[Varying, ...]:
-    """The values of a load that are another in every row."""
-    amounts: tuple[Amount, ...] = load.amounts if isinstance(load, LinkLoad | JointLoad) else ()
-    return tuple(amount for amount in amounts if isinstance(amount, Varying))
-
-
-def renumbered(load: Load, numbers: Mapping[int, int]) -> Load:
-    """The load with the laws of its values under other numbers."""
-    if isinstance(load, JointLoad):
-        return load._replace(value=renumbered_amount(load.value, numbers))
-    if isinstance(load, LinkLoad):
-        x, y, z = (renumbered_amount(amount, numbers) for amount in load.value)
-        return load._replace(value=(x, y, z))
-    return load
-
-
-def renumbered_amount(amount: Amount, numbers: Mapping[int, int]) -> Amount:
+def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
     """The amount with its law, if it has one, under another number."""
     if isinstance(amount, Varying):
         return amount._replace(number=numbers[amount.number])
@@ -280,6 +367,13 @@ class Mechanism:
         moving = sum(name != GROUND_NAME for name in self.links)
         return len(self.joints) - moving
 
+    @property
+    def kutzbach(self) -> int:
+        """Kutzbach's count of freedoms: 6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f,
+        less one for every coupling."""
+        freedoms = sum(joint.type.freedoms for joint in self.joints.values())
+        return freedoms - self.space * self.loops - len(self.couplings)
+
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""
         return self._box_diagonal
@@ -305,8 +399,6 @@ class Mechanism:
 def diagonal(points: list[Vector]) -> float:
     """Diagonal of the box of some points; 1 where they all coincide (a mechanism without
     lengths)."""
-    from mechkin_cli.mechanism.vectors import norm, subtract
-
     if not points:
         return 1.0
     low = tuple(smallest(*(p[i] for p in points)) for i in range(3))

@@ -86,7 +86,12 @@ class Problem:
     @property
     def has_idle(self) -> bool:
         """Whether something may move freely while all else stands still."""
-        return bool(self.mechanism.spins or self.held)
+        return bool(self.mechanism.spins or any(one.idle for one in self.held))
+
+    @property
+    def stopped(self) -> tuple[LockedFreedom, ...]:
+        """Held freedoms that the loops stop, but not to first order."""
+        return tuple(one for one in self.held if not one.idle)
 
     @cached_property
     def held_at(self) -> dict[tuple[str, str], float]:

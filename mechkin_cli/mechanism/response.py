@@ -22,7 +22,7 @@ from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.held import LockedFreedom
-    from mechkin_cli.mechanism.model import Amount, Mechanism
+    from mechkin_cli.mechanism.model import JointLoad, Mechanism
     from mechkin_cli.mechanism.motion import Assembly, Course
     from mechkin_cli.units import Dimension, UnitSystem
 
@@ -38,20 +38,6 @@ class StartValue(NamedTuple):
     coordinate: str
     value: float | None
     rate: float | None
-
-    @property
-    def name(self) -> str:
-        """The coordinate's full name, `O1.theta`."""
-        return f"{self.joint}.{self.coordinate}"
-
-
-class Effort(NamedTuple):
-    """A force (N) or torque (N m) along a coordinate, beside the loads: on the second link, against
-    the first. A varying amount is law `amount.number` of the response's laws."""
-
-    joint: str
-    coordinate: str
-    amount: Amount
 
     @property
     def name(self) -> str:
@@ -112,7 +98,8 @@ class ResponseProblem:
         start: coordinates and rates at the first moment; those with a value are the independent
             coordinates there, and as many have a rate.
         assembly: which assembly is meant at the first moment.
-        efforts: as given; they stand among the mechanism's loads, too.
+        efforts: as given, their laws by the numbers of the response's; they stand among the
+            mechanism's loads, too.
         driven: coordinates that move by laws, with their orders at all moments.
         course: the driven coordinates between the moments, over the time in the file's units; None
             where nothing is driven.
@@ -129,7 +116,7 @@ class ResponseProblem:
     place: Place
     start: tuple[StartValue, ...]
     assembly: Assembly
-    efforts: tuple[Effort, ...]
+    efforts: tuple[JointLoad, ...]
     driven: tuple[DrivenInput, ...]
     course: Course | None
     moments: Moments
@@ -163,7 +150,7 @@ class ResponseProblem:
     @property
     def efforts_of(self) -> list[tuple[str, str]]:
         """(joint, coordinate) whose effort is told: those with efforts, then the driven ones."""
-        given = [(one.joint, one.coordinate) for one in self.efforts]
+        given = [one.acts_at for one in self.efforts]
         return list(dict.fromkeys([*given, *((d.joint, d.coordinate) for d in self.driven)]))
 
 

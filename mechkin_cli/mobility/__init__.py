@@ -9,20 +9,16 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.mobility.configurations import lost_holds as lost_holds
-    from mechkin_cli.mobility.idle import held_along as held_along
-    from mechkin_cli.mobility.mobility import (
-        Mobility as Mobility,
-        drawn_faults as drawn_faults,
-        find_mobility as find_mobility,
-        meeting as meeting,
-        undriven_notes as undriven_notes,
-    )
+    from mechkin_cli.mobility.configurations import *
+    from mechkin_cli.mobility.families import *
+    from mechkin_cli.mobility.idle import *
+    from mechkin_cli.mobility.mobility import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "configurations": "lost_holds",
+        "families": "held_to_family",
         "idle": "held_along",
         "mobility": "Mobility drawn_faults find_mobility meeting undriven_notes",
     },

@@ -23,7 +23,7 @@ locked.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -156,6 +156,11 @@ class LoopPart:
     def steps(self, states: Floats, others: Floats) -> Floats:
         """The steps (places, columns) from `others` to `states`."""
         return self.loops.steps(states, others)[:, self.columns]
+
+    def driven(self, body: Body, driven: Iterable[tuple[str, str]]) -> list[int]:
+        """Numbers of its columns that are driven."""
+        columns = {body.column(*each) for each in driven}
+        return [k for k, column in enumerate(self.columns.tolist()) if column in columns]
 
     def alone(self, state: Floats, motions: Floats) -> Floats:
         """An orthonormal basis (k, count) of those of some `motions` (columns, k) from a place that

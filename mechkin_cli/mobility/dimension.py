@@ -17,6 +17,7 @@ they are meant to.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -128,13 +129,49 @@ def _far_apart(vectors: Floats, most: int) -> list[int]:
 @dataclass(frozen=True)
 class AssemblyComponent:
     """A component of the assembled places: its dimension, a general place `state` (states,), and
-    steps (columns, dimension) along it, known to `doubt`; `places` are more of its kind."""
+    steps (columns, dimension) along it, known to `doubt`. The first order has `excess` more motions
+    there. `alike` are all places found of its dimension, itself among them: of one component or of
+    several (`families`)."""
 
     dimension: int
     state: Floats
     tangents: Floats
     doubt: float
-    places: tuple[Floats, ...] = ()
+    excess: int = 0
+    alike: tuple[AssemblyComponent, ...] = ()
+
+    @property
+    def places(self) -> tuple[Floats, ...]:
+        """The states of those alike."""
+        return tuple(one.state for one in self.alike)
+
+    def rates_along(self, columns: Sequence[int]) -> Floats:
+        """Singular values of the rates of some columns along it, the largest first."""
+        return np.asarray(np.linalg.svd(self.tangents[list(columns)], compute_uv=False))
+
+    def rank_along(self, columns: Sequence[int]) -> int:
+        """How many rates of some columns are independent along it."""
+        least = max(self.doubt, tolerances.RANK_ZERO)
+        return int(np.count_nonzero(self.rates_along(columns) > least))
+
+    @property
+    def families(self) -> tuple[tuple[AssemblyComponent, ...], ...]:
+        """Those alike by components: next to a place where several meet each has its own steps."""
+        left, found = list(self.alike or (self,)), []
+        while left:
+            family = [left.pop(0)]
+            for one in family:  # grows
+                near = [other for other in left if _apart(one, other) < tolerances.MOBILITY_FAMILY]
+                left = [other for other in left if all(other is not each for each in near)]
+                family += near
+            found.append(tuple(family))
+        return tuple(found)
+
+
+def _apart(one: AssemblyComponent, other: AssemblyComponent) -> float:
+    """The sine of the largest angle between the steps along two components of one dimension."""
+    off = other.tangents - one.tangents @ (one.tangents.T @ other.tangents)
+    return float(np.linalg.norm(off, 2)) if off.size else 0.0
 
 
 Move = tuple[float, float]
@@ -176,9 +213,30 @@ def component_at(
                 raise Unclear("several motions meet wherever it goes")
             if dimension == count:
                 return AssemblyComponent(count, place, motions, tolerances.RANK_ZERO)
-            return AssemblyComponent(dimension, place, tangents, tolerances.MOBILITY_CHORD_DOUBT)
+            doubt = tolerances.MOBILITY_CHORD_DOUBT
+            return AssemblyComponent(dimension, place, tangents, doubt, count - dimension)
         place = ends.states[int(np.argmin(ranks))]
     raise Unclear("the rank changes from place to place")
+
+
+def general_places(
+    part: LoopPart, family: Sequence[AssemblyComponent], random: RandomStarts
+) -> tuple[AssemblyComponent, ...]:
+    """Those places of a family at which the first order has the fewest motions, its own or one of
+    those to which long moves along it lead; where it has as many as dimensions they are the steps
+    along it, without the doubt of chords."""
+    known, least = list(family), min(one.excess for one in family)
+    for one in family if least else ():
+        heading = _scaled(_units(random, 1, one.dimension) @ one.tangents.T)
+        moves = tolerances.MOBILITY_FAR_MOVE[0] * np.concatenate([heading, -heading])
+        ends = closed(part, part.moved(np.repeat(one.state[None], 2, axis=0), moves))
+        good = ends.good(tolerances.MOBILITY_CLOSED)
+        for state, jacobian in zip(ends.states[good], ends.jacobians[good], strict=True):
+            motions = rank_of(jacobian, tolerances.MOBILITY_RANK_REACHED).motions
+            if motions.shape[1] == one.dimension:
+                known.append(replace(one, state=state, tangents=motions, excess=0, alike=()))
+    least = min(one.excess for one in known)
+    return tuple(one for one in known if one.excess == least)
 
 
 def _chords(part: LoopPart, place: Floats, ends: Closed, moves: Floats) -> tuple[int, Floats]:
@@ -249,6 +307,29 @@ class LocalFreedom:
         """Dimensions of the components, the largest first."""
         return tuple(component.dimension for component in self.components)
 
+    @property
+    def every(self) -> tuple[AssemblyComponent, ...]:
+        """The components at all places found."""
+        return tuple(
+            one for component in self.components for one in component.alike or (component,)
+        )
+
+    @property
+    def families(self) -> tuple[tuple[AssemblyComponent, ...], ...]:
+        """The places found by the component that they lie in, the largest dimension first."""
+        return tuple(family for component in self.components for family in component.families)
+
+    def driven_first(self, columns: Sequence[int]) -> LocalFreedom:
+        """The same with the place first of the largest dimension at which the rates of some columns
+        are farthest from dependent."""
+        if not self.components or not columns or not self.components[0].alike:
+            return self
+        first, *others = self.components
+        rates = [one.rates_along(columns).min(initial=1.0) for one in first.alike]
+        chosen = first.alike[int(np.argmax(rates))]
+        alike = (chosen, *(one for one in first.alike if one is not chosen))
+        return replace(self, components=(replace(chosen, alike=alike), *others))
+
 
 class _Nearly(Unclear):
     """Loops stay all but closed: the `least` that they are open by is small."""
@@ -305,6 +386,7 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
     count = first.motions.shape[1]
     forms = quadratic_forms(part, state, first.motions, first.stresses)
     alone = part.alone(state, first.motions)
+    lone = first.motions @ alone
     headings = _scaled(directions(forms, alone, random) @ first.motions.T)
     least, largest = tolerances.MOBILITY_PLACES
     most = min(max(tolerances.MOBILITY_WORK // count, least), largest)
@@ -321,9 +403,11 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
         open_by = float(ends.misses.min())
         if limit <= open_by < nearly:
             raise _Nearly(open_by, move)
-        places = _onward(part, state, ends.states[ends.good(limit)], most, limit)
+        good = ends.states[ends.good(limit)]
+        places = _onward(part, state, good, most, limit)
         doubt = Unclear("a second move does not close") if open_by < limit else None
-        return _components(part, places, random, move, doubt)
+        rest = _onward(part, state, good, len(good), limit)
+        return _components(part, state, lone, places, rest, random, move, doubt)
 
     try:
         try:
@@ -342,27 +426,52 @@ def _singular(part: LoopPart, state: Floats, first: Rank, random: RandomStarts) 
 
 
 def _components(
-    part: LoopPart, places: Floats, random: RandomStarts, move: Move, doubt: Unclear | None
+    part: LoopPart,
+    state: Floats,
+    lone: Floats,
+    places: Floats,
+    rest: Floats,
+    random: RandomStarts,
+    move: Move,
+    doubt: Unclear | None,
 ) -> tuple[AssemblyComponent, ...]:
-    """Components of some places (number, states), one of each dimension, the largest first.
+    """Components of some places (number, states), one of each dimension, the largest first; of the
+    `rest` (number, states) those are looked at, too, to which no component found leads from `state`
+    but for motions that are `lone` (columns, count).
 
     Raises:
         Unclear: the last `doubt`, where none has a clear dimension.
     """
-    known: dict[int, list[AssemblyComponent]] = {}
+    found: list[AssemblyComponent] = []
     for place in places:
         try:
-            component = component_at(part, place, random, move)
+            found.append(component_at(part, place, random, move))
         except Unclear as unclear:
             doubt = unclear
-            continue
-        known.setdefault(component.dimension, []).append(component)
-    if doubt and not known:
+    if doubt and not found:
         raise doubt
-    return tuple(
-        replace(known[k][0], places=tuple(component.state for component in known[k]))
-        for k in sorted(known, reverse=True)
-    )
+    headings = part.steps(rest, np.repeat(state[None], len(rest), axis=0))
+    headings -= (headings @ lone) @ lone.T
+    headings /= _lengths(headings)[:, None]
+    off = np.ones(len(rest))
+    known = 0
+    for _ in range(tolerances.MOBILITY_PLACES[0]):
+        for one in found[known:]:
+            aside = headings - (headings @ one.tangents) @ one.tangents.T
+            off = np.minimum(off, _lengths(aside))
+        known = len(found)
+        if not np.any(off > tolerances.MOBILITY_ASIDE):
+            break
+        furthest = int(np.argmax(off))
+        off[furthest] = 0.0
+        try:
+            found.append(component_at(part, rest[furthest], random, move))
+        except Unclear:
+            continue
+    of = {
+        k: tuple(one for one in found if one.dimension == k) for k in {c.dimension for c in found}
+    }
+    return tuple(replace(of[k][0], alike=of[k]) for k in sorted(of, reverse=True))
 
 
 def _onward(part: LoopPart, state: Floats, places: Floats, most: int, limit: float) -> Floats:

@@ -125,7 +125,7 @@ class Motions:
         moving = np.zeros(self.body.count, dtype=np.bool_)
         moving[self.body.free] = True
         for part, freedom in self.freedoms:
-            for component in freedom.components:
+            for component in freedom.every:
                 rates = np.abs(component.tangents).max(axis=1, initial=0.0)
                 moving[part.columns] |= rates > max(component.doubt, tolerances.RANK_ZERO)
         return self.body.coordinates(~moving)

@@ -28,9 +28,10 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import RandomStarts
-from mechkin_cli.mechanism import Joint, Mechanism, Problem, joint_type
+from mechkin_cli.mechanism import Joint, Problem, joint_type
 from mechkin_cli.mobility.configurations import Body, Configuration, assembled, first_row, home
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
+from mechkin_cli.mobility.families import MotionFamily, families_of
 from mechkin_cli.mobility.idle import IdleFreedom, Motions, idle_freedoms
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.show import Listed, Listing
@@ -110,7 +111,9 @@ class Mobility(Listed):
     unclear); `dimensions` are those of all components of motion that meet at the first
     configuration, the largest first, which is `mobility`. `first_order` is the freedom of small
     moves there, larger than `mobility` where part of it goes no finite way. `loops` counts
-    independent loops, `inputs` the driven coordinates; `fixed` are the coordinates that never move.
+    independent loops, `inputs` the driven coordinates; `fixed` are the coordinates that never
+    move; `families` are the components of motion where several meet, or where the first order has
+    more everywhere.
     """
 
     name: str
@@ -124,6 +127,7 @@ class Mobility(Listed):
     idle: tuple[IdleFreedom, ...] = ()
     redundant: tuple[Redundancy, ...] = ()
     fixed: tuple[str, ...] = ()
+    families: tuple[MotionFamily, ...] = ()
     diagnostics: tuple[Diagnostic, ...] = ()
 
     @property
@@ -133,6 +137,7 @@ class Mobility(Listed):
         notes += [f"idle: {item.sentence}" for item in self.idle]
         notes += [f"redundant: {item.sentence}" for item in self.redundant]
         notes += [f"fixed: {', '.join(self.fixed)} never move"] if self.fixed else []
+        notes += [f"family: {family.sentence}" for family in self.families]
         return Listing(f"Mobility of {self.name}: {self.verdict}", notes=tuple(notes))
 
     @property
@@ -177,13 +182,17 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     be solved as it is driven, gives the first row's assembly."""
     mechanism = problem.mechanism
     inputs = tuple(item.name for item in problem.motion.inputs)
-    counted = Mobility(mechanism.name, kutzbach(mechanism), mechanism.loops, inputs)
+    counted = Mobility(mechanism.name, mechanism.kutzbach, mechanism.loops, inputs)
     body = Body(mechanism)
     start = (session and first_row(session, body)) or assembled(body)
     if start is None:
         return replace(counted, diagnostics=(_not_assembled(body),))
     random = RandomStarts()
-    freedoms = [(part, freedom_of(part, start.state, random)) for part in body.parts]
+    driven = problem.motion.driven
+    freedoms = [
+        (part, freedom_of(part, start.state, random).driven_first(part.driven(body, driven)))
+        for part in body.parts
+    ]
     first_order = body.free.size + sum(freedom.first.motions.shape[1] for _, freedom in freedoms)
     doubts = [freedom for _, freedom in freedoms if freedom.doubt]
     if any(not freedom.first.clear for freedom in doubts):
@@ -191,7 +200,6 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     if doubts:
         return replace(counted, first_order=first_order, diagnostics=(_unclear(doubts[0]),))
     motion = Motions(body, start, freedoms)
-    driven = problem.motion.driven
     idle = _idle(motion, driven)
     return replace(
         counted,
@@ -202,6 +210,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         idle=idle,
         redundant=redundancies(motion.general, motion.stresses, {name for name, _ in driven}),
         fixed=motion.fixed,
+        families=families_of(start, freedoms, driven),
         diagnostics=tuple(input_notes(problem, motion, len(idle))),
     )
 
@@ -219,12 +228,6 @@ def _idle(motion: Motions, driven: Sequence[tuple[str, str]]) -> tuple[IdleFreed
                 common.append(item)
         idle = tuple(common)
     return idle
-
-
-def kutzbach(mechanism: Mechanism) -> int:
-    """6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f, less one for every coupling."""
-    freedom = sum(joint.type.freedoms for joint in mechanism.joints.values())
-    return freedom - mechanism.space * mechanism.loops - len(mechanism.couplings)
 
 
 def _not_assembled(body: Body) -> Diagnostic:

@@ -75,7 +75,7 @@ def opened(mechanism: Mechanism) -> Opened:
     links = {edge.child: RigidLink(edge.child) for edge in edges}
     joints = {edge.joint.name: edge.joint for edge in edges}
     tree = Mechanism(mechanism.name, links, joints, couplings=mechanism.couplings)
-    return Opened(tree, SolverGraph(tuple(edges), (), (), (), ()), elements, cuts)
+    return Opened(tree, SolverGraph(tuple(edges), (), (), (), (), ()), elements, cuts)
 
 
 def _parts_of(joint: Joint, second: str) -> list[Joint]:

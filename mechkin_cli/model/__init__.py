@@ -6,7 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.model.model import Model as Model, load as load, loads as loads
+    from mechkin_cli.model.model import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

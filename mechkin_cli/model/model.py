@@ -12,7 +12,6 @@ from mechkin_cli import fit, mobility, modes, sensitivities, studies, variants, 
 from mechkin_cli.analysis import (
     Analysis,
     Design,
-    RunOptions,
     input_values,
     respond,
     run_name,
@@ -263,8 +262,16 @@ class Model(Listed):
             InvalidFile: the mechanism cannot be solved as it is driven.
             UsageError: an unknown table, quantity or mode, or a width that the machine lacks.
         """
-        options = RunOptions(quantities, tables, mode, closed_at, lanes, threads, errors)
-        return run_sweep(self, options)
+        return run_sweep(
+            self,
+            quantities,
+            tables=tables,
+            mode=mode,
+            closed_at=closed_at,
+            lanes=lanes,
+            threads=threads,
+            errors=errors,
+        )
 
     def respond(
         self,
@@ -295,7 +302,9 @@ class Model(Listed):
             InvalidFile: the start names too few coordinates or too many.
             UsageError: an unknown response, table, quantity or mode, or a width as of `analyze`.
         """
-        return respond(self, name, RunOptions(quantities, tables, mode, None, lanes, threads))
+        return respond(
+            self, name, quantities, tables=tables, mode=mode, lanes=lanes, threads=threads
+        )
 
     def analyses(self, run: str | None = None, mode: str | None = None) -> list[Analysis]:
         """All runs of the file, or one.
@@ -758,11 +767,11 @@ def load(
     """
     place = None if folder is None else a_path("folder", folder)
     if isinstance(path, Mapping):
-        return Model(Design(build(open_data(path, DATA, _texts(parameters), place)), DATA))
+        return Model(Design(build(*open_data(path, DATA, _texts(parameters), place)), DATA))
     if isinstance(path, str) and "\n" in path:
         raise UsageError("path: this is a text of several lines, no path; use loads(text)")
     path = a_path("path", path)
-    return Model(Design(build(open_file(path, _texts(parameters))), path.stem))
+    return Model(Design(build(*open_file(path, _texts(parameters))), path.stem))
 
 
 def loads(
@@ -789,7 +798,7 @@ def loads(
         shown = text.strip()[:LONGEST_NAME]
         raise UsageError(f"text: this looks like the name of a file; use load({shown!r})")
     place = None if folder is None else a_path("folder", folder)
-    built = build(open_text(text, name, _texts(parameters), place))
+    built = build(*open_text(text, name, _texts(parameters), place))
     return Model(Design(built, Path(name).stem))
 
 

@@ -6,14 +6,8 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.modes.circuits import Walker as Walker
-    from mechkin_cli.modes.modes import (
-        UNNAMED as UNNAMED,
-        Modes as Modes,
-        Ranges as Ranges,
-        find_modes as find_modes,
-        find_ranges as find_ranges,
-    )
+    from mechkin_cli.modes.circuits import *
+    from mechkin_cli.modes.modes import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -9,31 +9,11 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.plan.layout import (
-        Carrier as Carrier,
-        Layout as Layout,
-        home_inputs as home_inputs,
-        home_state as home_state,
-    )
-    from mechkin_cli.plan.outputs import (
-        FORCE_KINDS as FORCE_KINDS,
-        REACTION_KINDS as REACTION_KINDS,
-        OutputPlan as OutputPlan,
-        Readout as Readout,
-        demand_of as demand_of,
-        forces_demand as forces_demand,
-        needs_all_links as needs_all_links,
-    )
-    from mechkin_cli.plan.plan import build_plan as build_plan, plan_records as plan_records
-    from mechkin_cli.plan.programs import kink_laws as kink_laws
-    from mechkin_cli.plan.records import (
-        Demand as Demand,
-        FrictionState as FrictionState,
-        PassageEnd as PassageEnd,
-        RowFlag as RowFlag,
-        TrackEnd as TrackEnd,
-        flatten as flatten,
-    )
+    from mechkin_cli.plan.layout import *
+    from mechkin_cli.plan.outputs import *
+    from mechkin_cli.plan.plan import *
+    from mechkin_cli.plan.programs import *
+    from mechkin_cli.plan.records import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

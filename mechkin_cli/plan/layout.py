@@ -32,11 +32,11 @@ from mechkin_cli.mechanism import (
     upright,
 )
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.structure import CutJoint, SolverGraph, TreeEdge
+from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Laws
+    from mechkin_cli.mechanism import Laws, Relation
     from mechkin_cli.show import Floats
 
 
@@ -149,7 +149,7 @@ class Layout:
     @cached_property
     def hung_number(self) -> dict[str, int]:
         """Number of each hung body in the kernel."""
-        hung = [c.constraint.links[0] for c in self.graph.closings if c.constraint.links]
+        hung = [c.links[0] for c in self.graph.closings if c.links]
         return {body: k for k, body in enumerate(hung)}
 
     @cached_property
@@ -200,11 +200,10 @@ class Layout:
         """Length of the state vector."""
         return sum(c.part.type.states for c in self.carriers)
 
-    def relation_rows(self, closing: CutJoint) -> list[RelationRow]:
+    def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
         """All parts of the joints of a coupling; those that have none of its coordinates come
         first."""
-        relation, signs = self.mechanism.couplings[closing.name], dict(closing.loop)
-        rows = []
+        signs, rows = dict(loop), []
         for term in relation.terms:
             edge = self.edge_number[term.joint.name]
             own, freedom = self.carrier_of(edge, term.joint.freedom_number(term.coordinate))

@@ -19,13 +19,11 @@ from mechkin_cli.mechanism import (
     LEDGER_KINDS,
     ZERO,
     Attached,
-    Damper,
     Mechanism,
     Vector,
     Wanted,
     is_angle,
     reference_point,
-    varying,
 )
 from mechkin_cli.plan.layout import Layout
 from mechkin_cli.plan.records import Demand, Output, OutputCode, hand_over_outputs
@@ -85,14 +83,12 @@ def demand_of(mechanism: Mechanism, wanted: Iterable[Wanted]) -> Demand:
 
 def forces_demand(mechanism: Mechanism) -> Demand:
     """The computation that forces need: accelerations if a link has mass or a joint rubs,
-    velocities if something is damped or a load reads rates."""
+    velocities if a load reads rates."""
     demand = Demand.FORCES
     if mechanism.frictions or any(link.has_mass for link in mechanism.links.values()):
         return demand | Demand.VELOCITY | Demand.ACCELERATION
-    for load in mechanism.loads:
-        if isinstance(load, Damper) or any(amount.moving for amount in varying(load)):
-            return demand | Demand.VELOCITY
-    return demand
+    reads_rates = any(load.reads_rates for load in mechanism.loads)
+    return demand | Demand.VELOCITY if reads_rates else demand
 
 
 def needs_all_links(mechanism: Mechanism, wanted: Iterable[Wanted]) -> bool:
@@ -243,7 +239,8 @@ class OutputPlan:
             return self._output(OutputCode.MESH_FORCE, number, layout.length)
         joint, _, coordinate = wanted.coordinate.rpartition(".")
         axis = layout.axis_number[joint, coordinate]
-        rows = layout.relation_rows(layout.graph.closings[number])
+        relation, loop = layout.mechanism.couplings[wanted.owner], layout.graph.loops[number]
+        rows = layout.relation_rows(relation, loop)
         at = next(k for k, row in enumerate(rows) if row.axis == axis and row.freedom >= 0)
         factor = layout.length if wanted.kind == "coupling_force" else layout.length * layout.length
         return self._output(OutputCode.MULTIPLIER, number, factor, freedom=at)

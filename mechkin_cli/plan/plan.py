@@ -24,15 +24,14 @@ from mechkin_cli.mechanism import (
     scale,
     subtract,
     turned_tensor,
-    varying,
 )
 from mechkin_cli.plan.layout import Layout, coordinate_axis
 from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord, hand_over, record
-from mechkin_cli.structure import CutJoint
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import Motion, Rubbing
+    from mechkin_cli.mechanism import Constraint, Motion, Rubbing
+    from mechkin_cli.structure import Loop
 
 
 NO_MOTION = -1
@@ -82,8 +81,8 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         return _link_load(layout, load)
     if isinstance(load, JointLoad):
         axis, reference, freedom, slide = load_coordinate(layout, load.joint, load.coordinate)
-        varies = isinstance(load.value, Varying)
-        constant = 0.0 if isinstance(load.value, Varying) else load.value
+        varies = isinstance(load.amount, Varying)
+        constant = 0.0 if isinstance(load.amount, Varying) else load.amount
         value = (constant / (unit if slide else (unit * unit)), 0.0, 0.0)
         code = LoadCode.COORDINATE
         return record("add_load", code, axis, reference, freedom, ZERO, ZERO, value, varies)
@@ -110,7 +109,7 @@ def _link_load(layout: Layout, load: LinkLoad) -> PlanRecord:
     else:
         code = LoadCode.TORQUE_LINK if own_axes else LoadCode.TORQUE_GROUND
         value, point = scale(1.0 / (layout.length * layout.length), value), ZERO
-    link, varies = layout.link_number[load.link], bool(varying(load))
+    link, varies = layout.link_number[load.link], bool(load.varying)
     return record("add_load", code, link, -1, 0, point, ZERO, value, varies)
 
 
@@ -166,7 +165,11 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
-        *(each for closing in layout.graph.closings for each in _closing(layout, closing)),
+        *(
+            each
+            for closing in zip(layout.graph.closings, layout.graph.loops, strict=True)
+            for each in _closing(layout, *closing)
+        ),
         *_places(layout),
         *_axes(layout),
         *_free_motions(layout),
@@ -193,19 +196,18 @@ def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
         )
 
 
-def _closing(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
-    constraint = closing.constraint
+def _closing(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[PlanRecord]:
     if constraint.terms:
-        yield from _relation(layout, closing)
+        yield from _relation(layout, constraint, loop)
         return
-    loop = [(k, float(s)) for e, s in closing.loop for k in layout.parts_of[e]]
+    passed = [(k, float(s)) for e, s in loop for k in layout.parts_of[e]]
     first, second = layout.link_number[constraint.first], layout.link_number[constraint.second]
     one, other = constraint.frames
     frames = layout.frame_on(first, one), layout.frame_on(second, other)
     hung = constraint.hung
     if hung is None or constraint.length is None:
         code, parameter = constraint.code, constraint.parameter
-        yield record("add_closing_joint", code, first, second, *frames, parameter, loop)
+        yield record("add_closing_joint", code, first, second, *frames, parameter, passed)
         return
     yield record(
         "add_hung_links",
@@ -217,13 +219,13 @@ def _closing(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
         constraint.length / layout.length,
         hung.line,
         hung.slide_sign,
-        loop,
+        passed,
     )
 
 
-def _relation(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
-    relation = layout.mechanism.couplings[closing.name]
-    rows = layout.relation_rows(closing)
+def _relation(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[PlanRecord]:
+    relation = layout.mechanism.couplings[constraint.name]
+    rows = layout.relation_rows(relation, loop)
     total = relation.total / layout.length if relation.length else relation.total
     places = [(row.part, row.sign, row.freedom, row.axis) for row in rows]
     yield record("add_relation", relation.length, places, [row.factor for row in rows], total)
@@ -234,7 +236,7 @@ def _relation(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
         scale(layout.length, layout.vector(Attached(mesh.carrier, force)))
         for force in (mesh.along, mesh.apart)
     ]
-    signs, carrier = dict(closing.loop), layout.link_number[mesh.carrier]
+    signs, carrier = dict(loop), layout.link_number[mesh.carrier]
     point = layout.point(Attached(mesh.carrier, mesh.point))
     way = [(layout.edge_number[name], sense) for name, sense in mesh.way]
     path = [(k, float(signs[e] * sense)) for e, sense in way for k in layout.parts_of[e]]
@@ -244,7 +246,7 @@ def _relation(layout: Layout, closing: CutJoint) -> Iterator[PlanRecord]:
 def _places(layout: Layout) -> Iterator[PlanRecord]:
     backward = {e.joint.name for e in layout.graph.edges if not e.forward}
     # the multipliers push the second link, whether that is the joint's second or first
-    backward |= {c.name for c in layout.graph.closings if c.constraint.is_reversed}
+    backward |= {c.name for c in layout.graph.closings if c.is_reversed}
     for name, joint in layout.mechanism.joints.items():
         yield record(
             "add_place",
@@ -296,10 +298,10 @@ def _free(layout: Layout, place: int, slide: bool, code: FreeCode, at: Attached)
 def _blocks(layout: Layout) -> Iterator[PlanRecord]:
     placed: set[int] = set()
     for block in layout.graph.blocks:
-        constraints = [layout.graph.closings[c].constraint for c in block.closings]
+        constraints = [layout.graph.closings[c] for c in block.closings]
         links = [link for constraint in constraints for link in constraint.placed]
-        loops = [layout.graph.closings[c].loop for c in block.closings]
-        links += [layout.graph.edges[k].child for loop in loops for k, _ in loop]
+        passed = [k for c in block.closings for k, _ in layout.graph.loops[c]]
+        links += [layout.graph.edges[k].child for k in passed]
         needed = _new_on_paths(layout, [layout.link_number[link] for link in links], placed)
         if block.charts:
             ends = [layout.carrier_of(*unknown)[0] for unknown in block.unknowns]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle, varying
+from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.records import Output, OutputCode, Program, ReadCode
 from mechkin_cli.tape import Operation, RowRecorder, register
@@ -66,7 +66,7 @@ class _Recording:
 
     def __init__(self, layout: Layout, laws: Laws) -> None:
         loads = layout.mechanism.loads
-        used = sorted({amount.number for load in loads for amount in varying(load)})
+        used = sorted({amount.number for load in loads for amount in load.varying})
         self.laws: list[LoadLaw] = [*(laws.laws[number] for number in used), *laws.watched]
         self.parameters: Mapping[str, Quantity] = laws.parameters
         self._reads: list[tuple[int, Output]] = []
@@ -168,7 +168,7 @@ def kernel_columns(layout: Layout, values: Mapping[int, Any]) -> list[Any]:
     return [
         column
         for load in layout.mechanism.loads
-        if varying(load)
+        if load.varying
         for column in _columns(layout, load, values)
     ]
 
@@ -177,7 +177,7 @@ def _columns(layout: Layout, load: Load, values: Mapping[int, Any]) -> list[Any]
     length = layout.length
     if isinstance(load, JointLoad):
         per = length * length if is_angle(load.coordinate) else length
-        return [_amount(load.value, values) / per]
+        return [_amount(load.amount, values) / per]
     assert isinstance(load, LinkLoad)
     per = 1.0 / length if load.kind == "force" else 1.0 / (length * length)
     components: Any = [_amount(amount, values) for amount in load.value]

@@ -6,14 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.plots.curves import (
-        Picture as Picture,
-        drawn as drawn,
-        format_of as format_of,
-        image as image,
-        picture as picture,
-        table_picture as table_picture,
-    )
+    from mechkin_cli.plots.curves import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -10,25 +10,9 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.reading.document import (
-        Document as Document,
-        KeyPath as KeyPath,
-        document_from_data as document_from_data,
-        document_from_text as document_from_text,
-        explain as explain,
-        is_mechanism as is_mechanism,
-        is_study as is_study,
-        read_document as read_document,
-    )
-    from mechkin_cli.reading.text import (
-        MOST_BYTES as MOST_BYTES,
-        MOST_DIAGNOSTICS as MOST_DIAGNOSTICS,
-        MOST_TABLE_BYTES as MOST_TABLE_BYTES,
-        NotRegular as NotRegular,
-        decoded as decoded,
-        read_regular as read_regular,
-    )
-    from mechkin_cli.reading.yaml import CORRECT_FIRST as CORRECT_FIRST, in_order as in_order
+    from mechkin_cli.reading.document import *
+    from mechkin_cli.reading.text import *
+    from mechkin_cli.reading.yaml import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

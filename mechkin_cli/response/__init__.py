@@ -6,20 +6,9 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.response.integration import (
-        Beginning as Beginning,
-        integrate as integrate,
-        with_loads as with_loads,
-    )
-    from mechkin_cli.response.result import ResponseResult as ResponseResult
-    from mechkin_cli.response.runs import (
-        Prepared as Prepared,
-        integrated as integrated,
-        prepare as prepare,
-        read as read,
-        respond as respond,
-        watched_stop as watched_stop,
-    )
+    from mechkin_cli.response.integration import *
+    from mechkin_cli.response.result import *
+    from mechkin_cli.response.runs import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -213,7 +213,7 @@ class ResponseResult(Result):
 
     def _amounts(self, wanted: Wanted) -> list[Amount]:
         at = (wanted.owner, wanted.coordinate)
-        return [e.amount for e in self.response.efforts if (e.joint, e.coordinate) == at]
+        return [e.amount for e in self.response.efforts if e.acts_at == at]
 
     def _effort(self, wanted: Wanted) -> Floats:
         """The sum of the response's efforts along a coordinate over the rows."""

@@ -9,19 +9,8 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.search.clusters import (
-        Within as Within,
-        is_in_reach as is_in_reach,
-        pose_keys as pose_keys,
-        pose_number as pose_number,
-        same_poses as same_poses,
-    )
-    from mechkin_cli.search.search import (
-        Assemblies as Assemblies,
-        all_assemblies as all_assemblies,
-        single_assembly as single_assembly,
-        with_assemblies as with_assemblies,
-    )
+    from mechkin_cli.search.clusters import *
+    from mechkin_cli.search.search import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -64,12 +64,11 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     block = graph.blocks[number]
     if len(block.closings) != 1:
         return None
-    closing = graph.closings[block.closings[0]]
+    constraint = graph.closings[block.closings[0]]
     kinds = [layout.carriers[layout.carrier_of(e, f)[0]].part.type for e, f in block.unknowns]
     if any(kind.is_ball or kind.counts_turns for kind in kinds):
         return None
     unknown = {layout.state(e, f) for e, f in block.unknowns}
-    constraint = closing.constraint
     if constraint.slides or constraint.terms:
         return None
     ends = (constraint.first, constraint.second)
@@ -95,7 +94,7 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
         frames.on_link(link, frame) for link, frame in zip(ends, constraint.frames, strict=True)
     )
     distance = None if constraint.length is None else constraint.length / layout.length
-    return Chain(closing.joint, tuple(motions), first, second, distance)
+    return Chain(constraint.joint, tuple(motions), first, second, distance)
 
 
 def _path(layout: Layout, body: int) -> list[int]:
@@ -184,11 +183,11 @@ AT_SIX_DISTANCES = 40
 
 def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
-    coupled = [bool(graph.closings[c].constraint.terms) for c in block.closings]
+    coupled = [bool(graph.closings[c].terms) for c in block.closings]
     if any(coupled):
         # couplings alone are linear
         return 1 if all(coupled) and block.equations == len(block.unknowns) else None
-    if all(graph.closings[c].constraint.length is not None for c in block.closings):
+    if all(graph.closings[c].length is not None for c in block.closings):
         return _bound_of_distances(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):
         return None

@@ -66,8 +66,7 @@ def unknown_states(layout: Layout, number: int) -> list[int]:
 def upstream_states(layout: Layout, number: int) -> list[int]:
     """States of other blocks on which a block's loops depend: of the joints on their paths."""
     graph = layout.graph
-    loops = (graph.closings[c].loop for c in graph.blocks[number].closings)
-    edges = {edge for loop in loops for edge, _ in loop}
+    edges = graph.passed(graph.blocks[number])
     own = set(unknown_states(layout, number))
     if any(edge >= 0 and graph.edges[edge].hung for edge in edges):
         # a hung body stands where its ends are

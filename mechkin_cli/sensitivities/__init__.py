@@ -6,11 +6,8 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.sensitivities.first_order import (
-        Sensitivities as Sensitivities,
-        sensitivities as sensitivities,
-    )
-    from mechkin_cli.sensitivities.tolerance_stack import Tolerances as Tolerances, stack as stack
+    from mechkin_cli.sensitivities.first_order import *
+    from mechkin_cli.sensitivities.tolerance_stack import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

@@ -251,11 +251,9 @@ class Precise:
         """The constants of `session.readout(wanted, points)` in double-double (constants, 2)."""
         return double_doubles(self.tape(self._outputs(session, wanted, points)))
 
-    def enclosed_outputs(
-        self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()
-    ) -> Floats:
-        """The same enclosed (constants, 3)."""
-        return enclosures(self.tape(self._outputs(session, wanted, points)))
+    def enclosed_outputs(self, session: InDoubles, wanted: Iterable[Wanted]) -> Floats:
+        """The same without points, enclosed (constants, 3)."""
+        return enclosures(self.tape(self._outputs(session, wanted, ())))
 
     def inputs(self, session: InDoubles) -> PreciseInputs:
         """The inputs of all rows in double-double, as `session.inputs` has them in doubles; kept.

@@ -28,10 +28,7 @@ if TYPE_CHECKING:
 
 @cache
 def step_limits(
-    longest_step: float = tolerances.LONGEST_STEP,
-    least_step: float = tolerances.LEAST_STEP,
-    *,
-    straight: bool = False,
+    longest_step: float = tolerances.LONGEST_STEP, *, straight: bool = False
 ) -> StepLimits:
     """What a step may do, from `tolerances`; `straight`: pass branch points."""
     return StepLimits(
@@ -41,7 +38,7 @@ def step_limits(
         jump=tolerances.JUMP_LIMIT,
         infill=tolerances.INFILL_LIMIT,
         longest_step=longest_step,
-        least_step=least_step,
+        least_step=tolerances.LEAST_STEP,
         most_steps=tolerances.MOST_STEPS,
         tight=tolerances.RESIDUAL_TIGHT,
         coarse=tolerances.STEP_COARSE,

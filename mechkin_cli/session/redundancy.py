@@ -31,10 +31,10 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import Identities, as_recorded, register
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Condition, Joint, Part
+    from mechkin_cli.mechanism import Condition, Constraint, Joint, Part
     from mechkin_cli.plan import Layout
     from mechkin_cli.session.session import Session
-    from mechkin_cli.structure import CutJoint
+    from mechkin_cli.structure import Loop
     from mechkin_cli.tape import ExactRecorder
 
 
@@ -291,23 +291,23 @@ class _Loop(NamedTuple):
         return [closed and (not self.group.turns or any(self._is_on_normal))]
 
 
-def _follow(closing: CutJoint, layout: Layout, tests: Tests) -> list[bool]:
+def _follow(closing: Constraint, loop: Loop, layout: Layout, tests: Tests) -> list[bool]:
     """Which equations of a cut joint follow from the others."""
     joint = closing.joint
     nothing = [False] * closing.equations
-    conditions = closing.constraint.conditions
-    edges = [layout.graph.edges[edge] for edge, _ in closing.loop]
+    conditions = closing.conditions
+    edges = [layout.graph.edges[edge] for edge, _ in loop]
     if conditions is None or any(edge.hung for edge in edges):
         return nothing
     kinds = {condition.kind for condition in conditions}
     if not _is_closed(joint, kinds, tests):
         return nothing
-    parts = [layout.carriers[k].part for edge, _ in closing.loop for k in layout.parts_of[edge]]
+    parts = [layout.carriers[k].part for edge, _ in loop for k in layout.parts_of[edge]]
     group = subgroup_of(parts, tests)
     if group is None:
         return nothing
-    loop = _Loop(joint, group, tests)
-    return [one for condition in conditions for one in loop.of(condition, kinds)]
+    own = _Loop(joint, group, tests)
+    return [one for condition in conditions for one in own.of(condition, kinds)]
 
 
 def _is_closed(joint: Joint, kinds: Iterable[str], tests: Tests) -> bool:
@@ -330,5 +330,6 @@ def equations_that_follow(session: Session) -> list[bool]:
     """
     layout = session.precise.layout(session)
     tests = Tests(session.precise.recorder)
-    found = [_follow(closing, layout, tests) for closing in layout.graph.closings]
+    closings = zip(layout.graph.closings, layout.graph.loops, strict=True)
+    found = [_follow(closing, loop, layout, tests) for closing, loop in closings]
     return [one for equations in found for one in equations]

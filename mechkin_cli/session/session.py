@@ -71,21 +71,8 @@ class Continued(NamedTuple):
     row: int
 
 
-@dataclass(frozen=True, eq=False)
-class ContinuedFrom:
-    """A first assembly that is brought from that of another session.
-
-    Attributes:
-        base: the session of the file's own parameters.
-        between: the session at a place between `base` (0) and the one that continues it (1).
-    """
-
-    base: Session
-    between: Callable[[float], Session]
-
-
-First = Continued | ContinuedFrom | None
-"""How the first assembly is found; None: chosen as `problem.assembly` says (home, near or mode)."""
+Between = Callable[[float], "Session"]
+"""The session at a place between a base (0) and the one that continues it (1)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +82,10 @@ class Session:
     Attributes:
         problem: mechanism, motion and assembly.
         structure: the mechanism in the kernel.
-        first: how the first assembly is found.
+        first: the first assembly; None: it is brought from that of `base`, or chosen as
+            `problem.assembly` says (home, near or mode).
+        base: the session of the file's own parameters from whose first assembly this one's is
+            brought, and those between.
         size: residual and condition are in parts of it (m); None: of the drawing's.
         packing: how rows are packed.
         text: gives the numbers as the file says them, where the problem is that of a file.
@@ -105,7 +95,8 @@ class Session:
 
     problem: Problem
     structure: Structure
-    first: First = None
+    first: Continued | None = None
+    base: tuple[Session, Between] | None = None
     size: float | None = None
     packing: Packing = Packing()
     text: Callable[[], Precise] | None = None
@@ -235,7 +226,7 @@ class Session:
         laid = Layout(problem.laid_mechanism, self.graph, own.length, laws=problem.laws)
         structure = Structure(laid, tuple(problem.driven), self.closed_at)
         # efforts that actuators share go by the size
-        return Session(problem, structure, None, self.size, self.packing, self.text)
+        return Session(problem, structure, size=self.size, packing=self.packing, text=self.text)
 
     def moved_along(self, states: Floats, columns: Floats) -> Floats:
         """States (states, places) after increments of the columns (columns, places): those of balls
@@ -255,24 +246,26 @@ class Session:
         own = self.layout
         laid = Layout(own.mechanism, graph, own.length, laws=own.laws)
         structure = Structure(laid, tuple(graph.driven), self.closed_at)
-        return Session(self.problem, structure, None, self.size, self.packing, self.text)
+        return Session(
+            self.problem, structure, size=self.size, packing=self.packing, text=self.text
+        )
 
     def derived(self, make: Callable[[Session], Problem]) -> Session:
         """The session of a problem that follows from this session's; a first assembly that is
         continued comes from the session that follows in the same way from its base."""
         other = Session.of(make(self), closed_at=self.closed_at, packing=self.packing)
         other = replace(other, text=self.text)
-        if not isinstance(self.first, ContinuedFrom):
+        if self.base is None:
             return other
-        base, between = self.first.base.derived(make), self.first.between
-        return other.continuing(base, lambda place: between(place).derived(make))
+        base, between = self.base
+        return other.continuing(base.derived(make), lambda place: between(place).derived(make))
 
-    def continuing(self, base: Session, between: Callable[[float], Session]) -> Session:
+    def continuing(self, base: Session, between: Between) -> Session:
         """This session with its first assembly, and its length unit, from those of a base."""
         own = self.layout
         laid = Layout(own.mechanism, self.graph, base.layout.length, own.laws)
         structure = replace(self.structure, layout=laid)
-        return replace(self, structure=structure, first=ContinuedFrom(base, between))
+        return replace(self, structure=structure, first=None, base=(base, between))
 
     @remembered
     def packed(self, packing: Packing) -> Session:
@@ -293,9 +286,8 @@ class Session:
 
     def assembled(self, assembly: Assembly) -> Session:
         """The same session with another choice of the first assembly."""
-        return replace(
-            self, problem=replace(self.problem, assembly=assembly), first=None, own_inputs=None
-        )
+        problem = replace(self.problem, assembly=assembly)
+        return replace(self, problem=problem, first=None, base=None, own_inputs=None)
 
     @remembered
     def in_mode(self, mode: str) -> Session:

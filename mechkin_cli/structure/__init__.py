@@ -11,32 +11,16 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.structure.build import build_graph as build_graph
-    from mechkin_cli.structure.graph import (
-        Block as Block,
-        CutJoint as CutJoint,
-        SolverGraph as SolverGraph,
-        TreeEdge as TreeEdge,
-        UnsolvableGraph as UnsolvableGraph,
-        charted as charted,
-        exchanged as exchanged,
-        graph_of as graph_of,
-        is_redundant as is_redundant,
-        listed as listed,
-        structure_of as structure_of,
-    )
-    from mechkin_cli.structure.network import (
-        connections_of as connections_of,
-        reduce as reduce,
-        whole_link as whole_link,
-    )
-    from mechkin_cli.structure.rank import Rates as Rates, middle_and_size as middle_and_size
+    from mechkin_cli.structure.build import *
+    from mechkin_cli.structure.graph import *
+    from mechkin_cli.structure.network import *
+    from mechkin_cli.structure.rank import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "build": "build_graph",
-        "graph": "Block CutJoint SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
+        "graph": "Block Loop SolverGraph TreeEdge UnsolvableGraph charted exchanged graph_of "
         "is_redundant listed structure_of",
         "network": "connections_of reduce whole_link",
         "rank": "Rates middle_and_size",

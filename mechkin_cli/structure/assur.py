@@ -21,12 +21,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from mechkin_cli import tolerances
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.matching import Matching, Row
 from mechkin_cli.structure.network import (
     Connection,
-    GraphComponent,
     Region,
+    Subgraph,
     depths,
     find_regions,
     incidence,
@@ -34,22 +33,13 @@ from mechkin_cli.structure.network import (
 )
 from mechkin_cli.structure.rank import Rates, determined_sets
 
-
-class AssurGroup(NamedTuple):
-    """Links placed together, and the connections that do it; `entry` holds their component."""
-
-    entry: str
-    links: tuple[str, ...]
-    connections: tuple[Connection, ...]
-
-
 Undriven = tuple[tuple[Connection, ...], int]
 """Connections whose freedoms are not all determined, and how many more inputs they need."""
 
 
 def assur_groups(
-    component: GraphComponent, places: Iterable[Rates]
-) -> tuple[list[AssurGroup], Undriven | None]:
+    component: Subgraph, places: Iterable[Rates]
+) -> tuple[list[Subgraph], Undriven | None]:
     """The groups of a component in order, and what nothing drives.
 
     `places` are read only where there are too many equations: the rates at places where the
@@ -61,7 +51,7 @@ def assur_groups(
         missing = unknown - component.space * component.loops
         if missing > 0:
             return [], (component.connections, missing)
-        return [AssurGroup(component.entry, component.links, component.connections)], None
+        return [component], None
     order = order_of(component.connections)
     system = _System(component, order, [])
     is_redundant = system.matching.is_redundant
@@ -79,10 +69,10 @@ def assur_groups(
 
 
 def coupled_groups(
-    components: Sequence[GraphComponent],
-    found: Sequence[tuple[list[AssurGroup], Undriven | None]],
+    components: Sequence[Subgraph],
+    found: Sequence[tuple[list[Subgraph], Undriven | None]],
     couplings: Sequence[Connection],
-) -> tuple[list[AssurGroup], list[Undriven]]:
+) -> tuple[list[Subgraph], list[Undriven]]:
     """The groups of all components with the couplings, and what nothing drives then.
 
     A component that nothing drives is one group with the couplings that drive it. A coupling that
@@ -108,13 +98,13 @@ def coupled_groups(
         loose = [found[k][1] for k in sorted(matching.undetermined())]
         touched = tuple(c for undriven in loose if undriven is not None for c in undriven[0])
         return [], [(touched, left)]
-    groups: list[AssurGroup] = []
+    groups: list[Subgraph] = []
     for k, (part, (own, undriven)) in enumerate(zip(components, found, strict=True)):
         if undriven is None:
             groups += own
             continue
         driving = tuple(couplings[row] for row in matching.taken[k])
-        groups.append(AssurGroup(part.entry, part.links, (*part.connections, *driving)))
+        groups.append(Subgraph(part.entry, part.links, (*part.connections, *driving)))
     placed = {c.name for group in groups for c in group.connections}
     for c in couplings:
         if c.name not in placed:
@@ -122,22 +112,22 @@ def coupled_groups(
     return groups, []
 
 
-def _joined_by(groups: Sequence[AssurGroup], coupling: Connection) -> list[AssurGroup]:
+def _joined_by(groups: Sequence[Subgraph], coupling: Connection) -> list[Subgraph]:
     """The groups of a coupling's joints as one with it, in the place of the first."""
     joints = {term.joint.name for term in coupling.constraint.terms}
     inside = [any(joints & set(c.constraint.joints) for c in group.connections) for group in groups]
     own = [group for group, member in zip(groups, inside, strict=True) if member]
     links = tuple(link for group in own for link in group.links)
     connections = tuple(c for group in own for c in group.connections)
-    whole = AssurGroup(own[0].entry, links, (*connections, coupling))
+    whole = Subgraph(own[0].entry, links, (*connections, coupling))
     first = inside.index(True)
     others = [group for group, member in zip(groups, inside, strict=True) if not member]
     return [*others[:first], whole, *others[first:]]
 
 
 def _determined(
-    component: GraphComponent, proposed: Sequence[AssurGroup], places: Iterable[Rates]
-) -> list[AssurGroup]:
+    component: Subgraph, proposed: Sequence[Subgraph], places: Iterable[Rates]
+) -> list[Subgraph]:
     """The groups by ranks; what they leave open is solved together."""
     best: tuple[list[tuple[str, ...]], tuple[str, ...]] | None = None
     for rates in places:
@@ -147,16 +137,14 @@ def _determined(
         if not best[1]:
             break
     if best is None:
-        return [AssurGroup(component.entry, component.links, component.connections)]
+        return [component]
     return _with_connections(component, [*best[0], *([best[1]] if best[1] else [])])
 
 
-def _with_connections(
-    component: GraphComponent, sets: Iterable[tuple[str, ...]]
-) -> list[AssurGroup]:
+def _with_connections(component: Subgraph, sets: Iterable[tuple[str, ...]]) -> list[Subgraph]:
     """Sets of links as groups, each with the connections that its links are the last to reach;
     own slides of constraints come by themselves."""
-    groups: list[AssurGroup] = []
+    groups: list[Subgraph] = []
     inside = {component.entry}
     waiting = list(component.connections)
     for links in sets:
@@ -167,12 +155,12 @@ def _with_connections(
         members = tuple(c for c in reached if c not in slides)
         own = set(links)
         ordered = tuple(link for link in component.links if link in own)
-        groups.append(AssurGroup(component.entry, ordered, members))
-        groups += [AssurGroup(component.entry, (), (c,)) for c in slides]
+        groups.append(Subgraph(component.entry, ordered, members))
+        groups += [Subgraph(component.entry, (), (c,)) for c in slides]
     return groups
 
 
-def _rest(component: GraphComponent, placed: set[str]) -> GraphComponent | None:
+def _rest(component: Subgraph, placed: set[str]) -> Subgraph | None:
     """The component with what is placed put into its entry; None if nothing is left."""
     if len(placed) == len(component.links):
         return None
@@ -181,13 +169,13 @@ def _rest(component: GraphComponent, placed: set[str]) -> GraphComponent | None:
         return component.entry if link in placed else link
 
     moved = [c._replace(first=of(c.first), second=of(c.second)) for c in component.connections]
-    return GraphComponent(component.entry, tuple(c for c in moved if c.first != c.second))
+    return Subgraph.of(component.entry, tuple(c for c in moved if c.first != c.second))
 
 
-def _pieces(component: GraphComponent, rest: GraphComponent) -> list[AssurGroup]:
+def _pieces(component: Subgraph, rest: Subgraph) -> list[Subgraph]:
     """What hangs together without the entry, each as one group."""
     at = incidence(rest.connections)
-    pieces: list[AssurGroup] = []
+    pieces: list[Subgraph] = []
     seen = {rest.entry}
     for start in rest.links:
         if start in seen:
@@ -201,13 +189,11 @@ def _pieces(component: GraphComponent, rest: GraphComponent) -> list[AssurGroup]
             seen.update(more)
             front += more
         own = _own_names(component, [rest.connections[k] for k in members])
-        pieces.append(AssurGroup(component.entry, tuple(front), own))
+        pieces.append(Subgraph(component.entry, tuple(front), own))
     return pieces
 
 
-def _own_names(
-    component: GraphComponent, connections: Sequence[Connection]
-) -> tuple[Connection, ...]:
+def _own_names(component: Subgraph, connections: Sequence[Connection]) -> tuple[Connection, ...]:
     """The same connections as they are in the component."""
     names = {c.name for c in connections}
     return tuple(c for c in component.connections if c.name in names)
@@ -216,7 +202,7 @@ def _own_names(
 class _System:
     """Nodes and rows of a component: links, frames of regions, own slides."""
 
-    def __init__(self, component: GraphComponent, order: int, regions: Sequence[Region]) -> None:
+    def __init__(self, component: Subgraph, order: int, regions: Sequence[Region]) -> None:
         self.component, self.order, self.regions = component, order, regions
         self.capacities: list[int] = []
         self.own: dict[str, tuple[int, ...]] = {component.entry: ()}
@@ -323,7 +309,7 @@ class _System:
         place = {number: k for k, number in enumerate(_by_structure(self.component, kinds))}
         return [place.get(number, number) for number in range(len(self.rows))]
 
-    def groups(self) -> list[AssurGroup]:
+    def groups(self) -> list[Subgraph]:
         """The groups of what is determined, in order."""
         parts = self.matching.parts(self.matching.undetermined())
         rank = {node: k for k, part in enumerate(parts) for node in part}
@@ -339,7 +325,7 @@ class _System:
                 members[max(rank[node] for node in (*nodes, *ends))].append(c)
         entry = self.component.entry
         groups = zip(links, members, strict=True)
-        return _attached([AssurGroup(entry, tuple(some), tuple(by)) for some, by in groups])
+        return _attached([Subgraph(entry, tuple(some), tuple(by)) for some, by in groups])
 
     def undriven(self) -> Undriven | None:
         """What the equations do not determine."""
@@ -351,14 +337,14 @@ class _System:
         return touched, sum(self.matching.free)
 
 
-def _attached(groups: Sequence[AssurGroup]) -> list[AssurGroup]:
+def _attached(groups: Sequence[Subgraph]) -> list[Subgraph]:
     """Joins a group to the next where it does not hang on what is placed before it.
 
     By number a stiff frame determines itself, wherever it is.
     """
-    attached: list[AssurGroup] = []
+    attached: list[Subgraph] = []
     placed: set[str] = set()
-    waiting: AssurGroup | None = None
+    waiting: Subgraph | None = None
     for one in groups:
         group = one if waiting is None else _together(waiting, one)
         waiting = None if _hangs(group, placed) else group
@@ -370,11 +356,11 @@ def _attached(groups: Sequence[AssurGroup]) -> list[AssurGroup]:
     return attached
 
 
-def _together(one: AssurGroup, other: AssurGroup) -> AssurGroup:
-    return AssurGroup(one.entry, one.links + other.links, one.connections + other.connections)
+def _together(one: Subgraph, other: Subgraph) -> Subgraph:
+    return Subgraph(one.entry, one.links + other.links, one.connections + other.connections)
 
 
-def _hangs(group: AssurGroup, placed: set[str]) -> bool:
+def _hangs(group: Subgraph, placed: set[str]) -> bool:
     """Whether joints lead from placed links to all links of a group, which moves something."""
     if not group.links:
         # it only places its own slide
@@ -392,7 +378,7 @@ def _hangs(group: AssurGroup, placed: set[str]) -> bool:
     return not waiting
 
 
-def _by_structure(component: GraphComponent, kinds: Sequence[tuple[object, ...]]) -> list[int]:
+def _by_structure(component: Subgraph, kinds: Sequence[tuple[object, ...]]) -> list[int]:
     """Connections by their distance from the entry, then by type and surroundings.
 
     The order in which they are written decides only between connections that are otherwise

@@ -19,12 +19,13 @@ from math import comb, prod
 
 from mechkin_cli.mechanism import GROUND_NAME, Constraint, Frame, Joint, Mechanism, PairConstraint
 from mechkin_cli.structure import graph as errors
-from mechkin_cli.structure.assur import AssurGroup, assur_groups, coupled_groups
-from mechkin_cli.structure.graph import Block, CutJoint, SolverGraph, TreeEdge
+from mechkin_cli.structure.assur import assur_groups, coupled_groups
+from mechkin_cli.structure.graph import Block, Loop, SolverGraph, TreeEdge
 from mechkin_cli.structure.matching import strong_components
 from mechkin_cli.structure.network import (
     Connection,
     Reduction,
+    Subgraph,
     biconnected,
     connections_of,
     couplings_of,
@@ -58,8 +59,8 @@ class NothingSolved(Exception):
 
 
 def in_order(
-    groups: Sequence[AssurGroup], edges: Sequence[TreeEdge], place: Mapping[str, int]
-) -> list[list[AssurGroup]]:
+    groups: Sequence[Subgraph], edges: Sequence[TreeEdge], place: Mapping[str, int]
+) -> list[list[Subgraph]]:
     """Groups in the order of solution; those together that the tree makes depend on each other.
 
     `place` numbers the closings; first comes what has fewest of them, then what is numbered first.
@@ -90,7 +91,7 @@ def in_order(
     count = [len(some) for some in waits]
     ready = [key(p) for p in range(len(parts)) if not count[p]]
     heapify(ready)
-    order: list[list[AssurGroup]] = []
+    order: list[list[Subgraph]] = []
     while ready:
         p = heappop(ready)[2]
         order.append([groups[k] for k in parts[p]])
@@ -102,19 +103,20 @@ def in_order(
 
 
 def lay_blocks(
-    order: Sequence[Sequence[AssurGroup]],
+    order: Sequence[Sequence[Subgraph]],
     edges: Sequence[TreeEdge],
-    closings: Mapping[str, CutJoint],
+    closings: Mapping[str, tuple[Constraint, Loop]],
     place: Mapping[str, int],
     driven: Sequence[Freedom],
-) -> tuple[list[CutJoint], list[Block], set[Freedom]]:
-    """Closings in block order, the blocks, and the freedoms that are known in the end.
+) -> tuple[list[tuple[Constraint, Loop]], list[Block], set[Freedom]]:
+    """Closings with their loops in block order, the blocks, and the freedoms that are known in the
+    end.
 
     Raises:
         NothingSolved: a block has no unknowns.
     """
     solved = set(driven)
-    laid: list[CutJoint] = []
+    laid: list[tuple[Constraint, Loop]] = []
     blocks: list[Block] = []
     for part in order:
         connections = [c for group in part for c in group.connections]
@@ -122,15 +124,15 @@ def lay_blocks(
         if not names:
             continue
         some = [closings[name] for name in names]
-        members = sorted({k for closing in some for k, _ in closing.loop})
+        members = sorted({k for _, loop in some for k, _ in loop})
         freedoms = [(k, f) for k in members for f in range(edges[k].freedoms)]
         unknowns = tuple(freedom for freedom in freedoms if freedom not in solved)
-        equations = sum(closing.equations for closing in some)
+        equations = sum(closing.equations for closing, _ in some)
         if not unknowns:
             loops = [
-                [closing.name, *(edges[k].joint.name for k, _ in closing.loop)]
-                for closing in some
-                if closing.constraint.has_coordinates
+                [closing.name, *(edges[k].joint.name for k, _ in loop)]
+                for closing, loop in some
+                if closing.has_coordinates
             ]
             raise NothingSolved(connections, loops, equations)
         start = len(laid)
@@ -177,15 +179,15 @@ class TreePaths:
             self.depth[edge.child] = self.depth[edge.parent] + 1
         self.number = {edge.joint.name: k for k, edge in enumerate(edges) if not edge.hung}
 
-    def closing(self, constraint: Constraint) -> CutJoint:
-        """A constraint with the loop that it closes, or the joints that it is between."""
+    def loop(self, constraint: Constraint) -> Loop:
+        """The loop that a constraint closes, or the joints that it is between."""
         if constraint.terms:
             own = dict.fromkeys(self.number[term.joint.name] for term in constraint.terms)
-            return CutJoint(constraint, tuple((k, 1 if self.edges[k].forward else -1) for k in own))
+            return tuple((k, 1 if self.edges[k].forward else -1) for k in own)
         slides = [(self.number[slide.name], -1) for slide in constraint.slides]
-        return CutJoint(constraint, (*self._loop(constraint.first, constraint.second), *slides))
+        return (*self._between(constraint.first, constraint.second), *slides)
 
-    def _loop(self, one: str, other: str) -> tuple[tuple[int, int], ...]:
+    def _between(self, one: str, other: str) -> Loop:
         """Edges from where the paths part to the other link (+1), then to the one (-1)."""
         first: list[tuple[int, int]] = []
         second: list[tuple[int, int]] = []
@@ -207,7 +209,7 @@ class NothingCloses(Exception):
         super().__init__()
 
 
-def closings_of(group: AssurGroup, depth: Mapping[str, int]) -> list[Connection]:
+def closings_of(group: Subgraph, depth: Mapping[str, int]) -> list[Connection]:
     """The connections at which a group's loops are cut.
 
     `depth` is the number of tree edges from ground to each link that is placed before.
@@ -256,7 +258,7 @@ class _Sets:
         return link if link in top else ""
 
 
-def _joined(group: AssurGroup, joints: Sequence[Connection]) -> _Sets:
+def _joined(group: Subgraph, joints: Sequence[Connection]) -> _Sets:
     """The links that joints join, none of which may close a loop."""
     sets = _Sets(group.links)
     for number, c in enumerate(joints):
@@ -265,7 +267,7 @@ def _joined(group: AssurGroup, joints: Sequence[Connection]) -> _Sets:
     return sets
 
 
-def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> list[Connection]:
+def _loop(group: Subgraph, before: Sequence[Connection], last: Connection) -> list[Connection]:
     """The loop that a connection closes with some before it."""
     own = set(group.links)
 
@@ -288,7 +290,7 @@ def _loop(group: AssurGroup, before: Sequence[Connection], last: Connection) -> 
 
 
 def _most_even(
-    group: AssurGroup,
+    group: Subgraph,
     joints: Sequence[Connection],
     able: Sequence[Connection],
     chosen: Sequence[Connection],
@@ -426,7 +428,7 @@ def _groups(
     connections: Sequence[Connection],
     inputs: Sequence[tuple[str, str]],
     places: Iterable[Rates],
-) -> list[AssurGroup]:
+) -> list[Subgraph]:
     """The Assur groups of all components, each after those that it hangs on, with the couplings
     that drive them."""
     components = biconnected(connections, incidence(connections), GROUND_NAME)
@@ -440,7 +442,7 @@ def _groups(
     return groups
 
 
-def _closing_names(whole: Reduction, groups: Sequence[AssurGroup]) -> list[str]:
+def _closing_names(whole: Reduction, groups: Sequence[Subgraph]) -> list[str]:
     """The cut joints of all groups: fewest equations first, then as written."""
     depth = {GROUND_NAME: 0}
     chosen: dict[str, int] = {}
@@ -494,7 +496,7 @@ def _cut(
 def _laid(
     mechanism: Mechanism,
     whole: Reduction,
-    groups: Sequence[AssurGroup],
+    groups: Sequence[Subgraph],
     names: Sequence[str],
     inputs: Sequence[tuple[str, str]],
 ) -> SolverGraph:
@@ -511,7 +513,7 @@ def _laid(
         k = paths.number[name]
         driven.append((k, edges[k].joint.freedom_number(coordinate)))
     constraints = [PairConstraint.of(whole.joints[name]) for name in names]
-    closings = {c.name: paths.closing(c) for c in (*constraints, *whole.constraints)}
+    closings = {c.name: (c, paths.loop(c)) for c in (*constraints, *whole.constraints)}
     place = {name: k for k, name in enumerate(closings)}
     order = in_order(groups, edges, place)
     laid, blocks, solved = lay_blocks(order, edges, closings, place, driven)
@@ -524,4 +526,5 @@ def _laid(
         members = [c for group in groups for c in group.connections]
         concerned = tuple(c for c in members if c.name in on_none) or tuple(members)
         raise errors.undriven(mechanism, inputs, [(concerned, max(1, len(unknown)))])
-    return SolverGraph(tuple(edges), tuple(laid), tuple(blocks), tuple(driven), tuple(inputs))
+    cuts, loops = tuple(c for c, _ in laid), tuple(loop for _, loop in laid)
+    return SolverGraph(tuple(edges), cuts, loops, tuple(blocks), tuple(driven), tuple(inputs))

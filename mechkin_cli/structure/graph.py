@@ -61,27 +61,9 @@ class TreeEdge(NamedTuple):
         return 0 if self.hung else self.joint.type.freedoms
 
 
-class CutJoint(NamedTuple):
-    """A constraint that closes loops; `loop` holds the tree edges on the way to its second (+1)
-    and first link (-1), and its own slides (-1)."""
-
-    constraint: Constraint
-    loop: tuple[tuple[int, int], ...]
-
-    @property
-    def name(self) -> str:
-        """The constraint's name."""
-        return self.constraint.name
-
-    @property
-    def joint(self) -> Joint:
-        """The joint whose name it has."""
-        return self.constraint.joint
-
-    @property
-    def equations(self) -> int:
-        """Number of closing equations."""
-        return self.constraint.equations
+Loop = tuple[tuple[int, int], ...]
+"""The tree edges on the way to the second (+1) and first link (-1) of a constraint that closes a
+loop, and its own slides (-1)."""
 
 
 class Block(NamedTuple):
@@ -95,16 +77,22 @@ class Block(NamedTuple):
 
 
 class SolverGraph(NamedTuple):
-    """Tree edges in placing order (edge k carries link k), closings in block order, blocks.
+    """Tree edges in placing order (edge k carries link k); the constraints that close loops, in
+    block order, and their loops; blocks.
 
     `inputs` are (edge, freedom), `driven` the same as (joint, coordinate).
     """
 
     edges: tuple[TreeEdge, ...]
-    closings: tuple[CutJoint, ...]
+    closings: tuple[Constraint, ...]
+    loops: tuple[Loop, ...]
     blocks: tuple[Block, ...]
     inputs: tuple[tuple[int, int], ...]
     driven: tuple[tuple[str, str], ...]
+
+    def passed(self, block: Block) -> set[int]:
+        """The tree edges that a block's loops pass."""
+        return {edge for c in block.closings for edge, _ in self.loops[c]}
 
 
 def is_redundant(graph: SolverGraph) -> bool:
@@ -198,8 +186,8 @@ def undriven(
 def structure_of(graph: SolverGraph) -> object:
     """What two graphs of the same structure have in common."""
     edges = tuple((edge.joint.name, edge.parent, edge.child) for edge in graph.edges)
-    closings = tuple((closing.name, closing.loop) for closing in graph.closings)
-    return edges, closings, graph.blocks, graph.inputs
+    closings = tuple(closing.name for closing in graph.closings)
+    return edges, closings, graph.loops, graph.blocks, graph.inputs
 
 
 def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph:
@@ -232,11 +220,7 @@ def exchanged(
     """
     last = next(b for b, block in enumerate(graph.blocks) if unknown in block.unknowns)
     edge, _ = freed = graph.inputs[number]
-    moved = [
-        b
-        for b, block in enumerate(graph.blocks[:last])
-        if any(edge == passed for c in block.closings for passed, _ in graph.closings[c].loop)
-    ]
+    moved = [b for b, block in enumerate(graph.blocks[:last]) if edge in graph.passed(block)]
     first = min(moved, default=last)
     joined = graph.blocks[first : last + 1]
     unknowns = (freed, *(at for block in joined for at in block.unknowns if at != unknown))
@@ -264,9 +248,7 @@ def graph_of(mechanism: Mechanism, graph: SolverGraph) -> SolverGraph:
 
     edges = tuple(edge._replace(joint=renewed(edge.joint)) for edge in graph.edges)
     closings = tuple(
-        closing._replace(
-            constraint=others.get(closing.name) or PairConstraint.of(renewed(closing.joint))
-        )
+        others.get(closing.name) or PairConstraint.of(renewed(closing.joint))
         for closing in graph.closings
     )
     return graph._replace(edges=edges, closings=closings)

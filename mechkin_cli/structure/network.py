@@ -36,7 +36,6 @@ from mechkin_cli.mechanism import (
     Mechanism,
     PairConstraint,
     Part,
-    Spring,
     Vector,
     add,
     diagonal,
@@ -221,9 +220,9 @@ def connections_of(
     """
     driven = Counter(joint for joint, _ in inputs)
     sprung = {
-        load.joint
+        load.acts_at[0]
         for load in mechanism.loads
-        if isinstance(load, Spring) and load.joint and is_angle(load.coordinate or "")
+        if load.has_potential and load.acts_at and is_angle(load.acts_at[1])
     }
     found = [
         Connection(
@@ -282,17 +281,21 @@ def depths(connections: Sequence[Connection], known: Mapping[str, int]) -> dict[
     return depth
 
 
-class GraphComponent(NamedTuple):
-    """Connections of one component in their order; `entry` is its link nearest to ground."""
+class Subgraph(NamedTuple):
+    """Links, and the connections that hold them to each other and to the link `entry`, in order: a
+    component, or an Assur group, whose links are placed together by its connections; `entry` is
+    the component's link nearest to ground."""
 
     entry: str
+    links: tuple[str, ...]
     connections: tuple[Connection, ...]
 
-    @property
-    def links(self) -> tuple[str, ...]:
-        """Its links without the entry."""
-        ends = (link for c in self.connections for link in (c.first, c.second))
-        return tuple(link for link in dict.fromkeys(ends) if link != self.entry)
+    @classmethod
+    def of(cls, entry: str, connections: tuple[Connection, ...]) -> Subgraph:
+        """That of connections: with all links at their ends."""
+        ends = (link for c in connections for link in (c.first, c.second))
+        links = tuple(link for link in dict.fromkeys(ends) if link != entry)
+        return cls(entry, links, connections)
 
     @property
     def space(self) -> int:
@@ -307,13 +310,13 @@ class GraphComponent(NamedTuple):
 
 def biconnected(
     connections: Sequence[Connection], at: dict[str, list[int]], root: str
-) -> list[GraphComponent]:
+) -> list[Subgraph]:
     """The components of what is joined to the root; each after the one that holds its entry."""
     depth = {root: 0}
     low = {root: 0}
     walked: list[int] = []
     used: set[int] = set()
-    components: list[GraphComponent] = []
+    components: list[Subgraph] = []
     path = [(root, iter(at.get(root, ())), 0)]
     while path:
         link, ahead, start = path[-1]
@@ -336,7 +339,7 @@ def biconnected(
                 low[parent] = min(low[parent], low[link])
                 if low[link] >= depth[parent]:
                     members = tuple(connections[k] for k in sorted(walked[start:]))
-                    components.append(GraphComponent(parent, members))
+                    components.append(Subgraph.of(parent, members))
                     del walked[start:]
     return components[::-1]
 
@@ -386,7 +389,7 @@ def order_of(connections: Iterable[Connection]) -> int:
     return loop_order(tuple(sorted(c.joint for c in members)))
 
 
-def find_regions(component: GraphComponent, order: int) -> list[Region]:
+def find_regions(component: Subgraph, order: int) -> list[Region]:
     """The regions of lower order than the component's, the lowest first."""
     connections = component.connections
     at = incidence(connections)

@@ -46,7 +46,7 @@ from mechkin_cli.mechanism import (
     subtract,
 )
 from mechkin_cli.structure.matching import strong_components
-from mechkin_cli.structure.network import SPACE, Connection, GraphComponent, incidence
+from mechkin_cli.structure.network import SPACE, Connection, Subgraph, incidence
 from mechkin_cli.tolerances import LOOP_RANK, MOST_SPLIT_LINKS, RANK_WORK
 
 if TYPE_CHECKING:
@@ -280,7 +280,7 @@ Links = tuple[str, ...]
 
 
 def determined_sets(
-    component: GraphComponent, proposed: Sequence[Collection[str]], rates: Rates
+    component: Subgraph, proposed: Sequence[Collection[str]], rates: Rates
 ) -> tuple[list[Links], Links]:
     """The determined sets of a component in their order, from proposals in theirs; and the links
     that are in none.

@@ -6,14 +6,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.studies.results import (
-        Spread as Spread,
-        StudyFiles as StudyFiles,
-        StudyResults as StudyResults,
-    )
-    from mechkin_cli.studies.source import open_study as open_study
-    from mechkin_cli.studies.study import Study as Study, Workers as Workers, study_of as study_of
-    from mechkin_cli.studies.workers import end_without_warnings as end_without_warnings
+    from mechkin_cli.studies.results import *
+    from mechkin_cli.studies.source import *
+    from mechkin_cli.studies.study import *
+    from mechkin_cli.studies.workers import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

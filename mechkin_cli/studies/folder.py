@@ -21,7 +21,6 @@ from typing import Any, BinaryIO
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
-from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
 from mechkin_cli.tables import Claim
 
@@ -33,46 +32,31 @@ VARIANTS, ROWS = "variants", "rows"
 _UNFINISHED = ".unfinished"
 
 
-class Contents(NamedTuple):
-    """What a folder's results are of: equal contents have equal bytes.
-
-    Attributes:
-        sources: digests by what they are of (`mechanism`, `study`, ...).
-        variants: how many.
-        format: `csv` or `parquet`.
-        tables: headings of `variants`, and of `rows` where rows are kept.
-    """
-
-    sources: Mapping[str, str]
-    variants: int
-    format: str
-    tables: Mapping[str, Sequence[Heading]]
-
-    def record(self) -> dict[str, Any]:
-        """As plain data."""
-        return {
-            "sources": dict(self.sources),
-            "variants": self.variants,
-            "format": self.format,
-            "tables": {
-                name: [heading._asdict() for heading in headings]
-                for name, headings in self.tables.items()
-            },
-        }
-
-
 class StudyFolder:
     """A folder that this process alone writes a study to, inside `with`."""
 
-    def __init__(self, folder: Path, contents: Contents, file_format: Format, size: int) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        sources: Mapping[str, str],
+        variants: int,
+        tables: Mapping[str, Sequence[Heading]],
+        file_format: Format,
+        size: int,
+    ) -> None:
         """Args:
         folder: made as needed.
-        contents: what it is to hold.
+        sources: digests of what its results are of, by name (`mechanism`, `study`, ...); results
+            of equal sources, variants, tables and format have equal bytes.
+        variants: how many.
+        tables: headings of `variants`, and of `rows` where rows are kept.
         file_format: writes the files.
         size: variants of a piece, where the folder does not say yet.
         """
         self.folder = folder
-        self.contents = contents
+        self.sources = sources
+        self.variants = variants
+        self.tables = tables
         self.size = size
         self.is_complete = False
         self._format = file_format
@@ -118,25 +102,37 @@ class StudyFolder:
             for path in (self.folder / PIECES).glob(f"*{_UNFINISHED}"):
                 path.unlink()
 
+    def _record(self) -> dict[str, Any]:
+        """What the results are of, as plain data."""
+        return {
+            "sources": dict(self.sources),
+            "variants": self.variants,
+            "format": self._format.ending,
+            "tables": {
+                name: [heading._asdict() for heading in headings]
+                for name, headings in self.tables.items()
+            },
+        }
+
     @property
     def results(self) -> list[Path]:
         """The files of the whole study."""
-        return [self.folder / f"{name}.{self._format.ending}" for name in self.contents.tables]
+        return [self.folder / f"{name}.{self._format.ending}" for name in self.tables]
 
     @property
     def pieces(self) -> range:
         """Numbers of all pieces."""
-        return range(-(-self.contents.variants // self.size))
+        return range(-(-self.variants // self.size))
 
     def stretch(self, piece: int) -> tuple[int, int]:
         """Numbers of the variants of a piece: the first, and one after the last."""
-        return piece * self.size, min((piece + 1) * self.size, self.contents.variants)
+        return piece * self.size, min((piece + 1) * self.size, self.variants)
 
     def missing(self) -> list[int]:
         """Numbers of the pieces that are not there yet."""
         with refused(self.folder):
             there = {path.name for path in (self.folder / PIECES).iterdir()}
-        names = list(self.contents.tables)
+        names = list(self.tables)
         return [
             n for n in self.pieces if any(self._piece(name, n).name not in there for name in names)
         ]
@@ -147,7 +143,7 @@ class StudyFolder:
         Raises:
             UsageError: it cannot be written; the others stay.
         """
-        for name, headings in self.contents.tables.items():
+        for name, headings in self.tables.items():
             content = self._format.piece(headings, records[name])
             path = self._piece(name, piece)
             with refused(path):
@@ -155,7 +151,7 @@ class StudyFolder:
 
     def read(self, name: str) -> Iterator[Records]:
         """Stretches of the lines of a result, in order; of a finished study from its only file."""
-        headings = self.contents.tables[name]
+        headings = self.tables[name]
         for path in self._files(name):
             with refused(path, "read"):
                 try:
@@ -172,7 +168,7 @@ class StudyFolder:
         Raises:
             UsageError: a result cannot be written; all pieces stay.
         """
-        for (name, headings), path in zip(self.contents.tables.items(), self.results, strict=True):
+        for (name, headings), path in zip(self.tables.items(), self.results, strict=True):
             pieces = [self._piece(name, number) for number in self.pieces]
             with refused(path):
                 _write_whole(path, partial(self._format.join, pieces, headings))
@@ -205,14 +201,14 @@ class StudyFolder:
         return dict(found)
 
     def _check(self, found: Mapping[str, Any]) -> None:
-        own = json.loads(json.dumps(self.contents.record()))
+        own = json.loads(json.dumps(self._record()))
         if all(found.get(key) == value for key, value in own.items()):
             return
         theirs = found["sources"]
         changed = [
             name
-            for name in dict.fromkeys((*self.contents.sources, *theirs))
-            if self.contents.sources.get(name) != theirs.get(name)
+            for name in dict.fromkeys((*self.sources, *theirs))
+            if self.sources.get(name) != theirs.get(name)
         ]
         changed += [key for key in ("variants", "format") if found.get(key) != own[key]]
         what = ", ".join(changed) or "columns"
@@ -222,7 +218,7 @@ class StudyFolder:
         )
 
     def _write_manifest(self) -> None:
-        record = self.contents.record() | {"piece": self.size, "complete": self.is_complete}
+        record = self._record() | {"piece": self.size, "complete": self.is_complete}
         text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
         _write_whole(self.folder / MANIFEST, partial(_put, text.encode()))
 

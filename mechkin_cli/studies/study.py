@@ -25,7 +25,7 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import check_threads
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
-from mechkin_cli.studies.folder import VARIANTS, Contents, StudyFolder, spare
+from mechkin_cli.studies.folder import VARIANTS, StudyFolder, spare
 from mechkin_cli.studies.formats import Records, format_of, joined
 from mechkin_cli.studies.plan import study_plan
 from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
@@ -151,9 +151,9 @@ class Study:
         wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
         return max(1, min(MOST_IN_PIECE, PIECE_NUMBERS // (self.model.problem.motion.rows * wide)))
 
-    def contents(self, file_format: str) -> Contents:
-        """What a folder with this study's results holds."""
-        document, known = self.model.built.read.document, self.model.problem.parameters
+    def _sources(self) -> dict[str, str]:
+        """Digests of what the results of this study follow from."""
+        document, known = self.model.built.document, self.model.problem.parameters
         values = dict(document.overrides) | {n: repr(known[n].value) for n in known}
         study = dict(self.source.document.data)
         for key in ("mechanism", "name"):
@@ -165,8 +165,7 @@ class Study:
             "version": __version__,
         }
         tables = {**document.tables, **self.source.document.tables}
-        sources |= {name: _digest(content) for name, content in tables.items()}
-        return Contents(sources, self.variants, file_format, self.question.tables)
+        return sources | {name: _digest(content) for name, content in tables.items()}
 
     def trial(self, workers: Workers, file_format: str) -> tuple[int, float, float, float]:
         """Computes some variants, spread over all, as an estimate of the time and the size of all:
@@ -261,15 +260,18 @@ class Study:
                 cannot be written; pieces that were written stay.
         """
         workers, kind = _checked(workers), format_of(file_format)
-        spare(folder, [*self.model.built.read.document.files, *self.source.document.files])
-        with StudyFolder(folder, self.contents(file_format), kind, self.piece) as output:
+        spare(folder, [*self.model.built.document.files, *self.source.document.files])
+        tables = self.question.tables
+        with StudyFolder(
+            folder, self._sources(), self.variants, tables, kind, self.piece
+        ) as output:
             output.begin(again)
             missing = [] if output.is_complete else output.missing()
             tasks = [Task(number, *output.stretch(number)) for number in missing]
             done = self.variants - sum(task.end - task.begin for task in tasks)
-            for task, tables in self._whole_pieces(tasks, workers, progress, done):
-                output.put(task.piece, tables)
-            headings = self.question.tables[VARIANTS]
+            for task, records in self._whole_pieces(tasks, workers, progress, done):
+                output.put(task.piece, records)
+            headings = tables[VARIANTS]
             if not output.is_complete:
                 output.finish()
             seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)

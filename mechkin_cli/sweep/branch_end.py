@@ -28,7 +28,7 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.retracing import Touched
+    from mechkin_cli.sweep.retracing import SingularPlace
 
 
 NEAR_SINGULAR = "a singular position lies next to that place; sweep from its other side"
@@ -106,7 +106,7 @@ _TURNED_BACK = {
 """What the inputs may come to where they turn back: code, words, hint."""
 
 
-def retraced_notes(session: Session, touched: Sequence[Touched]) -> list[Diagnostic]:
+def retraced_notes(session: Session, touched: Sequence[SingularPlace]) -> list[Diagnostic]:
     """The places at which the inputs come to a dead centre or a branch point and turn back."""
     notes = []
     for kind, (code, name, hint) in _TURNED_BACK.items():

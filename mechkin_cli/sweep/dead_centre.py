@@ -36,6 +36,7 @@ from mechkin_cli.session import (
     RowInputs,
     precise_inputs,
 )
+from mechkin_cli.sweep.messages import condition_text, named_rows
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
@@ -349,16 +350,12 @@ def _digits(parts: Floats, known: Bools) -> NDArray[np.int64]:
 
 def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Exception) -> Diagnostic:
     """Of rows whose numbers are not in a text, or in it in a way that no tape holds."""
-    first = numbers[0] + 1
-    where = (
-        f"row {first}" if numbers.size == 1 else f"{numbers.size} rows, the first is row {first},"
-    )
     return Diagnostic(
         "few-digits",
         "note",
-        f"{where} may have few digits of rates, accelerations and forces; how many could not be "
-        f"measured: {lost}",
-        measured=f"condition {condition[numbers].max():.2g}",
+        f"{named_rows(numbers)} may have few digits of rates, accelerations and forces; how many "
+        f"could not be measured: {lost}",
+        measured=condition_text(float(condition[numbers].max())),
         limit=f"{CONDITION_FEW_DIGITS:g}",
         hint="their parts that are wrong are about 1e-16 of the condition's square",
     )
@@ -373,10 +370,8 @@ def _few_digits_note(
     rows = np.flatnonzero(few)
     worst = rows[np.argmin(np.min([found[rows] for found in digits.values()], axis=0))]
     row = numbers[worst] + 1
-    if rows.size == 1:
-        where = f"row {row} has few digits"
-    else:
-        where = f"{rows.size} rows have few digits, the first is row {numbers[rows[0]] + 1}"
+    where = f"{named_rows(numbers[rows])} {'has' if rows.size == 1 else 'have'} few digits"
+    if rows.size > 1:
         where += f"; fewest has row {row}"
     told = ", ".join(f"{name} {found[worst]}" for name, found in digits.items())
     return Diagnostic(
@@ -384,7 +379,7 @@ def _few_digits_note(
         "warning",
         f"{where}: {told}, as measured in double-double, in parts of the largest of each kind in "
         "the row",
-        measured=f"condition {condition[row - 1]:.2g}",
+        measured=condition_text(float(condition[row - 1])),
         hint="mechkin analyze --errors measures every cell; drive another coordinate there, or end "
         "the sweep before",
         numbers=tuple(Number(f"digits of {n}", float(f[worst])) for n, f in digits.items()),
@@ -392,21 +387,20 @@ def _few_digits_note(
 
 
 def _note(rows: SweepRows) -> Diagnostic:
-    standing = [before.row + 1 for before in rows.dead_centres]
+    standing = [before.row for before in rows.dead_centres]
     numbers = list(dict.fromkeys(standing))
-    where = f"row {numbers[0]} stands" if len(numbers) == 1 else f"{len(numbers)} rows stand"
-    first = "" if len(numbers) == 1 else f", the first is row {numbers[0]}"
+    where = f"{named_rows(sorted(numbers))} {'stands' if len(numbers) == 1 else 'stand'}"
     double = [number for number in numbers if standing.count(number) > 1]
     both = ""
     if double:
         both = (
-            f"; it is undecided on which of two branches row {double[0]} is, so what is infinite "
-            "with another sign on each is empty, too"
+            f"; it is undecided on which of two branches row {double[0] + 1} is, so what is "
+            "infinite with another sign on each is empty, too"
         )
     return Diagnostic(
         "at-dead-centre",
         "warning",
-        f"{where} at a dead centre of the inputs{first}: cells that grow without bound towards it "
+        f"{where} at a dead centre of the inputs: cells that grow without bound towards it "
         f"say inf, and others that depend on rates or reactions are empty{both}",
         hint="end the sweep before it, or drive another coordinate",
     )

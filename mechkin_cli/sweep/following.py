@@ -16,6 +16,14 @@ from mechkin_cli.plan import TrackEnd, needs_all_links
 from mechkin_cli.record import replace
 from mechkin_cli.session import ORIENTATION, turn_count
 from mechkin_cli.structure import SolverGraph
+from mechkin_cli.sweep.retracing import (
+    BranchPlace,
+    SingularPlace,
+    closed,
+    retraced,
+    straight_to,
+    unclear_rows,
+)
 from mechkin_cli.sweep.rows import SweepRows
 
 if TYPE_CHECKING:
@@ -24,21 +32,26 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.session import Followed, Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.retracing import Touched
+
+_LINE_SECTIONS = 1 << 20
+"""Sections of a line of a grid at most."""
 
 
 def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = False) -> SweepRows:
-    """Guesses for the rows on the branch through the start, onward and backward from its row.
+    """Guesses for the rows on the branch through the start, onward and backward from its row; of a
+    grid line by line.
 
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
-    count = session.inputs.values.shape[1]
+    count, grid = session.inputs.values.shape[1], session.problem.motion.grid
     if start.state is None:
         rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
         rows.status[:] = start.status
         return rows
-    first = _first_row(session, start, every_row)
-    if first is not None:
+    first = None if grid is not None else _first_row(session, start, every_row)
+    if grid is not None:
+        rows = _Lines(session, grid[1], every_row).follow(start)
+    elif first is not None:
         followed = session.follow_rows(first, every_row=every_row)
         rows = SweepRows.followed(followed)
         explain_way(session, followed, rows, every_row)
@@ -55,6 +68,96 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     return rows
 
 
+class _Lines:
+    """The rows of a grid while they are followed: lines of a width, on which only the fast of two
+    inputs moves.
+
+    One line after the other is followed both ways from a row that is reached straight from the line
+    before, so that the end of the branch on one line does not end the others.
+    """
+
+    def __init__(self, session: Session, width: int, every_row: bool) -> None:
+        self.session, self.width, self.every_row = session, width, every_row
+        count = session.inputs.values.shape[1]
+        self.lines = count // width
+        self.rows = SweepRows.without_guesses(
+            session.layout.states, turn_count(session.plan), count
+        )
+
+    def follow(self, start: AssemblyStart) -> SweepRows:
+        """All rows, from the assembly at its row on."""
+        assert start.state is not None
+        self._along(start.row, start.state, None)
+        first = start.row // self.width
+        for step, lines in ((1, range(first + 1, self.lines)), (-1, range(first - 1, -1, -1))):
+            row = start.row
+            for line in lines:
+                found = self._onto(line, row, step)
+                if found is None:
+                    self._explain(line, step)
+                    break
+                row = found
+        from mechkin_cli.sweep.branch_end import without_repeats
+
+        self.rows.diagnostics = without_repeats(self.rows.diagnostics)
+        return self.rows
+
+    def _along(self, row: int, state: Floats, turn: Floats | None) -> None:
+        """Follows the line of a row from there both ways."""
+        first = row - row % self.width
+        for step, last in ((-1, first), (1, first + self.width - 1)):
+            followed = self.session.follow_rows(
+                state, row, step, every_row=self.every_row, turn=turn, last=last
+            )
+            end = last + step
+            part = self.rows.part(slice(row, end if end >= 0 else None, step))
+            part.take(followed, 0)
+            part.section *= step
+            part.nodes += followed.steps
+            explain_way(self.session, followed, part, self.every_row)
+            self.rows.nodes = part.nodes
+        if self.session.problem.assembly.straight:
+            # sides are compared within a section: a line has its own
+            self.rows.section[first : first + self.width] += _LINE_SECTIONS * first
+
+    def _onto(self, line: int, near: int, step: int) -> int | None:
+        """Follows a line from the row next to that of the line before which lies nearest to `near`
+        and leads there; the row, None where none does."""
+        for row in self._reached(line - step, near):
+            to = int(row) + step * self.width
+            inputs = np.ascontiguousarray(self.session.inputs.values[:, to])
+            found = straight_to(self.session, self._place(int(row)), inputs)
+            if found is not None:
+                self._along(to, found.state, found.turn)
+                return to
+        return None
+
+    def _reached(self, line: int, near: int) -> NDArray[np.intp]:
+        """The rows of a line that are reached, in the order of their distance from one's column."""
+        rows = np.arange(line * self.width, (line + 1) * self.width)
+        rows = rows[self.rows.reached[rows]]
+        return rows[np.argsort(np.abs(rows % self.width - near % self.width), kind="stable")]
+
+    def _place(self, row: int) -> BranchPlace:
+        inputs = np.ascontiguousarray(self.session.inputs.values[:, row])
+        turn = np.ascontiguousarray(self.rows.turns[:, row])
+        return BranchPlace(inputs, closed(self.session, self.rows, row), turn)
+
+    def _explain(self, line: int, step: int) -> None:
+        """Says why no row of a line is reached, and gives it and those behind it their status."""
+        from mechkin_cli.sweep.branch_end import explain_end
+
+        reached = np.sort(self._reached(line - step, 0))
+        row = int(reached[-1 if step > 0 else 0])
+        start = self._place(row)
+        to = self.session.inputs.values[:, row + step * self.width]
+        path = np.stack([start.inputs, to], axis=1)
+        followed = self.session.follow(path, start.state, every_row=True)
+        rest = self.rows.part(slice(row, None, step))
+        values = np.ascontiguousarray(self.session.inputs.values[:, rest.numbers])
+        explain_end(self.session, values, followed, rest)
+
+
 def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row: bool) -> None:
     """Goes on where the inputs turn back at a dead centre or a branch point; says which branch
     points were passed, at which places the inputs turn back, and what ended the branch, if it
@@ -64,9 +167,8 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
     if not (turning.size or followed.crossings or followed.end != TrackEnd.FINISHED):
         return
     from mechkin_cli.sweep import branch_end
-    from mechkin_cli.sweep.retracing import retraced, unclear_rows
 
-    touched: list[Touched] = []
+    touched: list[SingularPlace] = []
     passed: list[Floats] = []
     first, way = 0, followed
     onward: Followed | None = followed
@@ -199,16 +301,14 @@ def _needed_blocks(problem: Problem, graph: SolverGraph, wanted: list[Wanted]) -
     links = {link for quantity in wanted for link in _links_of(problem.mechanism, quantity)}
     needed = {b for link in links for b in blocks_of(link)}
     for b, block in enumerate(graph.blocks):
-        joints = {
-            graph.edges[k].joint.name for c in block.closings for k, _ in graph.closings[c].loop
-        }
+        joints = {graph.edges[k].joint.name for k in graph.passed(block)}
         joints |= {graph.closings[c].name for c in block.closings}
         if joints & set(problem.follow or ()):
             needed.add(b)
     front = list(needed)
     for b in front:
         for c in graph.blocks[b].closings:
-            placed = graph.closings[c].constraint.placed
+            placed = graph.closings[c].placed
             more = {b for link in placed for b in blocks_of(link)} - needed
             needed |= more
             front += more
@@ -221,7 +321,7 @@ def _hanging_blocks(graph: SolverGraph) -> dict[str, int]:
         link: b
         for b, block in enumerate(graph.blocks)
         for c in block.closings
-        for link in graph.closings[c].constraint.links
+        for link in graph.closings[c].links
     }
 
 
@@ -263,9 +363,8 @@ def _note(graph: SolverGraph, left_out: Sequence[int]) -> Diagnostic:
     names = []
     for b in left_out:
         for c in graph.blocks[b].closings:
-            closing = graph.closings[c]
-            loop = [graph.edges[k].joint.name for k, _ in closing.loop]
-            names.append(", ".join(sorted({*loop, closing.name})))
+            loop = [graph.edges[k].joint.name for k, _ in graph.loops[c]]
+            names.append(", ".join(sorted({*loop, graph.closings[c].name})))
     loops = "the loop" if len(names) == 1 else "the loops"
     left = "is left out" if len(names) == 1 else "are left out"
     return Diagnostic(

@@ -51,9 +51,16 @@ and messages."""
 def verdict_quantities(problem: Problem) -> list[Wanted]:
     """What forces with friction are judged by."""
     mechanism = problem.mechanism
-    if not mechanism.frictions:
-        return []
-    return [*friction_states(mechanism), SELF_LOCKING, REACTION_LEVEL, *_holding(problem)]
+    found = _stopping(problem)
+    if mechanism.frictions:
+        found += [*friction_states(mechanism), SELF_LOCKING, *_holding(problem)]
+    return [REACTION_LEVEL, *found] if found else []
+
+
+def _stopping(problem: Problem) -> list[Wanted]:
+    """What would hold the freedoms that constraints do not stop to first order."""
+    known = problem.quantities()
+    return [known[one.holding] for one in problem.stopped]
 
 
 def _holding(problem: Problem) -> list[Wanted]:
@@ -85,6 +92,35 @@ def friction_verdict(result: RunRows) -> FrictionVerdict:
         )
         diagnostics.append(Diagnostic("self-locking", "note", text))
     return lost, unfounded, diagnostics
+
+
+def unsupported(result: RunRows) -> FrictionVerdict:
+    """Rows (rows,) whose loads push along a motion that constraints do not stop to first order,
+    twice, and messages."""
+    rows, problem = result.row_states, result.problem
+    judged = rows.reached & has_rates(rows.status)
+    lost, diagnostics = np.zeros(judged.size, dtype=bool), []
+    for one in problem.stopped:
+        unit = result.session.layout.length if one.turns else 1.0
+        level = result.columns[REACTION_LEVEL.name][0]
+        holding = np.abs(result.columns[one.holding][0])
+        where = judged & (holding > tolerances.UNIQUE_CELL * level * unit)
+        if where.any():
+            dimension = MOMENT if one.turns else FORCE
+            most = float(problem.units.from_si(float(np.max(holding[where])), dimension))
+            diagnostics.append(
+                Diagnostic(
+                    Status.unsupported.label,
+                    "warning",
+                    f"{one.words}, and the loads push it in {_rows(where)}: no finite reactions "
+                    "hold it; forces stay empty",
+                    measured=f"{most:.6g} {problem.units.label(dimension)}",
+                    limit=f"{tolerances.UNIQUE_CELL:g} of the largest reaction",
+                    hint="support it by a constraint more, or take the load's part away",
+                )
+            )
+        lost |= where
+    return lost, lost, diagnostics
 
 
 Findings = Iterator[tuple["Bools", Diagnostic]]
@@ -258,22 +294,41 @@ def _rows(where: Bools) -> str:
 
 
 def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
-    """What forces with friction are judged by, to be read in the run of `wanted`."""
-    if not (demand & Demand.FORCES and problem.mechanism.frictions):
+    """What forces are judged by beside reactions, to be read in the run of `wanted`."""
+    if not (demand & Demand.FORCES and is_judged(problem)):
         return []
     known = {quantity.name for quantity in wanted}
     return [q for q in verdict_quantities(problem) if q.name not in known]
 
 
+def is_judged(problem: Problem) -> bool:
+    """Whether forces may have no value in rows that have rates."""
+    return bool(problem.mechanism.frictions or problem.stopped)
+
+
+def _judged(result: RunRows) -> FrictionVerdict:
+    """The verdict on all rows, whose statuses and messages the result then has."""
+    rows = result.row_states
+    loose, unfounded, said = unsupported(result)
+    lost = loose
+    if result.problem.mechanism.frictions:
+        undecided, empty, more = friction_verdict(result)
+        rows.status[undecided] = Status.friction_undecided
+        lost, unfounded, said = loose | undecided, unfounded | empty, said + more
+    rows.status[loose] = Status.unsupported
+    rows.diagnostics += said
+    return lost, unfounded, said
+
+
 class FrictionRows:
-    """What friction makes of the rows of one result."""
+    """Rows of one result whose forces have no value for their friction, or for want of support."""
 
     def __init__(self) -> None:
         self.verdict: FrictionVerdict | None = None
 
     @property
     def is_lost(self) -> bool:
-        """Whether a row has no forces for want of a friction."""
+        """Whether a row has no forces."""
         return self.verdict is not None and bool(self.verdict[0].any())
 
     def beside(self, problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
@@ -282,16 +337,14 @@ class FrictionRows:
 
     def judge(self, result: RunRows, wanted: Iterable[Wanted], demand: Demand) -> None:
         """Judges the rows once; empties forces, new and known, that have no ground."""
-        if not (demand & Demand.FORCES and result.problem.mechanism.frictions):
+        if not (demand & Demand.FORCES and is_judged(result.problem)):
             return
         read = list(wanted)
         is_first = self.verdict is None
         if self.verdict is None:
-            self.verdict = friction_verdict(result)
-        lost, unfounded, diagnostics = self.verdict
+            self.verdict = _judged(result)
+        _, unfounded, _ = self.verdict
         if is_first:
-            result.row_states.diagnostics += diagnostics
-            result.row_states.status[lost] = Status.friction_undecided
             known = result.problem.quantities()
             read += [known[name] for name in result.columns if name in known]
             if result.power_error.size and unfounded.any():

@@ -20,11 +20,9 @@ from mechkin_cli.kernel.functions import cos
 from mechkin_cli.mechanism import (
     ACTUATION,
     BEARING_KINDS,
-    Damper,
     is_written,
     quantities_read,
     undefined_laws,
-    varying,
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
@@ -37,6 +35,8 @@ from mechkin_cli.verdict import CONDITION_LIMITS, Status
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
+
+    from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Joint, Mechanism, Problem, Wanted
     from mechkin_cli.session import Session
@@ -107,8 +107,7 @@ def _advanced(session: Session, both: Floats) -> set[tuple[int, int]]:
                     found.add((carrier.edge, carrier.first_freedom + number))
     edges = {edge for edge, _ in found}
     for block in graph.blocks:
-        loops = {edge for c in block.closings for edge, _ in graph.closings[c].loop}
-        if edges & loops:
+        if edges & graph.passed(block):
             found.update(block.unknowns)
             edges.update(edge for edge, _ in block.unknowns)
     return found
@@ -119,7 +118,7 @@ def redundancy_note(result: RunRows, asked: Sequence[Wanted]) -> Diagnostic:
     are unique nevertheless."""
     graph = result.graph
     count = sum(block.equations - len(block.unknowns) for block in graph.blocks)
-    joints = sorted({graph.edges[k].joint.name for c in graph.closings for k, _ in c.loop})
+    joints = sorted({graph.edges[k].joint.name for loop in graph.loops for k, _ in loop})
     joints = sorted(filter(is_written, {*joints, *(c.name for c in graph.closings)}))
     constraints = "one redundant constraint" if count == 1 else f"{count} redundant constraints"
     free = "free a joint to make them unique (a sphere for a pin, a cylinder for a slide)"
@@ -167,6 +166,18 @@ def _is_unique(result: RunRows, text: str) -> bool:
     return bool(np.isfinite(unique_cells(values(result), others, disturbed)).all())
 
 
+def first_order_note(problem: Problem) -> Diagnostic:
+    """Freedoms that loops stop, but not to first order: which motion the rows are of."""
+    words = "; ".join(dict.fromkeys(one.words for one in problem.stopped))
+    return Diagnostic(
+        "first-order-motion",
+        "note",
+        f"{words}, wherever the inputs take it: play in the joints lets it go far, and it needs a "
+        "stiff support; the rows are of the motion in which it rests",
+        hint="mobility tells which motions meet; a constraint more in that direction stops it",
+    )
+
+
 def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
     """Rows next to singular positions, or whose rank is unclear; `condition` (rows,)."""
     found = []
@@ -181,15 +192,13 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
         if not numbers.size:
             continue
         worst = float(np.max(np.nan_to_num(condition[numbers], nan=np.inf)))
-        where = f"row {numbers[0] + 1}" if numbers.size == 1 else f"{numbers.size} rows"
-        first = "" if numbers.size == 1 else f", the first is row {numbers[0] + 1}"
         verb = "is" if numbers.size == 1 else "are"
         found.append(
             Diagnostic(
                 status.label,
                 "warning",
-                f"{where} {verb} {status.label}{first}: {cost}",
-                measured=f"condition {worst:.2g}",
+                f"{named_rows(numbers)} {verb} {status.label}: {cost}",
+                measured=condition_text(worst),
                 limit=f"{limit:g}",
                 hint="move the sweep by a fraction of its step, or keep away from the singular "
                 "position",
@@ -199,6 +208,12 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
     return found
 
 
+def condition_text(value: float) -> str:
+    """A condition as measured; of one beyond the reach of doubles that it is."""
+    most = 1.0 / np.finfo(float).eps
+    return f"condition {value:.2g}" if value <= most else f"condition above {most:.2g}"
+
+
 def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     """Rows whose loops did not close."""
     failed = np.flatnonzero(rows.status == Status.not_converged)
@@ -206,7 +221,7 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     return Diagnostic(
         "not-converged",
         "error",
-        f"{failed.size} rows did not close, the first is row {failed[0] + 1}",
+        f"{named_rows(failed)} did not close",
         measured=f"residual {worst:.2g}",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint="this may be a special position; move the sweep by a fraction of its step",
@@ -244,12 +259,12 @@ def unrated_notes(
 def _of_motion(mechanism: Mechanism) -> str:
     """The forces that there are by rates alone."""
     masses = [link.name for link in mechanism.links.values() if link.has_mass]
-    laws = any(amount.moving for load in mechanism.loads for amount in varying(load))
+    moving = [load for load in mechanism.loads if load.reads_rates]
     parts = {
         f"the inertia forces of {listed(masses)}": bool(masses),
-        "those of dampers": any(isinstance(load, Damper) for load in mechanism.loads),
+        "those of dampers": any(load.dissipates for load in moving),
         "friction that slides": bool(mechanism.frictions),
-        "those of loads that read rates": laws,
+        "those of loads that read rates": any(not load.dissipates for load in moving),
     }
     *others, last = (words for words, there in parts.items() if there)
     return f"{', '.join(others)} and {last}" if others else last
@@ -300,7 +315,7 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
 
 
 SHOWN = 6
-"""Rows that a message names one by one."""
+"""Ranges of rows that a message names."""
 
 
 def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
@@ -336,14 +351,16 @@ def actuation_notes(result: RunRows) -> list[Diagnostic]:
     names = ", ".join(".".join(pair) for pair in drives.actuators)
     notes = []
     if lost.any():
+        where = named_rows(np.flatnonzero(lost))
         text = (
-            f"the actuators {names} are a singular set in {_rows(lost)}: the mechanism can move "
+            f"the actuators {names} are a singular set in {where}: the mechanism can move "
             f"there while all of them rest; their efforts and the reactions stay empty"
         )
         notes.append(_note("singular-actuators", result, lost, text, tolerances.ACTUATORS_AT_REST))
     if near.any():
+        where = named_rows(np.flatnonzero(near))
         text = (
-            f"the actuators {names} are next to a singular set in {_rows(near)}: their efforts "
+            f"the actuators {names} are next to a singular set in {where}: their efforts "
             "are large and keep fewer than nine digits"
         )
         limit = 1.0 / tolerances.CONDITION_NEAR_SINGULAR
@@ -370,13 +387,21 @@ def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> D
     )
 
 
-def _rows(rows: Bools) -> str:
-    numbers = [str(int(k) + 1) for k in np.flatnonzero(rows)]
-    if len(numbers) == 1:
-        return f"row {numbers[0]}"
-    if len(numbers) <= SHOWN:
-        return f"rows {', '.join(numbers[:-1])} and {numbers[-1]}"
-    return f"{len(numbers)} rows, the first is row {numbers[0]}"
+def named_rows(rows: Sequence[int] | NDArray[np.intp]) -> str:
+    """Rows, by numbers from 0 that rise, as the numbers from 1 of their ranges.
+
+    Example:
+        >>> named_rows([3, 4, 5, 8])
+        'rows 4 to 6 and 9'
+    """
+    numbers = np.asarray(rows) + 1
+    ranges = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
+    words = [f"{each[0]} to {each[-1]}" if each.size > 1 else f"{each[0]}" for each in ranges]
+    if len(words) > SHOWN:
+        left = sum(each.size for each in ranges[SHOWN:])
+        words[SHOWN:] = [f"{left} more up to row {numbers[-1]}"]
+    first = "row" if numbers.size == 1 else "rows"
+    return f"{first} {' and '.join(filter(None, (', '.join(words[:-1]), words[-1])))}"
 
 
 def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:

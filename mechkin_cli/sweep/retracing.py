@@ -31,40 +31,35 @@ SAMPLES = 65
 and again about the farthest of them."""
 
 
-class Touched(NamedTuple):
-    """A place at which the inputs turn back.
+class SingularPlace(NamedTuple):
+    """A dead centre or a branch point at which the inputs turn back.
 
     Attributes:
-        row: the row there, or the last one before it.
-        kind: a dead centre or a branch point.
+        kind: which of them.
         inputs: (inputs,) in kernel units.
+        state: (states,) there, where they are known.
+        row: the row there, or the last one before it.
         is_row: whether the row itself stands there.
     """
 
-    row: int
     kind: PassageEnd
     inputs: Floats
-    is_row: bool
+    state: Floats | None = None
+    row: int = 0
+    is_row: bool = False
 
     def is_at(self, inputs: Floats) -> bool:
         """Whether some inputs (inputs,) are those of the place."""
         off = float(np.abs(inputs - self.inputs).max(initial=0.0))
         return off <= tolerances.BEFORE_DEAD_CENTRE[1]
 
-
-class _Singular(NamedTuple):
-    """A dead centre or a branch point, and the states (states,) there where they are known."""
-
-    kind: PassageEnd
-    inputs: Floats
-    state: Floats | None
-
     @property
     def is_dead_centre(self) -> bool:
+        """Whether it is a dead centre."""
         return self.kind == PassageEnd.DEAD_CENTRE
 
 
-class Place(NamedTuple):
+class BranchPlace(NamedTuple):
     """A place on the branch: inputs, states, turns and the correction that is left."""
 
     inputs: Floats
@@ -75,7 +70,7 @@ class Place(NamedTuple):
 
 def retraced(
     session: Session, rows: SweepRows, followed: Followed, first: int, *, every_row: bool
-) -> tuple[Touched, Followed | None, int] | None:
+) -> tuple[SingularPlace, Followed | None, int] | None:
     """Goes on behind a place at which the inputs turn back, where the way ended at one.
 
     Args:
@@ -101,7 +96,7 @@ def retraced(
     if ending is None and beside.size:
         places = np.concatenate([values[:, beside], about[:, None]], axis=1)
         about = places[:, np.argmax(_distance(places, values[:, base]))]
-    start = Place(values[:, base], closed(session, rows, base), rows.turns[:, base])
+    start = BranchPlace(values[:, base], closed(session, rows, base), rows.turns[:, base])
     place = _singular_place(session, start, about)
     if place is None or not (place.is_dead_centre or session.problem.assembly.straight):
         return None
@@ -128,8 +123,8 @@ def retraced(
         return None
     close = np.arange(base + 1, behind)
     row = int(close[np.argmin(away[close])]) if close.size else last
-    touched = Touched(
-        int(rows.numbers[row]), place.kind, place.inputs, bool(close.size and away[row] <= near)
+    touched = place._replace(
+        row=int(rows.numbers[row]), is_row=bool(close.size and away[row] <= near)
     )
     if on is None:
         return touched, None, behind
@@ -187,7 +182,7 @@ def closed(session: Session, rows: SweepRows, row: int) -> Floats:
     return np.ascontiguousarray((batch.states if batch.good[0] else guess)[:, 0])
 
 
-def straight_to(session: Session, start: Place, inputs: Floats) -> Place | None:
+def straight_to(session: Session, start: BranchPlace, inputs: Floats) -> BranchPlace | None:
     """From a place straight to some inputs; None where the branch does not lead there."""
     if not (inputs != start.inputs).any():
         return start
@@ -199,10 +194,10 @@ def straight_to(session: Session, start: Place, inputs: Floats) -> Place | None:
     state = (batch.states if batch.good[0] else found.guess[:, 1:])[:, 0]
     assert found.turns is not None
     turn = np.ascontiguousarray(found.turns[:, 1])
-    return Place(inputs, np.ascontiguousarray(state), turn, float(found.limit[1]))
+    return BranchPlace(inputs, np.ascontiguousarray(state), turn, float(found.limit[1]))
 
 
-def _singular_place(session: Session, start: Place, about: Floats) -> _Singular | None:
+def _singular_place(session: Session, start: BranchPlace, about: Floats) -> SingularPlace | None:
     """The dead centre or branch point at which the way from a place to some inputs and a little
     farther on ends, or which it passes, if it lies there."""
     far, near = tolerances.BEFORE_DEAD_CENTRE
@@ -212,9 +207,9 @@ def _singular_place(session: Session, start: Place, about: Floats) -> _Singular 
         return None
     beyond = np.stack([start.inputs, about + (far / size) * came], axis=1)
     found = session.follow(beyond, start.state, every_row=True)
-    places = [_Singular(PassageEnd.BRANCH_POINT, inputs, None) for _, inputs in found.crossings]
+    places = [SingularPlace(PassageEnd.BRANCH_POINT, inputs) for _, inputs in found.crossings]
     if found.ending is not None:
-        places.append(_Singular(found.ending.kind, found.ending.inputs, found.ending.state))
+        places.append(SingularPlace(found.ending.kind, found.ending.inputs, found.ending.state))
     named = (PassageEnd.DEAD_CENTRE, PassageEnd.BRANCH_POINT)
     for place in places:
         if place.kind in named and float(np.abs(place.inputs - about).max()) <= near:
@@ -227,15 +222,15 @@ def _put_beside(
     rows: SweepRows,
     values: Floats,
     beside: range,
-    off: Place,
-    place: _Singular,
+    off: BranchPlace,
+    place: SingularPlace,
 ) -> bool:
     """Puts the rows beside a singular place into the rows, each followed from a place `off` it; at
     a dead centre itself its own states serve. False, and nothing is put, where one lies beyond."""
     rounding = tolerances.TURNED_BACK * max(1.0, float(np.abs(place.inputs).max(initial=0.0)))
     at_once = rows.reached | (_distance(values, place.inputs) <= rounding)
     section = int(rows.section[max(beside.start - 1, 0)])
-    known: dict[bytes, Place | None] = {}
+    known: dict[bytes, BranchPlace | None] = {}
     for row in beside:
         inputs = np.ascontiguousarray(values[:, row])
         key = inputs.tobytes()
@@ -257,7 +252,9 @@ def _put_beside(
     return True
 
 
-def _at(session: Session, inputs: Floats, off: Place, place: _Singular) -> Place | None:
+def _at(
+    session: Session, inputs: Floats, off: BranchPlace, place: SingularPlace
+) -> BranchPlace | None:
     """A place at a dead centre but for rounding; None where it does not close there."""
     if place.state is None:
         return None
@@ -268,7 +265,7 @@ def _at(session: Session, inputs: Floats, off: Place, place: _Singular) -> Place
     path = np.stack([off.inputs, inputs], axis=1)
     came = session.follow(path, off.state, every_row=True, turns=True, turn=off.turn)
     turn = off.turn if came.turn is None else np.asarray(came.turn)
-    return Place(inputs, np.ascontiguousarray(batch.states[:, 0]), turn)
+    return BranchPlace(inputs, np.ascontiguousarray(batch.states[:, 0]), turn)
 
 
 def _stays(session: Session, numbers: tuple[int, int], start: Floats, place: Floats) -> bool:

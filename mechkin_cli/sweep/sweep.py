@@ -30,6 +30,7 @@ from mechkin_cli.sweep.friction import judged_by, uncounted_notes
 from mechkin_cli.sweep.messages import (
     actuation_notes,
     condition_notes,
+    first_order_note,
     locked_pose_notes,
     not_converged_note,
     open_turn_note,
@@ -189,10 +190,7 @@ def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
 def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
     """The same by one way of following; rows that do not close lose their place among the
     reached."""
-    follow = follow_rows
-    if session.problem.motion.grid is not None:
-        from mechkin_cli.sweep.grid import follow_grid as follow
-    rows = follow(session, start, every_row=every_row)
+    rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows, motion_between)
     if not rows.reached.any():
         return result
@@ -332,6 +330,8 @@ def row_notes(
             named = {freedom.holding for freedom in idle.idle_freedoms(problem)}
             found = {q.name: result.columns[q.name] for q in asked if q.name in named}
             notes += idle.holding_notes(problem, found)
+    if problem.stopped and rows.reached.any():
+        notes.append(first_order_note(problem))
     unclear = rows.status == Status.rank_unclear
     if unclear.any() and (session.is_redundant or unclear[rows.reached].all()):
         said = {diagnostic.code for diagnostic in rows.diagnostics}

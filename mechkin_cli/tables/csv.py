@@ -3,13 +3,16 @@
 Numbers have the shortest digits that read back as the same double, or, for tables kept under
 version control, the shortest of the value rounded to a number of significant digits; an empty cell
 is a missing value, in quotes where it is alone in its line, as many readers skip blank lines.
+With a decimal comma, for spreadsheets of countries that write it, semicolons part the cells.
 Labels that a spreadsheet would take for formulas begin with an apostrophe (`tables/layout.py`).
 """
 
 from __future__ import annotations
 
+import csv
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from io import StringIO
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,10 +56,15 @@ def _processors() -> int:
 
 
 def csv_bytes(
-    columns: Columns, significant_digits: int = SHORTEST, threads: int = 0, units: bool = False
+    columns: Columns,
+    significant_digits: int = SHORTEST,
+    threads: int = 0,
+    units: bool = False,
+    decimal_comma: bool = False,
 ) -> bytes:
     """The whole file as UTF-8; `SHORTEST` or 1 to 15 significant digits; threads 0: as many as the
-    table is worth; with `units` in the header, as `theta [deg]`."""
+    table is worth; with `units` in the header, as `theta [deg]`; with a decimal comma, and then
+    semicolons between the cells."""
     labels = [
         csv_text(f"{column.label} [{column.unit}]" if units and column.unit else column.label)
         for column in columns.columns
@@ -74,7 +82,22 @@ def csv_bytes(
         quoted_empty=len(labels) == 1,
         threads=threads_for(columns, threads),
     )
+    if decimal_comma:
+        is_number = [not isinstance(column.values, Words) for column in columns.columns]
+        return _with_commas(text.decode(), is_number)
     return text
+
+
+def _with_commas(text: str, is_number: Sequence[bool]) -> bytes:
+    """CSV with a comma in its numbers, and semicolons between its cells."""
+    stream = StringIO()
+    writer = csv.writer(stream, delimiter=";", lineterminator="\n")
+    header, *rows = csv.reader(StringIO(text, newline=""))
+    writer.writerow(header)
+    for row in rows:
+        cells = zip(row, is_number, strict=True)
+        writer.writerow([one.replace(".", ",") if number else one for one, number in cells])
+    return stream.getvalue().encode()
 
 
 def _numbers(column: TableColumn, significant_digits: int) -> FloatArray | WordColumn:

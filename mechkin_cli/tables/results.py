@@ -18,6 +18,7 @@ class Results(NamedTuple):
         threads: that write; 0: as many as a table is worth.
         errors: of all columns; None where they were not asked for.
         units: whether headers of CSV have them.
+        decimal_comma: whether numbers of CSV have a comma, and semicolons part the cells.
     """
 
     name: str
@@ -28,7 +29,13 @@ class Results(NamedTuple):
     run: str = SWEEP
     errors: tuple[ColumnErrors, ...] | None = None
     units: bool = False
+    decimal_comma: bool = False
 
     def csv(self, table: Columns) -> bytes:
         """A table of the run as CSV."""
-        return csv_bytes(table, threads=self.threads, units=self.units)
+        return csv_bytes(
+            table,
+            threads=self.threads,
+            units=self.units,
+            decimal_comma=self.decimal_comma,
+        )

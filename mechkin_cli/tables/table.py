@@ -24,6 +24,9 @@ from mechkin_cli.tables.layout import TableLayout
 if TYPE_CHECKING:
     from mechkin_cli.tables.summary import Summary
 
+NEEDS_OPENPYXL = "--format xlsx needs openpyxl: pip install 'mechkin[xlsx]'"
+"""Said of a workbook before anything is computed for it."""
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Columns(Listed):

@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING
 from zlib import crc32
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.results import Results
@@ -68,11 +67,18 @@ def _latex(runs: Sequence[Results]) -> Iterator[File]:
             yield f"{table.name}.tex", latex_bytes(table, results.source)
 
 
+def _workbook(runs: Sequence[Results]) -> Iterator[File]:
+    from mechkin_cli.tables.workbook import workbook_bytes
+
+    yield "analysis.xlsx", workbook_bytes(runs)
+
+
 WRITERS: Mapping[str, Callable[[Sequence[Results]], Iterator[File]]] = {
     "csv": _csv,
     "md": _markdown,
     "json": _json,
     "tex": _latex,
+    "xlsx": _workbook,
 }
 """Format -> its files, in the order that help and messages list them."""
 
@@ -479,15 +485,6 @@ def _left_by_earlier(folder: Path, fresh: Mapping[str, bytes]) -> tuple[list[str
     return same, changed
 
 
-class RunFiles(NamedTuple):
-    """The files of a run that were written, and the names of those of the run before that were
-    removed, and that were not, since somebody changed them."""
-
-    written: list[Path]
-    removed: list[str]
-    changed: list[str]
-
-
 class OutputFolder:
     """A folder that this run alone writes to, inside `with`.
 
@@ -535,9 +532,13 @@ class OutputFolder:
         replace_files(self.folder, files, removed)
         return targets
 
-    def write_run(self, files: Mapping[str, bytes]) -> RunFiles:
+    def write_run(self, files: Mapping[str, bytes]) -> tuple[list[Path], list[str], list[str]]:
         """Write the files of a run in the place of those of the run before, at one moment: what
         that one wrote and this one does not is removed, unless it was changed since.
+
+        Returns:
+            The files written; the names of those removed, and of those left since somebody changed
+            them.
 
         Raises:
             UsageError: as `write`.
@@ -547,7 +548,7 @@ class OutputFolder:
                 self._enter()
             removed, changed = _left_by_earlier(self.folder, files)
         written = self.write({**files, LISTING: _listing(files)}, removed)
-        return RunFiles(written[:-1], removed, changed)
+        return written[:-1], removed, changed
 
     def _enter(self) -> None:
         claim = self._claim = Claim(self.folder)

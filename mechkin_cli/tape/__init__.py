@@ -16,71 +16,13 @@ if TYPE_CHECKING:
         double_doubles as double_doubles,
         enclosures as enclosures,
     )
-    from mechkin_cli.tape.double_double import (
-        DoubleDoubles as DoubleDoubles,
-        bounded as bounded,
-        difference as difference,
-        eliminate as eliminate,
-        exactly as exactly,
-        joined as joined,
-        stacked as stacked,
-    )
-    from mechkin_cli.tape.exact import (
-        ExactRecorder as ExactRecorder,
-        ExactRows as ExactRows,
-        ShiftingRecorder as ShiftingRecorder,
-    )
-    from mechkin_cli.tape.identities import Identities as Identities
-    from mechkin_cli.tape.recorder import (
-        Filling as Filling,
-        Instruction as Instruction,
-        Recorder as Recorder,
-        Traced as Traced,
-        TraceLost as TraceLost,
-        differ as differ,
-        is_traced as is_traced,
-        of_numbers as of_numbers,
-        register as register,
-        with_rates as with_rates,
-        within as within,
-    )
-    from mechkin_cli.tape.row_programs import (
-        SLOPES as SLOPES,
-        JetNumber as JetNumber,
-        RowRecorder as RowRecorder,
-        orders_of as orders_of,
-    )
-    from mechkin_cli.tape.scalars import (
-        Recorded as Recorded,
-        Undecided as Undecided,
-        advice as advice,
-        as_recorded as as_recorded,
-        by_rounding as by_rounding,
-        cos as cos,
-        either as either,
-        is_finite as is_finite,
-        is_number as is_number,
-        is_settled as is_settled,
-        largest as largest,
-        next_power_of_two as next_power_of_two,
-        nonzero as nonzero,
-        of_one as of_one,
-        of_two as of_two,
-        plain as plain,
-        sin as sin,
-        smallest as smallest,
-        square_root as square_root,
-    )
-    from mechkin_cli.tape.tape import (
-        CONDITIONS as CONDITIONS,
-        ExactTape as ExactTape,
-        Operation as Operation,
-        Tape as Tape,
-        Verdict as Verdict,
-        compiled as compiled,
-        replay as replay,
-        replay_precise as replay_precise,
-    )
+    from mechkin_cli.tape.double_double import *
+    from mechkin_cli.tape.exact import *
+    from mechkin_cli.tape.identities import *
+    from mechkin_cli.tape.recorder import *
+    from mechkin_cli.tape.row_programs import *
+    from mechkin_cli.tape.scalars import *
+    from mechkin_cli.tape.tape import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

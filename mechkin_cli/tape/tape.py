@@ -122,10 +122,10 @@ class Tape:
         """Number of registers."""
         return len(self.inputs) + self.constants.size + self.operations.size
 
-    def depends(self, output: int, input_number: int = 0) -> bool:
-        """Whether an output depends on an input."""
+    def depends(self, output: int) -> bool:
+        """Whether an output depends on the first input."""
         first = len(self.inputs) + self.constants.size
-        moved = {input_number}
+        moved = {0}
         for k, operands in enumerate(self.operands.tolist(), start=first):
             if moved.intersection(operands[: ARITY[Operation(int(self.operations[k - first]))]]):
                 moved.add(k)

@@ -85,6 +85,15 @@ MOBILITY_STRAYED: Final = 0.4
 """How far a move may be closed from where it was meant to end, in parts of its length: by its
 curvature, a tenth, and not by half a right angle as from one component to another."""
 
+MOBILITY_FAMILY: Final = 0.5
+"""Sine of the angle between the steps along two components above which they are several: those
+along one turn by about the length of the move, measured 0.26 at most; components that meet are
+square to each other in some direction as a rule."""
+
+MOBILITY_ASIDE: Final = 0.2
+"""Sine of the angle between a heading and the steps along all components found above which it may
+lead to another: curvature turns it by 0.17 at most in what was measured."""
+
 MOBILITY_RANK_REACHED: Final = 1e-5
 """Singular values below this part of the largest count as zero at a configuration that was reached:
 where equations are squared its place is sure to 1e-7 only, and a regular one 0.1 from a singular

@@ -130,3 +130,7 @@ constrained search leaves 1e-8; a millionth of a transmission angle is no angle 
 
 FIT_AT_BOUND: Final = 1e-6
 """Of a parameter's bounds: nearer than this to one of them, it is at the bound."""
+
+WRAP_ROUNDING: Final = 1e-15
+"""What a wrapped angle may be beyond half a turn by rounding, in rad, for the first turn; with more
+turns as much times their square, which bounds what the products of many turns leave."""

@@ -26,7 +26,7 @@ from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import replace
-from mechkin_cli.session import Continued, Session
+from mechkin_cli.session import Session
 from mechkin_cli.structure import SolverGraph, structure_of
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost, Verdict
@@ -197,7 +197,8 @@ class Base:
         """
         known = self.design.problem.parameters
         given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
-        return build(self.design.built.read, given)
+        built = self.design.built
+        return build(built.file, built.document, given)
 
 
 def base_of(design: Design) -> Base:
@@ -266,7 +267,7 @@ class VariedDesign(Design):
             )
             return own.continuing(base, self._between).reading(lambda: self.precise)
         varied = varied_session(self._variation, self._row, self.problem)
-        if isinstance(varied.first, Continued) and varied.first.state is None:
+        if varied.first is not None and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
             fresh = self.base.built(self._values)
             if isinstance(fresh.graph, Diagnostic):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -200,7 +200,7 @@ def sample_of(problem: Problem) -> Any:
     return resolve
 
 
-Reductions = tuple[Reduction, ...] | Reduction | None
+Reductions: TypeAlias = tuple[Reduction, ...] | Reduction | None
 """Several, one, or none: all rows."""
 
 

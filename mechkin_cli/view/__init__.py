@@ -9,13 +9,10 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from mechkin_cli.view.branch import run_marks as run_marks
-    from mechkin_cli.view.drawing import (
-        PICTURE_NAME as PICTURE_NAME,
-        mechanism_picture as mechanism_picture,
-    )
-    from mechkin_cli.view.page import PAGE_NAME as PAGE_NAME
-    from mechkin_cli.view.scene import view_page as view_page, write_view as write_view
+    from mechkin_cli.view.branch import *
+    from mechkin_cli.view.drawing import *
+    from mechkin_cli.view.page import *
+    from mechkin_cli.view.scene import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,

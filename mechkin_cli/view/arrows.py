@@ -1,22 +1,34 @@
-"""Arrows of forces and moments: every joint's reaction on its second link, and what drives apply.
+"""Arrows of forces and moments: every joint's reaction on its second link, what drives apply, and
+the loads of the file.
 
 `J.force` and `J.moment` are what the first link exerts on the second, about the joint's point;
 `J.effort` is what a drive applies to the second link, along the joint's axis. Components that are
 not unique are left out, and the arrow's name says which are there: `B.force (x, y)`; an arrow of
-which nothing is known in any row is not there.
+which nothing is known in any row is not there. Loads are forces and torques on links, loads of
+joint coordinates on the second link, and what a spring between two points exerts on both.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from mechkin_cli.mechanism import is_angle
+from mechkin_cli.mechanism import (
+    Attached,
+    Damper,
+    JointLoad,
+    LinkLoad,
+    Spring,
+    Varying,
+    is_angle,
+    law_value,
+)
 from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
-from mechkin_cli.view.joints import drawn_joints
+from mechkin_cli.view.joints import drawn_joints, link_poses
 from mechkin_cli.view.page import packed
 
 if TYPE_CHECKING:
@@ -24,7 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from mechkin_cli.mechanism import Attached, Mechanism, Problem
+    from mechkin_cli.mechanism import Amount, Mechanism, Problem
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Readable
     from mechkin_cli.view.page import Lengths, Plain
@@ -36,8 +48,22 @@ NORMAL = (0.0, 0.0, 1.0)
 KINDS: tuple[Kind, Kind] = ("force", "moment")
 
 
-Arrow = tuple[str, Kind, "Attached", "Floats"]
+Arrow = tuple[str, Kind, Attached, "Floats"]
 """Name, kind, place on a link, and vectors over the rows (rows, 3) in the file's units."""
+
+
+def tie_records(mechanism: Mechanism, links: Sequence[str], lengths: Lengths) -> list[Plain]:
+    """Springs and dampers between points for the page."""
+    return [
+        {
+            "kind": "spring" if isinstance(load, Spring) else "damper",
+            "links": [links.index(end.link) for end in load.between],
+            "places": [lengths.vector(end.vector) for end in load.between],
+        }
+        for load in mechanism.loads
+        if isinstance(load, Spring | Damper) and load.between is not None
+        if all(end.link in links for end in load.between)
+    ]
 
 
 def has_forces(mechanism: Mechanism) -> bool:
@@ -68,11 +94,11 @@ def arrow_records(
             "place": lengths.vector(place.vector),
             "values": packed("f32", values[rows]),
         }
-        for name, kind, place, values in _arrows(analysis)
+        for name, kind, place, values in _arrows(analysis, links)
     ]
 
 
-def _arrows(analysis: Readable) -> Iterator[Arrow]:
+def _arrows(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
     problem = analysis.result.problem
     joints = problem.mechanism.joints
     for name in reactions(problem):
@@ -80,20 +106,94 @@ def _arrows(analysis: Readable) -> Iterator[Arrow]:
         kind = KINDS[0] if word == KINDS[0] else KINDS[1]
         yield from _known(name, kind, joints[joint].point, _in_space(analysis, name))
     yield from _efforts(analysis, problem)
+    taken: Counter[str] = Counter()
+    for name, kind, place, values in _loads(analysis, links):
+        taken[name] += 1
+        several = f"{name}, {taken[name]}" if taken[name] > 1 else name
+        yield from _known(several, kind, place, values)
 
 
 def _efforts(analysis: Readable, problem: Problem) -> Iterator[Arrow]:
     driven = [f"{joint}.{coordinate}" for joint, coordinate in problem.acting]
     for name, effort in zip(driven, effort_names(driven), strict=True):
-        joint = problem.mechanism.joints[name.rpartition(".")[0]]
-        if joint not in drawn_joints(problem.mechanism) or len(joint.coordinates) != 1:
-            continue  # the axis of one of several coordinates is not that of the joint
-        axis = f"{joint.name}.axis"
-        hinged = joint.plane and axis not in problem.quantities()  # about the plane's normal
-        direction = np.array([NORMAL]) if hinged else _in_space(analysis, axis)
-        along = direction * _drawable(analysis[effort])[:, None]
-        kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
-        yield from _known(effort, kind, joint.point, along)
+        for kind, place, along in _along_joint(analysis, name, _drawable(analysis[effort])):
+            yield from _known(effort, kind, place, along)
+
+
+def _along_joint(
+    analysis: Readable, name: str, values: Floats
+) -> Iterator[tuple[Kind, Attached, Floats]]:
+    """What acts along a joint coordinate on the second link: values (rows,) in file units."""
+    problem = analysis.result.problem
+    joint = problem.mechanism.joints[name.rpartition(".")[0]]
+    if joint not in drawn_joints(problem.mechanism) or len(joint.coordinates) != 1:
+        return  # the axis of one of several coordinates is not that of the joint
+    axis = f"{joint.name}.axis"
+    hinged = joint.plane and axis not in problem.quantities()  # about the plane's normal
+    direction = np.array([NORMAL]) if hinged else _in_space(analysis, axis)
+    kind = KINDS[1] if is_angle(name.rpartition(".")[2]) else KINDS[0]
+    yield kind, joint.point, direction * values[:, None]
+
+
+def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
+    result = analysis.result
+    loads = result.problem.mechanism.loads
+    if not loads:
+        return
+    poses = link_poses(result, links)
+    dimensions = {KINDS[0]: FORCE, KINDS[1]: MOMENT}
+
+    def own(values: Floats, kind: Kind) -> Floats:
+        return np.asarray(result.units.from_si(values, dimensions[kind]), dtype=np.float64)
+
+    for load in loads:
+        if isinstance(load, LinkLoad) and load.link in links:
+            vector = np.stack([_amount(analysis, each) for each in load.value], axis=1)
+            if load.axes == "link":
+                vector = _turned(poses[:, links.index(load.link)], vector)
+            kind = KINDS[0] if load.kind == "force" else KINDS[1]
+            place = Attached(load.link, load.point)
+            if load.kind == "torque":
+                link = result.problem.mechanism.links.get(load.link)
+                place = Attached(load.link, link.center_of_mass if link else load.point)
+            yield f"{load.kind} on {load.link}", kind, place, own(vector, kind)
+        elif isinstance(load, JointLoad):
+            kind = KINDS[1] if is_angle(load.coordinate) else KINDS[0]
+            values = own(_amount(analysis, load.amount), kind)
+            for one, place, along in _along_joint(analysis, load.name, values):
+                yield f"load at {load.name}", one, place, along
+        elif isinstance(load, Spring) and load.between is not None:
+            if not all(end.link in links for end in load.between):
+                continue
+            first, second = (_place(poses[:, links.index(e.link)], e) for e in load.between)
+            apart = second - first
+            length = np.sqrt((apart * apart).sum(axis=1))
+            pull = load.preload + load.stiffness * (length - load.free)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                force = own(apart * (pull / length)[:, None], KINDS[0])
+            for end, vector in zip(load.between, (force, -force), strict=True):
+                yield f"spring on {end.link}", KINDS[0], end, vector
+
+
+def _amount(analysis: Readable, amount: Amount) -> Floats:
+    """A force or moment over the rows (rows,), in SI."""
+    result = analysis.result
+    if not isinstance(amount, Varying):
+        return np.full(analysis.rows, amount)
+    law = result.problem.load_laws[amount.number]
+    return np.asarray(law_value(law, result.quantity, analysis.rows), dtype=np.float64)
+
+
+def _turned(poses: Floats, vectors: Floats) -> Floats:
+    """Vectors (rows, 3) turned by poses (rows, 7)."""
+    scalar, axis = poses[:, 3:4], poses[:, 4:]
+    twice = 2.0 * np.cross(axis, vectors)
+    return np.asarray(vectors + scalar * twice + np.cross(axis, twice), dtype=np.float64)
+
+
+def _place(poses: Floats, point: Attached) -> Floats:
+    """Where a point of a link is (rows, 3), in m."""
+    return poses[:, :3] + _turned(poses, np.broadcast_to(point.vector, (len(poses), 3)))
 
 
 def _drawable(values: Floats) -> Floats:

@@ -14,7 +14,7 @@ import numpy as np
 from mechkin_cli.mechanism import is_angle
 from mechkin_cli.record import replace
 from mechkin_cli.session import input_text
-from mechkin_cli.tables import Columns, RunParameter, Words, csv_bytes, read_table_text, rows_table
+from mechkin_cli.tables import Columns, RunParameter, Words, rows_table
 from mechkin_cli.units import ANGLE
 from mechkin_cli.verdict import Status
 from mechkin_cli.view.arrows import arrow_records
@@ -177,7 +177,7 @@ class BranchScene:
             "poses": {"rows": packed("i32", self.posed), "values": packed("f32", poses)},
             "status": {"words": [one.label for one in Status], "codes": packed("u8", codes)},
             "marks": run_marks(self.analysis, self.axis.name, self.axis.values),
-            "columns": list(self._columns()),
+            "columns": list(self.curves),
             "arrows": arrows,
         }
 
@@ -185,6 +185,11 @@ class BranchScene:
     def verdicts(self) -> Columns:
         """The table of its rows and their verdicts."""
         return rows_table(self.analysis.result, self.analysis.run)
+
+    @cached_property
+    def curves(self) -> tuple[Plain, ...]:
+        """The columns that curves are drawn of, as the page reads them."""
+        return tuple(self._columns())
 
     def _columns(self) -> Iterator[Plain]:
         columns = [(table.name, c) for table in self.analysis.tables for c in table.columns]
@@ -199,17 +204,27 @@ class BranchScene:
                 }
 
 
-def table_record(table: Columns, run: str, rows: NDArray[np.intp], codes: list[int]) -> Plain:
-    """A table for the page: of one that has the rows of its run some `rows` with the `codes` of
-    their verdicts, of others all."""
+def table_record(table: Columns, run: str, own: BranchScene) -> Plain:
+    """A table for the page: of one that has the rows of its run those that the `own` branch shows,
+    with their verdicts, of others all. Numbers that the branch's columns have are not repeated."""
+    codes = [int(code) for code in own.analysis.result.status[own.rows]]
+    curves = {(curve["table"], curve["label"]) for curve in own.curves}
     if table.of_rows:
-        table = replace(table, columns=tuple(column.part(rows) for column in table.columns))
-    cells = read_table_text("cells.csv", csv_bytes(table)).rows
+        table = replace(table, columns=tuple(column.part(own.rows) for column in table.columns))
     return {
         "name": table.name,
         "title": table.title,
         "run": run,
-        "columns": [{"label": one.label, "unit": one.unit} for one in table.columns],
-        "rows": [list(row) for row in cells],
+        "columns": [
+            {
+                "label": one.label,
+                "unit": one.unit,
+                "exact": None
+                if isinstance(one.values, Words) or (table.name, one.label) in curves
+                else packed("f64", one.numbers),
+            }
+            for one in table.columns
+        ],
+        "rows": [list(row) for row in table.listing.rows],
         "status": codes if table.of_rows else [],
     }

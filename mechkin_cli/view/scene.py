@@ -21,7 +21,7 @@ from mechkin_cli.sweep import refuse_loaded_spin
 from mechkin_cli.tables import write_files
 from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import SWEEP, __version__
-from mechkin_cli.view.arrows import has_forces, reactions
+from mechkin_cli.view.arrows import has_forces, reactions, tie_records
 from mechkin_cli.view.branch import BranchScene, table_record
 from mechkin_cli.view.joints import (
     carried,
@@ -243,6 +243,7 @@ class Scene:
             "kind": "sweep" if run.name == "sweep" else "response",
             "title": run.title,
             "x": {"label": axis.name, "unit": axis.unit},
+            "ties": tie_records(run.own.result.problem.mechanism, self.links, self._lengths),
             "branches": [
                 branch.record(number == 0, self._lengths) for number, branch in enumerate(branches)
             ],
@@ -252,9 +253,8 @@ class Scene:
         found = []
         for run, branches in zip(self.runs, self.branches, strict=True):
             own = branches[0]
-            codes = [int(code) for code in own.analysis.result.status[own.rows]]
             for table in (*own.analysis.tables, *run.tables, own.verdicts):
-                found.append(table_record(table, run.name, own.rows, codes))
+                found.append(table_record(table, run.name, own))
         return found
 
 
@@ -303,7 +303,7 @@ def view_scene(
     notes += _left_out(runs)
     scene = Scene(
         f"mechkin {__version__}",
-        Path(model.built.read.document.file).name,
+        Path(model.built.document.file).name,
         model.problem,
         runs,
         tuple(dict.fromkeys([*said, *notes])),

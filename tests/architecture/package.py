@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator, Set
 from functools import cache
 from pathlib import Path
 
@@ -56,3 +57,48 @@ def imported_names(path: Path) -> list[tuple[str, str]]:
         if isinstance(node, ast.ImportFrom)
         for alias in node.names
     ]
+
+
+def told_apart(module: ast.Module, kinds: Set[str]) -> Iterator[tuple[int, str]]:
+    """(line, source) of every question for one of some classes: by isinstance, by type, or by a
+    pattern."""
+    for node in ast.walk(module):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("isinstance", "issubclass"):
+            names = {part.id for part in ast.walk(node.args[1]) if isinstance(part, ast.Name)}
+        elif isinstance(node, ast.Compare):
+            sides = [node.left, *node.comparators]
+            names = {side.id for side in sides if isinstance(side, ast.Name)}
+        elif isinstance(node, ast.MatchClass):
+            names = {ast.unparse(node.cls)}
+        else:
+            continue
+        if names & kinds:
+            yield getattr(node, "lineno", 0), ast.unparse(node)
+
+
+def offered_names(path: Path) -> list[tuple[str, str]]:
+    """(dotted module, name) of all that a door loads when it is first used."""
+    door = ".".join(path.relative_to(ROOT.parent).parent.parts)
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy_names":
+            chapters = ast.literal_eval(node.args[1])
+            return [
+                (f"{door}.{chapter}", name)
+                for chapter, names in chapters.items()
+                for name in (names.split() if isinstance(names, str) else names)
+            ]
+    return []
+
+
+def defined_names(path: Path) -> set[str]:
+    """The public names that a module defines."""
+    found = set()
+    for node in tree(path).body:
+        for one in node.body if isinstance(node, ast.If) else [node]:
+            if isinstance(one, ast.FunctionDef | ast.ClassDef):
+                found.add(one.name)
+            elif isinstance(one, ast.Assign | ast.AnnAssign):
+                targets = one.targets if isinstance(one, ast.Assign) else [one.target]
+                names = [name for target in targets for name in ast.walk(target)]
+                found |= {name.id for name in names if isinstance(name, ast.Name)}
+    return {name for name in found if not name.startswith("_")}

@@ -6,7 +6,16 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, NAMES, ROOT, imported_names, imports, room
+from architecture.package import (
+    FILES,
+    NAMES,
+    ROOT,
+    defined_names,
+    imported_names,
+    imports,
+    offered_names,
+    room,
+)
 
 BASE = {
     "arguments",
@@ -141,13 +150,59 @@ def module_of(path: Path) -> str:
 
 
 MODULES = {module_of(path): path for path in PRODUCT}
+DOORS = {module_of(path): path for path in PRODUCT if offered_names(path)}
+"""The doors whose names are loaded when they are first used."""
 OFFERED = {
     (module_of(path), name): module
     for path in PRODUCT
     if path.name == "__init__.py"
-    for module, name in imported_names(path)
+    for module, name in (*imported_names(path), *offered_names(path))
+    if name != "*"
 }
 """(room, name) -> the file that the door takes it from."""
+
+
+def refused(path: Path, doors: dict[str, set[str]]) -> list[str]:
+    """What a file takes from doors that do not offer it."""
+    return [
+        f"{module}: {name}"
+        for module, name in imported_names(path)
+        if name not in doors.get(module, {name}) and f"{module}.{name}" not in MODULES
+    ]
+
+
+@pytest.mark.parametrize("path", FILES, ids=NAMES)
+def test_doors_offer_what_is_taken_from_them(path: Path) -> None:
+    """For type checkers a door has all public names of its chapters."""
+    assert refused(path, {d: {n for _, n in offered_names(p)} for d, p in DOORS.items()}) == []
+
+
+def test_a_name_behind_the_door_is_seen(tmp_path: Path) -> None:
+    path = tmp_path / "probe.py"
+    path.write_text("from mechkin_cli.session import Session, hidden\n", encoding="utf-8")
+    assert refused(path, {"mechkin_cli.session": {"Session"}}) == ["mechkin_cli.session: hidden"]
+
+
+@pytest.mark.parametrize("door", sorted(DOORS))
+def test_type_checkers_find_the_names_of_doors_where_they_are_loaded(door: str) -> None:
+    """Every chapter is imported for type checkers, and none as a whole that has a name which the
+    door takes from another."""
+    offered = offered_names(DOORS[door])
+    imported = set(imported_names(DOORS[door]))
+    missing = [
+        f"{module}: {name}"
+        for module, name in offered
+        if not {(module, "*"), (module, name)} & imported
+    ]
+    assert missing == []
+    twice = [
+        f"{module}: {name}"
+        for module, star in imported
+        if star == "*"
+        for name in defined_names(MODULES[module])
+        if OFFERED.get((door, name), module) != module
+    ]
+    assert twice == []
 
 
 def files_known(path: Path) -> Iterator[str]:

@@ -136,17 +136,17 @@ def measured(case: Case, count: int, compared: Callable[[], None] | None) -> str
 
 def writing() -> str:
     """What the process that writes takes for a piece of ten columns."""
-    from mechkin_cli.studies.folder import Contents, StudyFolder
+    from mechkin_cli.studies.folder import StudyFolder
     from mechkin_cli.studies.formats import Csv, Heading
     from mechkin_cli.studies.study import MOST_IN_PIECE
 
     generator = np.random.default_rng(1)
     values = {f"c{k}": generator.normal(size=MOST_IN_PIECE) for k in range(COLUMNS)}
     headings = tuple(Heading(label) for label in values)
-    contents = Contents({}, PIECES * MOST_IN_PIECE, "csv", {"variants": headings})
+    variants, tables = PIECES * MOST_IN_PIECE, {"variants": headings}
     with (
         tempfile.TemporaryDirectory() as name,
-        StudyFolder(Path(name), contents, Csv(), MOST_IN_PIECE) as folder,
+        StudyFolder(Path(name), {}, variants, tables, Csv(), MOST_IN_PIECE) as folder,
     ):
         folder.begin()
         taken = [seconds(partial(folder.put, k, {"variants": values})) for k in folder.pieces]

@@ -18,7 +18,7 @@ from benchmarks.peers import FAMILIES
 from benchmarks.responses.pendulum import exact_motion
 from mechkin_cli.bench import runs
 from mechkin_cli.bench.chain import TreeBody
-from mechkin_cli.bench.measurement import Bench, Measurement, Skipped, errors_of
+from mechkin_cli.bench.measurement import Bench, Measurement, errors_of
 from mechkin_cli.bench.methods import ANALYZED
 from mechkin_cli.bench.report import (
     CURVES,
@@ -68,7 +68,7 @@ def measured(rcsr: BenchScene) -> Bench:
 
 
 def errors(scene: BenchScene, values: dict, true: dict) -> dict:
-    lengths = frozenset(c.name for c in scene.chain.coordinates if c.is_length)
+    lengths = frozenset(scene.chain.coordinates[k] for k in scene.chain.lengths)
     return errors_of(scene.asked, lengths, values, true)
 
 
@@ -138,7 +138,7 @@ def test_a_train_of_loops_with_redundant_constraints_is_measured() -> None:
     motion = "{from: 0 deg, to: 40 deg, step: 10 deg}"
     scene = BenchScene("train", mk.loads(train.text(3, motion)))
     found = bench(scene, ONCE, chosen(*(("CasADi",) if "casadi" in sys.modules else ())))
-    assert all(s.family == "CasADi" and "redundant" in s.reason for s in found.skipped)
+    assert all(name == "CasADi" and "redundant" in why for name, why in found.skipped.items())
     exact_enough = [m for m in found.measurements if m.curve == ANALYZED and m.level == "motion"]
     assert max(m.acceleration for m in exact_enough) < 1e-12
 
@@ -212,24 +212,24 @@ def test_a_library_that_is_missing_is_named(
         ("Pinocchio", "pinocchio"),
         ("MuJoCo", "mujoco"),
     ):
-        (found,) = methods_of(rcsr, family, FAMILIES[family])
-        assert isinstance(found, Skipped)
+        found, why = methods_of(rcsr, FAMILIES[family])
+        assert not found
         how = "'mechkin[bench]'" if family == "scipy" else "-r benchmarks/requirements.txt"
-        assert f"{library} is not installed (pip install {how})" in found.reason
+        assert f"{library} is not installed (pip install {how})" in why
 
 
 def test_a_mechanism_that_a_method_cannot_take_is_named(platform: BenchScene) -> None:
     pytest.importorskip("mujoco")
-    (found,) = methods_of(platform, "MuJoCo", FAMILIES["MuJoCo"])
-    assert isinstance(found, Skipped)
-    assert "joints S in the tree" in found.reason
+    found, why = methods_of(platform, FAMILIES["MuJoCo"])
+    assert not found
+    assert "joints S in the tree" in why
 
 
 @pytest.mark.parametrize("family", ["CasADi", "MuJoCo", "Pinocchio"])
 def test_peers_that_are_here_are_sound(rcsr: BenchScene, family: str) -> None:
     found = bench(rcsr, ONCE, chosen(family))
     if found.skipped:
-        pytest.skip(found.skipped[0].reason)
+        pytest.skip(str(found.skipped))
     own = [m for m in found.measurements if m.family == family]
     assert min(m.position for m in own) < (0.05 if family == "MuJoCo" else 1e-13)
     moving = [m.acceleration for m in own if m.level == "motion"]

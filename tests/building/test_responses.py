@@ -115,7 +115,7 @@ loads:
     assert sweep.mechanism.loads == (JointLoad("B", "s", Varying(0)),)
     assert [law.reads for law in sweep.load_laws] == [("B.s",)]
     assert [law.reads for law in go.load_laws] == [("time",), ("B.s",)]
-    assert [load.value for load in go.mechanism.loads] == [Varying(0), Varying(1)]
+    assert [load.amount for load in go.mechanism.loads] == [Varying(0), Varying(1)]
 
 
 def test_a_load_of_time_needs_a_run_with_time() -> None:

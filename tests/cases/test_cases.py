@@ -61,6 +61,15 @@ def test_ten_parallelograms_pass_where_all_lie_flat() -> None:
     assert np.abs(np.asarray(last.values) - rows["A0.theta"]).max() < 1e-12
 
 
+@pytest.mark.parametrize("name", ["table_on_four_legs.yaml", "table_moved.yaml"])
+def test_a_table_on_four_legs_keeps_parallel(name: str) -> None:
+    rows = _load(name).analyze(["c.position"])
+    assert set(rows["row.status"]) == {"ok"}
+    x, y, z = rows["c.position"].T
+    assert np.abs(z + np.sqrt(1 - x * x - y * y)).max() < 1e-14
+    assert _load(name).mobility().fixed == ()
+
+
 def test_a_touched_dead_centre_is_left_on_the_same_branch() -> None:
     rows = _load("touched_dead_centre.yaml").analyze()
     # the crank of 3 is drawn upright, the rod of 5 ends at (4 + s, 0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -59,7 +61,7 @@ def test_many_loops_lie_singular_at_once(pairs: str) -> None:
     assert set(result["row.status"][~at].tolist()) <= {"ok", "near-singular"}
 
 
-@pytest.mark.parametrize("count", [5, 10, 20, 30])
+@pytest.mark.parametrize("count", [5, 10, 20, 30, 40])
 def test_parallelograms_in_a_row_turn_together(count: int) -> None:
     """Between rows they pass the place where all lie flat at once."""
     links, joints = [], ""
@@ -91,3 +93,47 @@ def test_without_the_key_the_branch_is_lost_there(count: int, pairs: str) -> Non
         assert np.abs(result[f"D{k}.theta"] - turned)[before].max() < 1e-6
     (note,) = [d for d in result.diagnostics if "branch point" in d.message]
     assert any(abs(number.value - 90) < 1e-9 for number in note.numbers)
+
+
+def tongs(cells: int) -> dict[str, object]:
+    """Lazy tongs: crossed bars a, b of length 2 m, pinned in their middles C and at their ends; b0
+    is the ground, drawn open by 40 degrees."""
+    along, up = math.cos(math.radians(20)), math.sin(math.radians(20))
+
+    def bar(kind: str, cell: int) -> str:
+        return "ground" if (kind, cell) == ("b", 0) else f"{kind}{cell}"
+
+    joints = {}
+    for k in range(cells):
+        x = 2 * along * k
+        joints[f"C{k}"] = {"type": "R", "links": [bar("b", k), bar("a", k)], "point": [x, 0]}
+    for k in range(cells - 1):
+        x = 2 * along * k + along
+        joints[f"T{k}"] = {"type": "R", "links": [bar("a", k), bar("b", k + 1)], "point": [x, up]}
+        joints[f"B{k}"] = {"type": "R", "links": [bar("b", k), bar("a", k + 1)], "point": [x, -up]}
+    bars = {bar(kind, k): {} for kind in "ab" for k in range(cells)}
+    bars.pop("ground")
+    return {
+        "format": 1,
+        "plane": "xy",
+        "units": {"length": "m", "angle": "deg"},
+        "links": bars,
+        "joints": joints,
+        "assembly": {"at_branch_points": "straight"},
+    }
+
+
+@pytest.mark.parametrize("step", [5, 7, 16])
+@pytest.mark.parametrize("cells", [2, 3, 5, 8])
+def test_lazy_tongs_pass_where_they_lie_flat(cells: int, step: int) -> None:
+    """All rhombs lie flat at -40 degrees; every crossing turns as the driven one."""
+    file = tongs(cells)
+    file["motion"] = {"inputs": {"C0.theta": {"from": 0, "to": -80, "step": step}}}
+    result = mk.load(file).analyze()
+    turned = result["C0.theta"]
+    flat = np.abs(turned + 40) < 1e-9
+    assert set(result["row.status"][~flat].tolist()) == {"ok"}
+    for k in range(1, cells):
+        assert np.abs(result[f"C{k}.theta"] - turned)[~flat].max() < 1e-10
+    for told in result.diagnostics:
+        assert "e+308" not in str(told)

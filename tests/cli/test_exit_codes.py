@@ -1,5 +1,6 @@
 """Exit codes: 0 ok, 1 differences, 2 usage, 3 invalid file, 4 rows are missing, 70 internal."""
 
+import sys
 from importlib import metadata
 
 import pytest
@@ -66,6 +67,39 @@ def test_exit_code(mechkin, command: str, code: int) -> None:
     assert run.code == code, run.err
     assert "internal error" not in run.err
     assert "Traceback" not in run.err
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("analyze crank.yaml --set r=1 --set r=2", "--set gives r twice; leave one of them out"),
+        ("modes crank.yaml --at O.theta=1 --at O.theta=2", "--at gives O.theta twice; leave one"),
+        ("modes crank.yaml --at 1e308", "too large to compute with (limit 1e+100)"),
+        ("plot crank.yaml --run nix", "there is no run nix; known are sweep"),
+        ("schema --check", "there is no file schemas/mechanism.schema.json; check its name"),
+        ("new a/b/c", "there is no folder a/b; make it first"),
+    ],
+)
+def test_a_command_that_cannot_be_done_says_why_and_what_to_do(
+    mechkin, command: str, words: str
+) -> None:
+    run = mechkin(*command.split())
+    assert (run.code, run.out) == (2, "")
+    assert words in run.err
+
+
+def test_a_workbook_without_its_library_is_refused_before_the_run(mechkin, monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    monkeypatch.setattr("mechkin_cli.model.load", lambda *_: 1 / 0)
+    run = mechkin("analyze", "crank.yaml", "--format", "csv,xlsx")
+    assert (run.code, run.out) == (2, "")
+    assert "pip install 'mechkin[xlsx]'" in run.err
+
+
+def test_a_mode_without_a_letter_is_quoted(mechkin) -> None:
+    run = mechkin("analyze", "crank.yaml", "--mode", "")
+    assert run.code == 2
+    assert 'there is no mode "" at the first row' in run.err
 
 
 def test_the_rcsr_tables_are_the_ones_kept(mechkin) -> None:

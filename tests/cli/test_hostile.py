@@ -138,6 +138,13 @@ def test_a_reader_that_stops_early(folder: Path, line: str) -> None:
     assert (folder / "code").read_text() == "0\n"
 
 
+@pytest.mark.parametrize("line", ["mechkin --help", "mechkin plot --help", "mechkin schema"])
+def test_a_reader_that_is_gone(folder: Path, line: str) -> None:
+    found = shell(folder, f"{{ sleep 0.5; {line}; echo $? >&3; }} 3>code | true")
+    assert found.stderr == ""
+    assert (folder / "code").read_text() == "0\n"
+
+
 @pytest.mark.parametrize(
     ("file", "words"),
     [

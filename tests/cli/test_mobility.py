@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import io
+
 import pytest
 from classics.planes import polygon, quadrilateral
 from classics.platforms import parallel_legs, wren
+
+from mechkin_cli.cli.messages import fitted
 
 FIVE_BAR = polygon((0, 0), (0, 1), (1, 1.7), (2, 1.5), (2.5, 0))
 INPUT = "motion: {inputs: {J1.theta: {from: 0, to: 10, step: 5}}}\n"
@@ -57,3 +61,20 @@ def test_check_says_nothing_of_a_special_position(mechkin, write) -> None:
     """A flat parallelogram has two freedoms to first order, and one in truth."""
     flat = quadrilateral(0.0, 1.0, 3.0, 2.0)
     assert mechkin("check", write("file.yaml", flat + INPUT)).err == ""
+
+
+def test_lines_fit_a_terminal(monkeypatch) -> None:
+    """And are whole where they are no terminal's."""
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setenv("COLUMNS", "60")
+    line = f"  redundant  {' '.join(30 * ['force'])}"
+    first, *others = fitted(line, Terminal(), 13).split("\n")
+    assert first.startswith("  redundant  force")
+    assert len(others) > 2
+    assert all(other.startswith(13 * " " + "force") for other in others)
+    assert max(map(len, (first, *others))) <= 60
+    assert fitted(line, io.StringIO(), 13) == line

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import subprocess
 import sys
 from importlib import import_module
@@ -12,6 +13,7 @@ from typing import Any
 
 import pytest
 from references import RCSR
+from typer.testing import CliRunner
 
 from mechkin_cli.cli.analyze import AnalyzeCommand
 from mechkin_cli.cli.app import app
@@ -144,3 +146,14 @@ def test_a_plain_line_loads_no_typer(tmp_path: Path) -> None:
     done = subprocess.run(command, check=True, capture_output=True, text=True)
     assert done.stderr == "[]\n"
     assert (tmp_path / "rows.csv").is_file()
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_says_what_each_word_takes(name: str) -> None:
+    told = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "200"}).output
+    assert not re.search(r"\b(TEXT|INTEGER|FLOAT)\b", told), "typer's words for a type"
+    for word in COMMANDS[name].words:
+        if word.kind == "flag":
+            continue
+        assert word.metavar, f"{word.parameter} of {name}"
+        assert word.metavar in told

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from cli import files
-from references import RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli
 
@@ -186,3 +186,21 @@ def test_what_earlier_analyses_left_is_collected(tmp_path: Path) -> None:
     )
     assert found.returncode == 0, found.stderr
     assert "leaked" not in found.stderr
+
+
+def test_a_script_ends_without_a_word_about_what_was_remembered(tmp_path: Path) -> None:
+    """Programs of expressions are remembered until Python ends, and are no leak of the core's."""
+    script = (
+        "import mechkin_cli as mk, sys\n"
+        "errors = mk.load(sys.argv[1]).analyze().errors\n"
+        "errors['O2.turn']\n"
+    )
+    found = subprocess.run(
+        [sys.executable, "-P", "-c", script, str(FILE_OF["rssr"])],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (found.returncode, found.stdout, found.stderr) == (0, "", "")

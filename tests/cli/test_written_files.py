@@ -1,6 +1,8 @@
 """What `mechkin analyze` writes, and where."""
 
+import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -269,3 +271,24 @@ def test_a_listing_removes_nothing_outside_its_folder(mechkin, write, folder) ->
     assert "link.txt is of an earlier run" in run.err
     (folders / LISTING).write_bytes(b"\xff\xfe 00000000")
     assert mechkin("analyze", file).code == 0
+
+
+def test_a_decimal_comma_changes_marks_and_separators_alone(mechkin, write, folder) -> None:
+    path = write("crank.yaml", CRANK)
+    mechkin("analyze", path, "--out", "point")
+    mechkin("analyze", path, "--decimal", "comma", "--out", "comma")
+    for one in (folder / "point").glob("*.csv"):
+        with one.open(encoding="utf-8", newline="") as stream:
+            head, *rows = csv.reader(stream)
+        with (folder / "comma" / one.name).open(encoding="utf-8", newline="") as stream:
+            found, *cells = csv.reader(stream, delimiter=";")
+        assert found == head
+        number = re.compile(r"(-?\d+)\.(\d+(e-?\d+)?)")
+        assert cells == [[number.sub(r"\1,\2", text) for text in row] for row in rows]
+    assert (folder / "comma" / "tip.csv").read_text().splitlines()[:2] == ["O.theta;x", "0;2"]
+
+
+def test_an_unknown_decimal_mark_is_refused(mechkin, write) -> None:
+    run = mechkin("analyze", write("crank.yaml", CRANK), "--decimal", "dot")
+    assert run.code == 2
+    assert "--decimal dot: marks are point and comma" in run.err

@@ -129,3 +129,65 @@ def test_a_force_that_jumps_within_a_rest_moves_a_block(count: int) -> None:
     have = rows("{static: 0.33, sliding: 0.2}", force, count)
     assert have[-1, 0] == pytest.approx(0.5, abs=1e-9)
     assert have[-1, 1] == 0.0
+
+
+KINKED = {
+    # force in words, and the place over time of a block that starts from rest at once
+    "-3 N + 1 N*(time > 9 s)": lambda t: -(t**2) / 2,
+    "-3 N - 1 N*(time < 9 s)": lambda t: -(t**2),
+    "3 N + 1 N*(time < 9 s)": lambda t: t**2,
+    "-3 N - 2 N/s*min(time, 9 s)": lambda t: -(t**2) / 2 - t**3 / 3,
+    "clip(-3 N/m*A.s, -99 N, 99 N) - 3 N": lambda t: (cos(sqrt(3) * t) - 1) / 3,
+    "-abs(3 N + 1 N/m*A.s)": lambda t: cos(t) - 1,
+    "if(A.s > 5 m, 9 N, -3 N)": lambda t: -(t**2) / 2,
+    "9 N*sign(time - 9 s) + 6 N": lambda t: -(t**2) / 2,
+}
+
+
+@pytest.mark.parametrize("sliding", ["0.2", "{static: 0.25, sliding: 0.2}"])
+@pytest.mark.parametrize("force", KINKED)
+def test_what_a_load_with_kinks_pushes_from_the_start_goes_at_once(
+    force: str, sliding: str
+) -> None:
+    """On which side of its kinks a load starts decides what sticks, and is known before it."""
+    text = BLOCK.format(coefficient=sliding, force=force, count=31).replace("to: 3", "to: 1.2")
+    found = mk.loads(text).respond("r", ["A.s", "A.s_ddot"])
+    assert (found["row.status"] == "ok").all()
+    right = np.array([KINKED[force](t) for t in np.linspace(0, 1.2, 31)])
+    assert np.abs(found["A.s"] - right).max() < 1e-8
+    second = {True: 1.0, False: -1.0}[right[-1] > 0] * (2 if "< 9" in force else 1)
+    assert found["A.s_ddot"][0] == pytest.approx(second, abs=1e-12)
+
+
+KINKS = ["sign(time - 1 s)", "-sign(1 s - time)", "if(time < 1 s, -1, 1)"]
+
+
+@pytest.mark.parametrize("kink", KINKS)
+def test_a_force_that_a_later_jump_ends_moves_a_block_from_the_start(kink: str) -> None:
+    # 5 N for 1 s: 1.7 m/s2, then -3.3 m/s2 to rest
+    have = rows("0.33", f"2.5 N*(1 - {kink})", 7)
+    time = np.linspace(0, 3, 7)
+    late = np.clip(time - 1, 0, 1.7 / 3.3)
+    want = 1.7 * np.minimum(time, 1) ** 2 / 2 + 1.7 * late - 3.3 * late**2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10
+    assert (have[-2:, 1] == 0.0).all()
+
+
+def test_a_force_that_begins_with_a_later_jump_leaves_a_block_at_rest_until_then() -> None:
+    have = rows("0.33", "2.5 N*(1 + sign(time - 1 s))", 7)
+    want = 1.7 * np.maximum(np.linspace(0, 3, 7) - 1, 0) ** 2 / 2
+    assert np.abs(have[:, 0] - want).max() < 1e-10
+
+
+@pytest.mark.parametrize("stop", ["A.s_dot <= 0 m/s", "not (A.s_dot > 0 m/s)"])
+@pytest.mark.parametrize("count", [2, 4, 7, 8])
+def test_a_condition_on_a_rate_holds_where_friction_brings_it_to_rest(
+    stop: str, count: int
+) -> None:
+    text = BLOCK.format(coefficient="0.2", force="0 N", count=count).replace("0 m/s", "3 m/s")
+    end = f"count: {count}}}"
+    text = text.replace(end, f'{end}, stop: [{{value: "{stop}"}}]')
+    found = mk.loads(text).respond("r", ["A.s", "A.s_dot"])
+    assert found["time"][-1] == pytest.approx(1.5, abs=1e-12)
+    assert found["A.s"][-1] == pytest.approx(2.25, abs=1e-10)
+    assert str(found["row.event"][-1])

@@ -66,7 +66,7 @@ def closings(name: str) -> list[tuple[str, ...]]:
 
     None where legs close the loops: there is no choice.
     """
-    if any(closing.constraint.links for closing in model(name).graph.closings):
+    if any(closing.links for closing in model(name).graph.closings):
         return []
     mechanism = model(name).problem.mechanism
     driven = {joint for joint, _ in model(name).graph.driven}

@@ -73,7 +73,7 @@ def test_a_copy_of_an_analysis_has_the_same_rows(again, stem, asked) -> None:
 def test_a_copy_of_a_response_keeps_parameters(again) -> None:
     model = mk.load(FILE_OF["rcsr_response"]).with_parameters({"P1": 0.49})
     run = model.respond()
-    assert (run["O4.theta"] != mk.load(model.built.read.document.file).respond()["O4.theta"]).any()
+    assert (run["O4.theta"] != mk.load(model.built.document.file).respond()["O4.theta"]).any()
     other = again(run)
     assert run["O4.theta"].tobytes() == other["O4.theta"].tobytes()
     assert other.model.problem.parameters["P1"].value == pytest.approx(0.49 * 0.0254, rel=1e-15)

@@ -77,7 +77,7 @@ def test_a_copy_and_a_pickle_keep_the_places() -> None:
     model = mk.load(changed("loads", to=[]))
     for other in (copy.copy(model), pickle.loads(pickle.dumps(model))):
         assert other.analyze()["O.theta"].tolist() == [0, 45, 90]
-        assert other.built.read.document.is_data
+        assert other.built.document.is_data
 
 
 @pytest.mark.parametrize(

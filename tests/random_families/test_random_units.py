@@ -255,7 +255,7 @@ def test_the_templates_use_every_dimensional_field(tmp_path: Path) -> None:
     used: set[tuple[str, str]] = set()
     for which in TEMPLATES:
         answers(which, tmp_path, SI, random.Random(0), 0.0)
-        used.update(used_fields(mk.load(tmp_path / "m.yaml").built.read.file))
+        used.update(used_fields(mk.load(tmp_path / "m.yaml").built.file))
     wanted = dimensional_fields()
     assert len(wanted) > 50
     assert wanted - used == WITHOUT

@@ -23,11 +23,19 @@ def test_a_random_loop_against_dense_equations_from_event_to_event(seed: int) ->
     assert found.error < 1e-10
 
 
-@pytest.mark.parametrize("seed", [15, 107, 136, 141, 244, 375, *range(1000, 1000 + COUNT)])
+@pytest.mark.parametrize("seed", [15, 107, 136, 141, 244, 375, 1156, *range(1000, 1000 + COUNT)])
 def test_no_motion_with_friction_creeps_or_is_lost(seed: int) -> None:
     text = rubbing_loop(seed)
     if text is not None:
         assert not judge(text, motion_alone=True).fault
+
+
+@pytest.mark.parametrize("seed", [1150, 1290, 1328, 1393, 1486, 1573, 1637, 1682])
+def test_joints_that_rest_together_are_decided(seed: int) -> None:
+    """Rounding of where each begins to go is no room between them."""
+    text = rubbing_loop(seed)
+    assert text is not None
+    assert judge(text, motion_alone=True).word == "ok"
 
 
 def test_a_ball_whose_friction_feeds_itself_jams() -> None:

@@ -1,7 +1,7 @@
 """Answers do not depend on what was asked before, on mechanisms written from the pages alone.
 
 `MECHKIN_RANDOM` multiplies the number of mechanisms;
-`python -P tests/random_families/same_answers.py 1000 0` asks as many.
+`python -P tests/random_families/same_answers 1000 0` asks as many.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from random_families.same_answers import differences
+from random_families.same_answers.orders import differences
 
 COUNT = 6 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 

@@ -34,7 +34,7 @@ def test_one_message_at_the_place_of_the_mistake(bad: BadFile) -> None:
 
 
 def test_the_file_they_are_made_from_is_sound() -> None:
-    assert list(open_text(SOUND, "sound.yaml").file.joints) == ["O1"]
+    assert list(open_text(SOUND, "sound.yaml")[0].joints) == ["O1"]
 
 
 def test_independent_mistakes_are_reported_together_in_the_order_of_the_file() -> None:

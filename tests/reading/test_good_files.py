@@ -13,13 +13,13 @@ GOOD = Path(__file__).parent / "good"
 
 @pytest.mark.parametrize("path", sorted(GOOD.glob("*.yaml")), ids=lambda path: path.stem)
 def test_is_accepted(path: Path) -> None:
-    source = open_file(path)
-    assert source.document.file == str(path)
-    assert source.file.format == 1
+    file, document = open_file(path)
+    assert document.file == str(path)
+    assert file.format == 1
 
 
 def test_the_documented_example() -> None:
-    file = open_file(GOOD / "rcsr_one_line_style.yaml").file
+    file, _ = open_file(GOOD / "rcsr_one_line_style.yaml")
     assert file.name == "RCSR"
     assert (file.units.length, file.units.force, file.units.time) == ("in", "lbm*in/s^2", "s")
     assert file.parameters == {"alpha1": "12 deg", "P1": "0.5 in"}
@@ -53,7 +53,7 @@ def test_the_documented_example() -> None:
 
 
 def test_every_key() -> None:
-    file = open_file(GOOD / "every_key.yaml").file
+    file, _ = open_file(GOOD / "every_key.yaml")
     assert file.parameters == {"on": "1e-3", "alpha": "12 deg", "half": "alpha / 2", "m": "010"}
     assert sorted(joint.type for joint in file.joints.values()) == sorted(JOINT_LETTERS)
     assert isinstance(file.joints["jH"], HelicalJoint)
@@ -67,7 +67,7 @@ def test_every_key() -> None:
 
 
 def test_what_is_left_out() -> None:
-    file = open_file(GOOD / "smallest.yaml").file
+    file, _ = open_file(GOOD / "smallest.yaml")
     units = file.units
     assert (units.length, units.angle, units.mass, units.force, units.time, units.angular_rate) == (
         "m",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +59,31 @@ def test_a_stone_is_stopped(stop: str, rate: float, moment: float) -> None:
         3 + rate * moment - 9.81 * moment**2 / 2, abs=EXACT * 10
     )
     assert str(found["row.event"][-1])
+
+
+APEX = (
+    "{dead_centre: S.s}",
+    "{dead_centre: S.s, count: 2}",
+    "{value: S.s_dot, at: 0, count: 3}",
+    "{value: 'max(S.s - 99 m, 0.5 s*S.s_dot)', at: 0 m, count: 2}",
+    "{value: '2*S.s_dot', at: 0, direction: down}",
+)
+
+
+@pytest.mark.parametrize(
+    "stops",
+    [
+        stops
+        for stops in [*permutations(APEX, 2), *list(permutations(APEX))[::17]]
+        if APEX[0] in stops or APEX[4] in stops
+    ],
+)
+def test_of_stops_met_at_one_moment_any_order_ends_there(stops: tuple[str, ...]) -> None:
+    """Some of them pass there without ending the motion, which must not move the end."""
+    found = respond(FALL.format(stop=", ".join(stops), rate=8))
+    assert last_time(found) == pytest.approx(8 / 9.81, rel=EXACT)
+    assert found["S.s"][-1] == pytest.approx(3 + 64 / (2 * 9.81), rel=EXACT)
+    assert found["S.s_dot"][-1] == pytest.approx(0, abs=EXACT * 10)
 
 
 def test_what_never_happens_ends_nothing() -> None:
@@ -337,3 +363,43 @@ def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
     assert off(touched["time"][-1], 5.0) < EXACT
     (note,) = [one for one in touched.diagnostics if one.code == "stop-touched"]
     assert f"touched at {moment:.6g} s" in note.message
+
+
+BAR = """format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{bar: {{mass: 1, center_of_mass: [0, 0], inertia: 1}}}}
+joints: {{A: {{type: R, links: [ground, bar], point: [0, 0]}}}}
+responses:
+  run:
+    start: {{A.theta: 0.1, A.theta_dot: 20}}
+    time: {{from: 0, to: 5, count: {rows}}}
+    stop: [{{value: "{value}", at: {at}, direction: {direction}, count: {count}}}]
+"""
+
+
+@pytest.mark.parametrize("rows", [2, 41])
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 9])
+@pytest.mark.parametrize(
+    ("value", "at", "direction", "angle"),
+    [
+        ("wrap(A.theta)", "3 rad", "up", 3.0),
+        ("wrap(A.theta)", "3 rad", "down", math.pi),
+        ("wrap(-A.theta)", "-3 rad", "down", 3.0),
+        ("wrap(A.theta)", "-3 rad", "up", 2 * math.pi - 3),
+        ("mod(A.theta, 360 deg)", "3 rad", "up", 3.0),
+        ("mod(A.theta, 360 deg)", "3 rad", "down", 2 * math.pi),
+        ("sin(A.theta)", "0.99", "up", math.asin(0.99)),
+        ("cos(5*A.theta)", "0.3", "down", math.acos(0.3) / 5),
+    ],
+)
+def test_passages_of_what_turns_are_counted(
+    value: str, at: str, direction: str, angle: float, count: int, rows: int
+) -> None:
+    """What comes again with each turn, and jumps between; the angle is 0.1 rad + 20 rad/s t."""
+    file = BAR.format(value=value, at=at, direction=direction, count=count, rows=rows)
+    period = 2 * math.pi / (5 if "5*" in value else 1)
+    passed = angle + period * (count - 1)
+    found = mk.loads(file).respond("run")
+    assert last_time(found) == pytest.approx((passed - 0.1) / 20, rel=1e-10)
+    assert found["A.theta"][-1] == pytest.approx(passed, rel=1e-10)

@@ -49,11 +49,11 @@ def mechanism(monkeypatch: pytest.MonkeyPatch) -> Mechanism:
 
 def test_it_closes_a_loop_and_takes_a_freedom(mechanism: Mechanism) -> None:
     graph = solver_graph(mechanism, [("A", "theta"), ("C", "s")])
-    assert [closing.constraint.label for closing in graph.closings] == ["teeth (gears)"]
+    assert [closing.label for closing in graph.closings] == ["teeth (gears)"]
     ((block),) = graph.blocks
     assert [graph.edges[k].joint.name for k, _ in block.unknowns] == ["B"]
     assert block.equations == 1
-    loop = [(graph.edges[k].joint.name, sign) for k, sign in graph.closings[0].loop]
+    loop = [(graph.edges[k].joint.name, sign) for k, sign in graph.loops[0]]
     assert loop == [("B", 1), ("A", -1)]
 
 

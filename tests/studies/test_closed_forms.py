@@ -169,7 +169,7 @@ def test_a_value_is_that_at_the_place_wherever_the_row_stands() -> None:
         "keep": [{"of": "C.theta", "as": "value", "at": "40 deg", "label": "there"}],
         "rows": ["C.theta"],
     }
-    source = dict(model.built.read.document.data)
+    source = dict(model.built.document.data)
     source["parameters"] = source["parameters"] | {"begin": "10 deg"}
     inputs = {"from": "begin", "to": "begin + 90 deg", "step": 15}
     source["motion"] = {"inputs": {"O.theta": inputs}}

@@ -137,7 +137,7 @@ def test_another_mechanism_is_refused(model: mk.Model, tmp_path: Path) -> None:
     model.study(RCSR, tmp_path)
     with pytest.raises(UsageError, match="different parameters; choose"):
         model.with_parameters({"P3": 0.41}).study(RCSR, tmp_path)
-    text = model.built.read.document.text.replace("mass:", "mass:  ", 1)
+    text = model.built.document.text.replace("mass:", "mass:  ", 1)
     other = mk.loads(text, "rcsr.yaml", folder=FILE_OF["rcsr"].parent)
     with pytest.raises(UsageError, match="different mechanism; choose"):
         other.study(RCSR, tmp_path)

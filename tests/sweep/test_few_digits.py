@@ -10,6 +10,7 @@ from oracle import mp
 
 import mechkin_cli as mk
 from mechkin_cli.sweep import dead_centre
+from mechkin_cli.sweep.messages import named_rows
 from mechkin_cli.tape import TraceLost
 
 PLACES = ["0", "10", "39.93", "39.931180949", "39.9311809496", "39.93118094965"]
@@ -52,7 +53,21 @@ def test_the_worst_row_is_named():
     r = analysis(PLACES)
     (note,) = [d for d in r.result.diagnostics if d.code == "few-digits"]
     assert note.severity == "warning"
-    assert note.message.startswith("3 rows have few digits, the first is row 4; fewest has row ")
+    assert note.message.startswith("rows 4 to 6 have few digits; fewest has row ")
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([0], "row 1"),
+        ([3, 8], "rows 4 and 9"),
+        ([3, 4, 5, 8], "rows 4 to 6 and 9"),
+        ([0, 1, 4, 7, 8], "rows 1 to 2, 5 and 8 to 9"),
+        (range(0, 40, 4), "rows 1, 5, 9, 13, 17, 21 and 4 more up to row 37"),
+    ],
+)
+def test_rows_are_named_by_their_ranges(rows: list[int], words: str):
+    assert named_rows(rows) == words
 
 
 def test_what_is_not_measured_is_said(monkeypatch: pytest.MonkeyPatch):

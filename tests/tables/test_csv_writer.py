@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mechkin_cli.tables import Columns, evaluate
-from mechkin_cli.tables.columns import TableColumn, Words
+from mechkin_cli.tables.columns import TableColumn, Words, column_of_numbers, words_of
 from mechkin_cli.tables.csv import COMMITTED_DIGITS, csv_bytes
 from mechkin_cli.tables.markup import rows_table
 
@@ -85,3 +85,19 @@ def test_the_rows_table_has_one_column_per_input(source, inputs):
     written = [f"{values[0]:g}" for values in inputs.values()]
     assert header.split(",")[1:-5] == list(inputs)
     assert row.split(",") == ["1", *written, "A", "ok", "0.5", "0.5", "0.5"]
+
+
+def test_a_decimal_comma_is_read_back_with_semicolons():
+    numbers = np.array([150.5, -1.25e-30, np.nan, 1 / 3, np.inf])
+    texts = ["a.b", "a;b", "a,b", 'a"b', "two\nlines"]
+    columns = (column_of_numbers("x;1", "", numbers), TableColumn("y,2", "", words_of(texts)))
+    written = csv_bytes(Columns("t", "", columns), decimal_comma=True).decode()
+    header, *rows = csv.reader(io.StringIO(written, newline=""), delimiter=";")
+    assert header == ["x;1", "y,2"]
+    assert [row[0] for row in rows] == ["150,5", "-1,25e-30", "", "0,3333333333333333", "inf"]
+    assert [row[1] for row in rows] == texts
+
+
+def test_an_empty_cell_alone_in_its_line_is_in_quotes_with_semicolons_too():
+    only = Columns("t", "", (column_of_numbers("x", "", np.array([np.nan, 0.5])),))
+    assert csv_bytes(only, decimal_comma=True) == b'x\n""\n0,5\n'

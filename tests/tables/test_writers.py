@@ -22,9 +22,12 @@ def test_each_format_writes_its_files(results):
         "md": ["table.md"],
         "json": ["analysis.json"],
         "tex": ["table.tex"],
+        "xlsx": ["analysis.xlsx"],
     }
     assert list(writers.WRITERS) == list(kinds)
     for name, files in kinds.items():
+        if name == "xlsx":
+            pytest.importorskip("openpyxl")
         assert list(writers.written_files([results], [name])) == [*files, "rows.csv"]
 
 
@@ -52,5 +55,5 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
 
 
 def test_an_unknown_format_is_refused_with_the_list():
-    with pytest.raises(UsageError, match="--format xml: formats are csv, md, json, tex"):
+    with pytest.raises(UsageError, match="--format xml: formats are csv, md, json, tex, xlsx"):
         _ = analyze.AnalyzeCommand([], None, ["xml"]).formats

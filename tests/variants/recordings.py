@@ -31,7 +31,7 @@ WITH_PARAMETERS = [
 
 
 def base_of(stem: str) -> Built:
-    return build(open_file(FILE_OF[stem]))
+    return build(*open_file(FILE_OF[stem]))
 
 
 def parameters_of(built: Built) -> dict[str, float]:
@@ -41,7 +41,8 @@ def parameters_of(built: Built) -> dict[str, float]:
 def built_anew(base: Built, values: Mapping[str, float]) -> Built:
     """By the ordinary path."""
     known = base.problem.parameters
-    return build(base.read, {n: Quantity(float(v), known[n].dimension) for n, v in values.items()})
+    given = {n: Quantity(float(v), known[n].dimension) for n, v in values.items()}
+    return build(base.file, base.document, given)
 
 
 def numbers_in(value: Any) -> Iterator[Any]:

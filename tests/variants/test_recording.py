@@ -82,7 +82,7 @@ def test_the_length_unit_follows_the_size() -> None:
 
 def replayed(text: str, name: str, value: float) -> tuple[int, Built | None]:
     """The verdict of a replay with another value, and the fresh build (None where it fails)."""
-    base = build(open_text(text, "text"))
+    base = build(*open_text(text, "text"))
     recorder, _ = record(base, [name])
     tape = recorder.tape([0])
     _, verdicts = replay(compiled(tape), np.array([[value]]))
@@ -130,7 +130,7 @@ def test_what_is_refused_is_no_replay(text: str, value: float) -> None:
 
 def test_a_dropped_guard_is_noticed() -> None:
     """Without its guards the tape of a negative mass would pass for a replay."""
-    base = build(open_text(crank(mass="p * 1 kg"), "text"))
+    base = build(*open_text(crank(mass="p * 1 kg"), "text"))
     recorder, _ = record(base, ["p"])
     tape = recorder.tape([0])
     none = replace(tape, guards=tape.guards[:0], expected=tape.expected[:0], advice=tape.advice[:0])
@@ -147,7 +147,7 @@ def test_a_dropped_guard_is_noticed() -> None:
     ],
 )
 def test_rows_that_depend_on_a_parameter(fields: dict[str, str]) -> None:
-    base = build(open_text(crank(**fields), "text"))
+    base = build(*open_text(crank(**fields), "text"))
     if "mass" in fields:
         record(base, ["p"])
         return

@@ -82,6 +82,19 @@ def test_a_way_that_stays_on_its_branch_arrives(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("start", [1e-9, 1e-11, 1e-12])
+def test_a_way_that_begins_beside_a_dead_centre_leaves_it(case: Case, start: float) -> None:
+    """Of the base, whose condition is 1e7 and more, no derivative is known."""
+    base = model(case, start)
+    first = base.analyze()
+    if first["row.status"][0] == "dead-centre":
+        return
+    case = sided(case, first)
+    for place in (1e-6, 1e-3, 1e-2):
+        check_place(case, place, base.with_parameters(put(case, place)).analyze())
+
+
+@pytest.mark.parametrize("case", CASES)
 def test_it_is_the_row_of_a_sweep_from_the_base(case: Case) -> None:
     """There and back, whatever stands between: the same branch, followed in the input."""
     for start, end in ((1.0, 0.1), (1.0, 1e-7), (1e-7, 1.0), (1e-8, 1e-2), (1e-6, 1e-9)):

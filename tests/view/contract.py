@@ -104,6 +104,13 @@ DATA = _object(
             kind={"enum": ["sweep", "response"]},
             title=TEXT,
             x=COLUMN,
+            ties=_list(
+                _object(
+                    kind={"enum": ["spring", "damper"]},
+                    links=_list(INDEX, minItems=2, maxItems=2),
+                    places=_list(VECTOR, minItems=2, maxItems=2),
+                )
+            ),
             branches=_list(BRANCH, minItems=1),
         )
     ),
@@ -112,7 +119,7 @@ DATA = _object(
             name=TEXT,
             title=TEXT,
             run=TEXT,
-            columns=_list(COLUMN),
+            columns=_list(_object(label=TEXT, unit=TEXT, exact=_or_null(_packed("f64")))),
             rows=_list(_list(TEXT)),
             status=_list(INDEX),
         )

@@ -115,6 +115,11 @@ def branch(
     }
 
 
+def exact_column(label: str, values: Floats, unit: str = "deg") -> dict[str, Any]:
+    """A column of a table with all digits of its numbers."""
+    return {"label": label, "unit": unit, "exact": packed("f64", values)}
+
+
 def page_data(
     name: str, links: Any, joints: Any, branches: Any, *, size: float, centre: Any, **more: Any
 ) -> dict[str, Any]:
@@ -137,6 +142,7 @@ def page_data(
                 "kind": "sweep",
                 "title": "sweep",
                 "x": {"label": "A.theta", "unit": "deg"},
+                "ties": [],
                 "branches": branches,
             }
         ],
@@ -279,9 +285,9 @@ def four_bar(rows: int = 73, poses: int | None = None) -> dict[str, Any]:
                 "title": "Angles of the four-bar",
                 "run": "sweep",
                 "columns": [
-                    {"label": "theta", "unit": "deg"},
-                    {"label": "psi", "unit": "deg"},
-                    {"label": "phi", "unit": "deg"},
+                    exact_column("theta", np.degrees(theta)),
+                    exact_column("psi", np.degrees(own.psi)),
+                    exact_column("phi", np.degrees(own.phi)),
                 ],
                 "rows": [
                     [f"{np.degrees(one):.2f}" for one in row]

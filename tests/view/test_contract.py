@@ -13,6 +13,7 @@ from view.contract import DATA
 from view.seen import array, data
 
 import mechkin_cli as mk
+from mechkin_cli.tables.columns import TableColumn, Words, column_texts
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.view.page import script_json
@@ -62,6 +63,13 @@ def test_the_form_is_told_from_another() -> None:
         jsonschema.validate(shown, DATA)
 
 
+def shown_cell(column: TableColumn, row: int) -> str:
+    """A cell as the terminal prints it."""
+    if isinstance(column.values, Words):
+        return column.values.texts([row])[0]
+    return column.texts(column_texts(column.values, column.decimals, column.rounding))[row]
+
+
 @pytest.mark.parametrize("stem", ["rcsr", "rcsr_response", "stewart", "bennett"])
 def test_tables_are_those_of_the_files(stem: str) -> None:
     model = mk.load(FILE_OF[stem])
@@ -74,7 +82,18 @@ def test_tables_are_those_of_the_files(stem: str) -> None:
         for table, found in zip((*every, rows), tables, strict=True):
             text = csv_bytes(table).decode()
             labels, *cells = csv.reader(io.StringIO(text, newline=""))
-            assert found["rows"] == [row or [""] for row in cells]
+            (run,) = (one for one in shown["runs"] if one["name"] == analysis.run)
+            own = run["branches"][0]["columns"]
+            curves = {one["label"]: one["values"] for one in own if one["table"] == table.name}
+            for column, told in zip(table.columns, found["columns"], strict=True):
+                if isinstance(column.values, Words):
+                    assert told["exact"] is None
+                else:
+                    exact = array(told["exact"] or curves[column.label])
+                    finite = np.isfinite(column.numbers)
+                    np.testing.assert_array_equal(exact[finite], column.numbers[finite])
+            printed = [[shown_cell(c, k) for c in table.columns] for k in range(len(cells))]
+            assert found["rows"] == printed
             assert [one["label"] for one in found["columns"]] == [c.label for c in table.columns]
             assert [one["unit"] for one in found["columns"]] == [c.unit for c in table.columns]
             assert len(labels) == len(found["columns"])
@@ -118,3 +137,46 @@ def test_what_is_not_unique_is_no_arrow() -> None:
     assert force["name"] == "B.force (x, y)"
     assert (array(force["values"]).reshape(-1, 3)[:, 2] == 0.0).all()
     assert "A.moment" not in names
+
+
+LOADED = """\
+format: 1
+units: {length: mm, angle: deg, mass: kg, force: N}
+links: {arm: {mass: 1, center_of_mass: [50, 0, 0]}}
+joints: {O: {type: R, links: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]}}
+points: {post: {link: ground, at: [0, 300, 0]}, tip: {link: arm, at: [100, 0, 0]}}
+motion: {inputs: {O.theta: {from: 0, to: 90, step: 30, rate: 0}}}
+loads:
+  - {type: force, link: arm, point: [100, 0, 0], force: [3, -4, 0]}
+  - {type: force, link: arm, point: [100, 0, 0], force: [0, 5 N, 0], axes: link}
+  - {type: torque, link: arm, torque: [0, 0, 2 N*m]}
+  - {type: torque, joint: O, value: "-(3 N*mm/rad)*O.theta"}
+  - {type: spring, between: [post, tip], stiffness: 2 N/mm, free: 10}
+tables: [{name: t, columns: [O.theta, O.effort]}]
+"""
+
+
+def test_loads_are_arrows_where_they_act() -> None:
+    """A crank of 100 mm: closed forms of every load."""
+    (own,) = data(mk.loads(LOADED), modes=False)["runs"][0]["branches"]
+    arrows = {one["name"]: one for one in own["arrows"]}
+    turn = np.radians([0.0, 30.0, 60.0, 90.0])
+    zero, ones = 0.0 * turn, np.ones(4)
+    tip = 100.0 * np.stack([np.cos(turn), np.sin(turn), zero], axis=1)
+    apart = np.array([0.0, 300.0, 0.0]) - tip
+    length = np.linalg.norm(apart, axis=1)[:, None]
+    spring = 2.0 * (length - 10.0) * apart / length
+    expected = {
+        "force on arm": ("force", np.outer(ones, [3.0, -4.0, 0.0])),
+        "force on arm, 2": ("force", 5.0 * np.stack([-np.sin(turn), np.cos(turn), zero], axis=1)),
+        "torque on arm": ("moment", np.outer(ones, [0.0, 0.0, 2000.0])),
+        "load at O.theta": ("moment", np.stack([zero, zero, -3.0 * turn], axis=1)),
+        "spring on arm": ("force", spring),
+        "spring on ground": ("force", -spring),
+    }
+    for name, (kind, values) in expected.items():
+        assert arrows[name]["kind"] == kind
+        found = array(arrows[name]["values"]).reshape(-1, 3)
+        np.testing.assert_allclose(found, values, rtol=1e-6, atol=1e-4, err_msg=name)
+    assert arrows["force on arm"]["place"] == [100.0, 0.0, 0.0]
+    assert arrows["spring on ground"]["place"] == [0.0, 300.0, 0.0]

@@ -132,3 +132,20 @@ def test_a_second_run_is_shown(show: Show) -> None:
 def slider_run() -> dict[str, Any]:
     """The four-bar's run against time."""
     return {**four_bar()["runs"][0], "x": {"label": "t", "unit": "s"}}
+
+
+def test_space_plays_after_any_click(show: Show) -> None:
+    browser = show(four_bar())
+    for clicked in (".tick input", ".tick span", "#legend button", "#tab-tables", ".theme"):
+        browser.click(clicked)
+        before = browser.evaluate("document.querySelector('.play').getAttribute('aria-label')")
+        browser.press("Space")
+        after = browser.evaluate("document.querySelector('.play').getAttribute('aria-label')")
+        assert before != after, clicked
+
+
+def test_keys_reach_what_tab_went_to(show: Show) -> None:
+    browser = show(four_bar())
+    browser.evaluate("document.querySelector('#tab-tables').focus()")
+    browser.press("Space")
+    assert browser.evaluate("document.querySelector('.play').getAttribute('aria-label')") == "Play"

@@ -7,8 +7,16 @@ import pytest
 from view.page_data import (
     TYPES,
     FourBar,
+    about_z,
+    at_rest,
+    branch,
     four_bar,
+    half,
+    joint,
+    link,
     one_of_every_type,
+    page_data,
+    rod,
     slider,
 )
 from view.watching import CURVES, SINGLE, Show, colours, moved, pose, row
@@ -39,8 +47,8 @@ def test_something_is_drawn_and_each_link_in_its_colour(show: Show) -> None:
     browser = show(four_bar())
     full = colours(browser)
     assert len(full) > 12
-    for link in range(1, 4):
-        browser.evaluate(f"window.mechkin.theatre.setLinkVisible({link}, false)")
+    for number in range(1, 4):
+        browser.evaluate(f"window.mechkin.theatre.setLinkVisible({number}, false)")
         assert colours(browser) != full
     browser.evaluate("window.mechkin.theatre.setLinkVisible(0, false)")
     browser.evaluate("window.mechkin.theatre.setShown('paths', false)")
@@ -111,3 +119,74 @@ def test_modes_are_switched_and_compared(show: Show) -> None:
     bar, home = FourBar(np.radians([50.0])), FourBar(np.array([0.0]))
     half = (bar.psi - home.psi)[0] / 2
     np.testing.assert_allclose(ghost, [0, 0, np.sin(half), np.cos(half)], atol=1e-6)
+
+
+def test_all_modes_are_compared(show: Show) -> None:
+    data = four_bar()
+    branches = data["runs"][0]["branches"]
+    branches += [{**branches[1], "name": f"mode {k}"} for k in range(3, 14)]
+    browser = show(data)
+    browser.press("c")
+    assert browser.evaluate("window.mechkin.theatre.ghosts.length") == 12
+    assert browser.evaluate("document.querySelector('#curves .remark').textContent").endswith(
+        "mode 13"
+    )
+
+
+def test_values_of_many_arrows_are_written_or_counted(show: Show) -> None:
+    data = four_bar()
+    for one in data["runs"][0]["branches"]:
+        arrow = one["arrows"][0]
+        one["arrows"] = [{**arrow, "name": f"A{k}.force"} for k in range(30)]
+    browser = show(data)
+    browser.press("f")
+    browser.evaluate("window.mechkin.theatre.stage.draw()")
+    written = browser.evaluate("document.querySelectorAll('.name.force:not([hidden])').length")
+    told = browser.evaluate("document.querySelector('#no-room').textContent")
+    assert written > 0
+    assert told.startswith(f"{30 - written} of 30 values have no room")
+
+
+def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 11)
+    circle = 20.0 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    poses = about_z(angle, np.array([20.0, 0, 0]), circle)
+    data = page_data(
+        "circle",
+        [link("ground"), link("arm", rod([0, 0, 0], [20, 0, 0]))],
+        [joint("A", "R", (0, 1), half([0, 0, 0]))],
+        [branch("own", np.degrees(angle), np.stack([at_rest(11), poses], axis=1))],
+        size=40.0,
+        centre=[0.0, 0.0, 0.0],
+        points=[{"name": "tip", "link": 1, "place": [20, 0, 0], "path": True}],
+    )
+    browser = show(data)
+    drawn = np.array(
+        browser.evaluate(
+            "[...window.mechkin.theatre.paths.object.children.find((each) => each.isLine)"
+            ".geometry.attributes.position.array]"
+        )
+    ).reshape(-1, 3)
+    assert len(drawn) > 60
+    np.testing.assert_allclose(np.hypot(drawn[:, 0], drawn[:, 1]), 20.0, rtol=2e-5)
+    between = 0.5 * (drawn[1:] + drawn[:-1])
+    assert np.hypot(between[:, 0], between[:, 1]).min() > 0.998 * 20.0
+
+
+def test_a_spring_ends_at_its_points(show: Show) -> None:
+    data = four_bar()
+    tie = {"kind": "spring", "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
+    data["runs"][0]["ties"] = [tie, {**tie, "kind": "damper"}]
+    browser = show(data)
+    bar = FourBar(np.radians([90.0]))
+    browser.evaluate("window.mechkin.seek(18)")
+    for k in (0, 1):
+        ends = browser.evaluate(f"""(() => {{
+          const {{ group }} = window.mechkin.theatre.ties.all[{k}];
+          group.updateMatrixWorld(true);
+          const whole = window.mechkin.theatre.ties.all[{k}].length;
+          const place = (y) => group.position.clone().set(0, y, 0);
+          const at = (y) => place(y).applyMatrix4(group.matrixWorld).toArray();
+          return [at(0), at(whole)];
+        }})()""")
+        np.testing.assert_allclose(ends, [[0, 50, 0], bar.crank[0]], atol=SINGLE * 300)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from view.browser import Browser
-from view.page_data import (
-    four_bar,
-)
+from view.page_data import four_bar, packed
 from view.watching import Show, colours, row
 
 
@@ -31,14 +30,19 @@ def test_dark_and_light(show: Show) -> None:
 
 def test_print_shows_picture_and_all_panels(show: Show, tmp_path: Path) -> None:
     data = four_bar()
-    data["tables"][0]["rows"][0] = ["0.1234567890123", "-1.5", "1.23456789e-05"]
+    data["tables"][0]["rows"][0] = ["0.123457", "-1.5", "1.23457e-05"]
+    first_row = (0.1234567890123, -1.5, 1.23456789e-5)
+    for column, value in zip(data["tables"][0]["columns"], first_row, strict=True):
+        column["exact"] = packed("f64", np.full(73, value))
     browser = show(data, dark=True)
     first = (
         "[...document.querySelector('tr[data-at=\"0\"]').children].map((each) => each.textContent)"
     )
     assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
+    titles = browser.evaluate(first.replace("textContent", "title"))
+    assert titles[:3] == ["0.1234567890123", "", "0.0000123456789"]
     browser.media(media="print")
-    assert browser.evaluate(first)[:3] == ["0.123457", "-1.5", "0.0000123457"]
+    assert browser.evaluate(first)[:3] == data["tables"][0]["rows"][0]
     shown = "getComputedStyle(document.querySelector('{0}')).display"
     assert browser.evaluate(shown.format("#printed")) == "block"
     assert browser.evaluate("document.querySelector('#printed').src.length") > 5000
@@ -50,6 +54,18 @@ def test_print_shows_picture_and_all_panels(show: Show, tmp_path: Path) -> None:
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
     browser.media(media="screen")
     assert browser.evaluate(shown.format("#printed")) == "none"
+
+
+def test_paper_has_the_names_that_the_screen_has(show: Show) -> None:
+    pictures = []
+    for names in (True, False):
+        browser = show(four_bar())
+        browser.evaluate(f"window.mechkin.theatre.setShown('names', {str(names).lower()})")
+        browser.evaluate("window.mechkin.theatre.stage.draw()")
+        browser.media(media="print")
+        pictures.append(browser.evaluate("document.querySelector('#printed').src"))
+        browser.media(media="screen")
+    assert pictures[0] != pictures[1]
 
 
 @pytest.mark.parametrize("width", [360, 768])

@@ -142,7 +142,10 @@ def test_many_columns_and_modes_share_a_page() -> None:
         assert array(one["poses"]["rows"]).size == MOST_POSES
     (table, *_) = shown["tables"]
     x = array(shown["runs"][0]["branches"][0]["x"])
-    assert [float(row[0]) for row in table["rows"]] == x.tolist()
+    first = branch(shown)["columns"][0]
+    assert (first["table"], first["label"]) == (table["name"], "theta1")
+    assert array(first["values"]).tolist() == x.tolist()
+    assert len(table["rows"]) == x.size
     assert len(script_json(shown)) < 22_000_000
 
 

@@ -70,6 +70,8 @@ const KernelUnit& unit_or_throw(int lanes) {
 }
 
 NB_MODULE(_kernel, m) {
+  // what Python still remembers as it ends is no leak, and no word for users
+  nb::set_leak_warnings(false);
   m.doc() = "Compiled core of mechkin: closure, motion and reactions of a planned mechanism, in lanes.";
   m.attr("widest") = kernel_unit()->lanes;
   m.def("joint_table", &joint_table);

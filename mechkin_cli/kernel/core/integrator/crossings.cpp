@@ -169,7 +169,11 @@ void March::search(Method& method, const Flags& crossed, const Flags& suspected,
       c.landing_slope = found[i].slope / step;
     }
   }
-  if (any(here)) pass(here, which);
+  if (!any(here)) return;
+  // what stops, and slips that end, are read off the place where the lanes stand, not off the step's end
+  Flags standing = here;
+  states_.evaluate(states_.time.data(), states_.y.data(), true, &standing, other_slope_.data(), values_.data());
+  pass(here, which);
   for (int i = 0; i < states_.lanes; ++i)
     if (here[i] && control_[i].running) tell(i, which[i]);
 }

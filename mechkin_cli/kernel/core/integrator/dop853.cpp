@@ -61,6 +61,9 @@ constexpr double LEAST_ROOT = 0.8659643233600653;  // of an error of 1e-4 before
 constexpr double STABLE = 6.1;  // about the boundary of stability on the negative real axis
 constexpr double NOISE = 1e-15;  // a distance of two places that rounding alone makes says nothing
 constexpr int INNER_STAGE[2] = {5, 8};
+// A step follows the values of switches: in parts of their range in it, how far they may be from the cubic through its ends
+// and inner places; in parts of the duration, the longest step for which that does not matter.
+constexpr double RESOLVED = 0.1, SHORT = 1e-5;
 
 }  // namespace
 
@@ -68,7 +71,7 @@ Dop853::Dop853(const LaneStates& lanes)
     : slopes_(dop853::ALL_STAGES * lanes.entries), steps_(lanes.entries), place_(lanes.entries), last_(lanes.entries),
       stage_time_(lanes.lanes), mean_(lanes.entries), fifth_(lanes.entries), third_(lanes.entries),
       scale_(lanes.entries), worst_fifth_(lanes.lanes), worst_third_(lanes.lanes),
-      switches_(lanes.kinds.size() * lanes.lanes), coefficients_(7 * lanes.entries),
+      switches_(lanes.kinds.size() * lanes.lanes), staged_(dop853::STAGES * switches_.size()), coefficients_(7 * lanes.entries),
       wanted_(lanes.lanes), root_(lanes.lanes), root_before_(lanes.lanes, LEAST_ROOT), was_refused_(lanes.lanes, 0), stiff_(lanes.lanes, 0),
       not_stiff_(lanes.lanes, 0) {}
 
@@ -94,9 +97,11 @@ void Dop853::attempt(LaneStates& s, const Flags& asked) {
   }
   std::copy_n(slopes_.data() + dop853::STAGES * entries, entries, s.slope_end.data());
   estimate(s, mask);
+  if (!s.kinds.empty()) resolve_switches(s, mask);
 }
 
 void Dop853::note_switches(LaneStates& s, int stage) {
+  std::copy(switches_.begin(), switches_.end(), staged_.begin() + (long)(stage * switches_.size()));
   for (std::size_t k = 0; k < switches_.size(); ++k) {
     const double inward = s.good(k, switches_[k]);
     if (inward < s.switch_least[k]) s.switch_least[k] = inward;
@@ -106,6 +111,44 @@ void Dop853::note_switches(LaneStates& s, int stage) {
       s.inner[k] = dop853::C[stage];
       s.switch_inner[k] = switches_;
     }
+}
+
+// A value that swings faster than the motion, which may pass its zero and come back between the places of a step, makes the
+// step shorter: by the order of the cubic that it leaves.
+void Dop853::resolve_switches(LaneStates& s, const Flags& mask) {
+  if (s.settings.fixed_step > 0.0) return;
+  for (int which = 0; which < (int)s.kinds.size(); ++which) {
+    if (s.kinds[which].moves) continue;
+    for (int i = 0; i < s.lanes; ++i) {
+      if (!mask[i] || !(s.step[i] > SHORT * s.duration[i])) continue;
+      const double part = unresolved(s, which, i);
+      if (!(part > 0.0)) continue;
+      const double factor = std::max(LEAST_FACTOR, SAFETY * std::sqrt(std::sqrt(RESOLVED / part)));
+      s.factor[i] = std::min(s.factor[i], factor);
+      if (part > RESOLVED) s.error[i] = std::max(s.error[i], part / RESOLVED);
+    }
+  }
+}
+
+// How far the values of a switch are from the cubic through the step's ends and inner places, in parts of their range; 0
+// where that is too small for a zero between them.
+double Dop853::unresolved(const LaneStates& s, int which, int lane) const {
+  const std::size_t k = (std::size_t)which * s.lanes + lane;
+  const double x[4] = {0.0, s.inner[0], s.inner[1], 1.0};
+  const double y[4] = {s.switch_value[k], s.switch_inner[0][k], s.switch_inner[1][k], s.switch_end[k]};
+  const double d01 = (y[1] - y[0]) / (x[1] - x[0]), d12 = (y[2] - y[1]) / (x[2] - x[1]), d23 = (y[3] - y[2]) / (x[3] - x[2]);
+  const double bend = (d12 - d01) / (x[2] - x[0]), third = ((d23 - d12) / (x[3] - x[1]) - bend) / (x[3] - x[0]);
+  double least = std::min(std::min(y[0], y[1]), std::min(y[2], y[3])), most = std::max(std::max(y[0], y[1]), std::max(y[2], y[3]));
+  double off = 0.0;
+  for (int stage = 2; stage < dop853::STAGES - 1; ++stage) {
+    const double at = dop853::C[stage], value = staged_[(std::size_t)stage * switches_.size() + k];
+    const double cubic = y[0] + (at - x[0]) * (d01 + (at - x[1]) * (bend + third * (at - x[2])));
+    off = std::max(off, std::fabs(value - cubic));
+    least = std::min(least, value), most = std::max(most, value);
+  }
+  const double range = most - least, nearest = std::min(std::fabs(least), std::fabs(most));
+  const bool reaches = least * most <= 0.0 || nearest <= range;
+  return reaches && range < __builtin_inf() && off > 0.0 ? off / range : 0.0;
 }
 
 // The error of the step by the estimates of orders 5 and 3 together, the largest of all components. (II.10.17)

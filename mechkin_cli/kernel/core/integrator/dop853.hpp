@@ -20,13 +20,15 @@ class Dop853 : public Method {
   void estimate(LaneStates& lanes, const Flags& mask);
   void control(LaneStates& lanes, const Flags& mask);
   void note_switches(LaneStates& lanes, int stage);
+  void resolve_switches(LaneStates& lanes, const Flags& mask);
+  double unresolved(const LaneStates& lanes, int which, int lane) const;
   double stability(const LaneStates& lanes, int lane) const;
 
   std::vector<double> slopes_;            // stages, [stage][component][lane]
   std::vector<double> steps_;             // the steps, for each component
   std::vector<double> place_, last_;      // a stage's y; that of the last stage
   std::vector<double> stage_time_, mean_, fifth_, third_, scale_, worst_fifth_, worst_third_;
-  std::vector<double> switches_;
+  std::vector<double> switches_, staged_; // values of a stage; of all stages, [stage][switch][lane]
   std::vector<double> coefficients_;      // of the interpolation, 7 x components x lanes
   std::vector<double> wanted_, root_, root_before_;  // lanes: see `control`; of the last step taken
   Flags was_refused_;

@@ -8,6 +8,7 @@
 // Hairer's test finds that the explicit steps are short for stability alone.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "result.hpp"
@@ -54,6 +55,12 @@ class Motion {
   virtual std::vector<SwitchKind> switches() const { return {}; }
 
   virtual void rates(const Places& places, const Rates& rates) = 0;
+  // The sides of switches where the lanes start are known, and need not be those that the motion was made with: what it
+  // decides by the rates there is decided anew. The mask (lanes) keeps those for which that made a difference.
+  virtual void begin(const signed char* side, unsigned char* lanes) {
+    (void)side;
+    std::fill_n(lanes, this->lanes(), 0);
+  }
   // These lanes' last place that was asked with `is_end` is taken: it is the origin of a new chart. `y` and `rates`, there
   // in the old chart, become those in the new one: u = 0, w as it is. `longest` (lanes, infinite before) may be set to the
   // longest step that the chart is likely to bear. Called in time order, before `row` and `event` of that place.

@@ -6,6 +6,8 @@
 
 namespace {
 
+constexpr int BEGINNINGS = 4;  // how often sides and what the motion decides by them may change each other
+
 double eighth_root(double x) { return std::sqrt(std::sqrt(std::sqrt(x))); }
 
 }  // namespace
@@ -35,13 +37,19 @@ void March::start(const double* time, const std::vector<double>& y) {
   if (any(mask) && states_.settings.fixed_step == 0.0) first_steps(mask);
 }
 
-// A switch begins on the side that its value tells, or that it has a moment later where it is zero. Rates that were
+// A switch begins on the side that its value tells, or that it has a moment later where it is zero; one that moves on its
+// good side, and is met at once where that is not so. Rates that were
 // taken on another side are taken anew; lanes that had a fault on that side alone come into the mask.
 void March::first_sides(Flags* mask) {
   const int lanes = states_.lanes;
   if (states_.kinds.empty()) return;
-  for (std::size_t k = 0; k < states_.side.size(); ++k) states_.side[k] = states_.switch_value[k] < 0.0 ? -1 : 1;
-  settle_sides(Flags(lanes, 1), std::vector<int>(lanes, -1), true);
+  for (std::size_t k = 0; k < states_.side.size(); ++k)
+    states_.side[k] = states_.switch_value[k] < 0.0 && !states_.kinds[k / lanes].moves ? -1 : 1;
+  Flags open(lanes, 1);
+  for (int k = 0; k < BEGINNINGS && any(open); ++k) {
+    settle_sides(open, std::vector<int>(lanes, -1), true);
+    states_.motion.begin(states_.side.data(), open.data());
+  }
   Flags stands(lanes, 1);
   states_.evaluate(states_.time.data(), states_.y.data(), true, &stands, states_.slope.data(),
                    states_.switch_value.data());

@@ -26,6 +26,8 @@ std::vector<double> March::roundings(const Flags& mask, const std::vector<double
       at_[i] = states_.time[i] + TIME_ROUNDING * std::max(std::fabs(states_.time[i]), states_.duration[i]);
     place_ = states_.y;
     for (long k = 0; k < 2 * moved; ++k) {
+      // a rate that is zero is exact: of what starts from rest, or has come to it by friction
+      if (k >= moved && place_[k] == 0.0) continue;
       const double off = k < moved ? PLACE_ROUNDING : RATE_ROUNDING * states_.speed[k % lanes];
       place_[k] += k / lanes % 2 ? way * off : off;
     }
@@ -74,7 +76,9 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
   const int lanes = states_.lanes, switches = (int)states_.kinds.size();
   std::vector<double> slope(states_.entries), values(states_.side.size());
   Flags turned(states_.side.size(), 0);
-  const auto is_open = [&](int s, int i) { return s != known[i] && (is_start || states_.kinds[s].may_be_nothing()); };
+  const auto is_open = [&](int s, int i) {
+    return s != known[i] && (states_.kinds[s].may_be_nothing() || (is_start && !states_.kinds[s].moves));
+  };
   const auto turn = [&](int s, int i) {
     const std::size_t at = (std::size_t)s * lanes + i;
     states_.turn(at, values[at]);
@@ -119,11 +123,13 @@ void March::settle_sides(Flags mask, std::vector<int> known, bool is_start) {
   std::fill(states_.fault.begin(), states_.fault.end(), 0);
 }
 
-// Whether a kink has another value than at the last place: it holds one that was passed.
+// Whether a kink has another value than at the last place: it holds one that was passed; or none where a rate has come to
+// rest, which it then rests with.
 bool March::has_changed(int lane, int but, const std::vector<double>& values) const {
   for (int s = 0; s < (int)states_.kinds.size(); ++s) {
     const std::size_t k = (std::size_t)s * states_.lanes + lane;
-    if (s != but && states_.kinds[s].may_be_nothing() && values[k] != states_.switch_value[k]) return true;
+    if (s == but || !states_.kinds[s].may_be_nothing()) continue;
+    if (values[k] != states_.switch_value[k] || (values[k] == 0.0 && states_.kinds[but].moves)) return true;
   }
   return false;
 }

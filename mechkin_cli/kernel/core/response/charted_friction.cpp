@@ -22,6 +22,11 @@ constexpr double NO_START = 1e-9, GOES = 10.0;
 // Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
 constexpr double NO_SLIP = 1e-14;
 
+// Where the slips' independent directions are counted: from the start so far, in rad and parts of the size, so many places.
+constexpr double NEAR_START[] = {0.0, 1e-4, 1e-2};
+constexpr int PLACES_NEAR = 2;
+constexpr double GOLDEN = 0.6180339887498949;
+
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -40,7 +45,7 @@ SlipStage ChartedMotion::make_slips() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long m = ::slip_columns(plan_), n = plan_.frictions;
   return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1),
-          make(n * TOLD_NUMBERS)};
+          make(n * TOLD_NUMBERS), make(n), make(2 * m)};
 }
 
 bool ChartedMotion::rubs(int lane, int k) const {
@@ -56,24 +61,78 @@ void ChartedMotion::begin_slips() {
   for (int k = 0; k < n; ++k) s.first.push_back(s.first.back() + slip_components(plan_, plan_.friction[k]));
   s.columns = s.first.back();
   s.sense.assign((std::size_t)n * lanes_, 1.0), s.quiet.assign((std::size_t)n * lanes_, 0.0);
-  s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0);
+  s.span.assign((std::size_t)n * lanes_, 0.0), s.way.assign(2 * (std::size_t)s.columns * lanes_, 0.0);
+  s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0.0);
   s.started.assign((std::size_t)n * lanes_, NAN);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
   const Packed rate = rate_;
-  for (int l = 0; l < lanes_; ++l) {
-    std::vector<double> v;
-    for (int i = 0; i < plan_.charts; ++i) v.push_back(at(rate, i, l));
-    for (double x : v) s.fastest[l] = std::max(s.fastest[l], std::fabs(x));
-    evaluate_here(l, v, &trial_);
-    for (int k = 0; k < n; ++k)
-      if (rubs(l, k) && slip_columns(k) == 1) sense(l, k) = at(trial_.slip.rate, s.first[k], l) < 0.0 ? -1.0 : 1.0;
-    settle(l, -1, &v);
-    arm(trial_, l);
-  }
+  find_spans();
+  for (int l = 0; l < lanes_; ++l) begin_slips(l);
   place_.assign(place_.size(), 0.0), rate_ = rate;
   for (int l = 0; l < lanes_; ++l) elapsed_[l] = 0.0;
+}
+
+void ChartedMotion::begin_slips(int lane) {
+  SlipMemory& s = slips_;
+  const std::vector<double> y = start();
+  std::vector<double> v;
+  for (int i = 0; i < plan_.charts; ++i) v.push_back(y[(std::size_t)(plan_.charts + i) * lanes_ + lane]);
+  for (double x : v) s.fastest[lane] = std::max(s.fastest[lane], std::fabs(x));
+  for (int k = 0; k < plan_.frictions; ++k) sense(lane, k) = 1.0;
+  evaluate_here(lane, v, &trial_);
+  for (int k = 0; k < plan_.frictions; ++k)
+    if (rubs(lane, k) && has_sign(lane, k)) sense(lane, k) = at(trial_.slip.rate, s.first[k], lane) < 0.0 ? -1.0 : 1.0;
+  settle(lane, -1, &v);
+  arm(trial_, lane);
+}
+
+// The forces that decide what sticks are those on the sides of kinks where the lanes start.
+void ChartedMotion::begin(const signed char* side, unsigned char* lanes) {
+  const int kinks = plan_.law.kinks;
+  const Packed place = place_, rate = rate_, elapsed = elapsed_;
+  for (int l = 0; l < lanes_; ++l) {
+    if (!lanes[l]) continue;
+    bool is_other = false;
+    for (int k = 0; k < kinks; ++k) {
+      const double now = side[k * lanes_ + l];
+      is_other = is_other || now != decided_by_[k * lanes_ + l];
+      decided_by_[k * lanes_ + l] = side_[k * lanes_ + l] = now;
+    }
+    lanes[l] = plan_.frictions && is_other;
+    if (lanes[l]) begin_slips(l);
+  }
+  place_ = place, rate_ = rate, elapsed_ = elapsed;
+}
+
+// In how many independent directions the mechanism lets each joint slip: of places near the start the most, as it may stand
+// where there are fewer.
+void ChartedMotion::find_spans() {
+  const int n = plan_.charts;
+  Packed span((std::size_t)plan_.frictions * lanes_, 0.0);
+  std::fill(rate_.begin(), rate_.end(), 0.0), std::fill(elapsed_.begin(), elapsed_.end(), 0.0);
+  evaluate(place_.data(), rate_.data(), &trial_);
+  jacobian_ = trial_.jacobian;
+  for (double far : NEAR_START)
+    for (int which = 0; which < PLACES_NEAR; ++which) {
+      for (int i = 0; i < n; ++i) {
+        const double part = (i + 1) * GOLDEN + which * GOLDEN * GOLDEN;
+        for (int l = 0; l < lanes_; ++l) place_[(long)i * lanes_ + l] = far * (part - std::floor(part) - 0.5);
+      }
+      evaluate(place_.data(), rate_.data(), &trial_);
+      for (int l = 0; l < lanes_; ++l) {
+        if (trial_.flags[l] & (STAGE_NOT_CLOSED | STAGE_OFF_BRANCH)) continue;
+        for (int k = 0; k < plan_.frictions; ++k) {
+          double& most = span[(std::size_t)k * lanes_ + l];
+          most = std::max(most, at(trial_.slip.span, k, l));
+        }
+      }
+    }
+  std::fill(place_.begin(), place_.end(), 0.0);
+  slips_.span = span;
+  evaluate(place_.data(), rate_.data(), &trial_);
+  slips_.way = trial_.slip.way;
 }
 
 // Of a joint's columns.
@@ -104,10 +163,13 @@ double ChartedMotion::unsure(const Stage& found, int lane, int k) const {
 double ChartedMotion::slip_switch(const Stage& found, int lane, int k) const {
   if (!rubs(lane, k)) return 1.0;
   const double sense = slips_.sense[(std::size_t)k * lanes_ + lane];
-  if (sense != 0.0 && slip_columns(k) == 1) return sense * at(found.slip.rate, slips_.first[k], lane) + unsure(found, lane, k);
+  if (sense != 0.0 && has_sign(lane, k)) return sense * at(found.slip.rate, slips_.first[k], lane) + unsure(found, lane, k);
   if (sense != 0.0) {
-    const double end = AT_END * slips_.fastest[lane] * lever(found, lane, k);
-    return slip_size(found.slip.rate, lane, k) - (slips_.armed[(std::size_t)k * lanes_ + lane] ? end : 0.0);
+    if (slips_.armed[(std::size_t)k * lanes_ + lane] == 0.0) return slip_size(found.slip.rate, lane, k);
+    double ahead = 0.0;
+    for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
+      ahead += slips_.aim[(std::size_t)c * lanes_ + lane] * at(found.slip.rate, c, lane);
+    return ahead;
   }
   if (at(found.slip.loose, k, lane) != 0.0) return 1.0;
   const double force = slip_size(found.slip.force, lane, k), limit = at(found.slip.limit, k, lane);
@@ -178,16 +240,21 @@ void ChartedMotion::tell_undecided(const Stage& found, int lane) {
 void ChartedMotion::arm(const Stage& found, int lane) {
   for (int k = 0; k < plan_.frictions; ++k) {
     const std::size_t e = (std::size_t)k * lanes_ + lane;
-    if (slip_columns(k) == 1 && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k) &&
+    if (has_sign(lane, k) && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k) &&
         time_[lane] > slips_.started[e])
       slips_.started[e] = NAN;
-    if (slip_columns(k) == 1 || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
-    const double size = slip_size(found.slip.rate, lane, k);
-    if (!(size > ARMED * AT_END * slips_.fastest[lane] * lever(found, lane, k))) continue;
-    slips_.armed[(std::size_t)k * lanes_ + lane] = 1;
-    for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
-      slips_.aim[(std::size_t)c * lanes_ + lane] = at(found.slip.rate, c, lane) / size;
+    if (has_sign(lane, k) || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
+    const double size = slip_size(found.slip.rate, lane, k), least = slips_.armed[e] != 0.0 ? 1.0 : ARMED;
+    if (size > least * AT_END * slips_.fastest[lane] * lever(found, lane, k)) aim_along(found, lane, k);
   }
+}
+
+// A slip in several directions has begun, and goes where its rate does.
+void ChartedMotion::aim_along(const Stage& found, int lane, int k) {
+  const double size = slip_size(found.slip.rate, lane, k);
+  slips_.armed[(std::size_t)k * lanes_ + lane] = 1.0;
+  for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
+    slips_.aim[(std::size_t)c * lanes_ + lane] = at(found.slip.rate, c, lane) / size;
 }
 
 Matrix ChartedMotion::inertia_matrix(const Stage& found, int lane) const {
@@ -291,7 +358,7 @@ std::vector<int> ChartedMotion::undecided_joints(int lane, const LaneReport& rep
   if (report.end != LaneEnd::STUCK || report.fault) return starting;
   for (int f = 0; f < plan_.frictions; ++f) {
     const std::size_t at = (std::size_t)f * lanes_ + lane;
-    const bool starts = slip_columns(f) > 1 && slips_.sense[at] != 0.0 && !slips_.armed[at];
+    const bool starts = !has_sign(lane, f) && slips_.sense[at] != 0.0 && slips_.armed[at] == 0.0;
     if (rubs(lane, f) && (starts || feeds_itself(lane, f))) starting.push_back(f);
   }
   return starting;

@@ -8,15 +8,14 @@
 
 // A stage's slips, as StageFound has them.
 struct SlipStage {
-  Packed rate, second, force, row, limit, loose, state, answer, level, told;
+  Packed rate, second, force, row, limit, loose, state, answer, level, told, span, way;
 };
 
 struct SlipMemory {
   int columns = 0;
   std::vector<int> first;            // frictions + 1: of their columns
-  Packed sense, quiet, aim;          // as StageGiven has them
+  Packed sense, quiet, aim, armed, span, way;  // as StageGiven has them
   std::vector<signed char> pushed;   // frictions x lanes: the sign of a force that was last more than friction holds
-  std::vector<unsigned char> armed;  // frictions x lanes: slips in several directions that have begun
   std::vector<double> started;       // frictions x lanes: s: when a slip of one direction was let go, NaN once it goes
   std::vector<double> fastest;       // lanes: the largest rate of a chart so far
   std::vector<double> duration;      // lanes: of the motion, s

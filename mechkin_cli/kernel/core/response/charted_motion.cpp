@@ -71,6 +71,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   const std::vector<double> y = start();
   std::copy(y.begin() + (long)plan_.charts * lanes_, y.begin() + 2L * plan_.charts * lanes_, rate_.begin());
   std::fill(side_.begin(), side_.end(), 1.0);
+  decided_by_ = side_;
   if (plan_.frictions) begin_slips();
   evaluate(place_.data(), rate_.data(), &found_);
   jacobian_ = found_.jacobian, origin_second_ = found_.second, turn_ = found_.turned;
@@ -99,6 +100,7 @@ std::vector<double> ChartedMotion::start() const {
 void ChartedMotion::evaluate(const double* place, const double* rate, Stage* found, double* bend, bool turns) {
   StageGiven given = {};
   given.sense = slips_.sense.data(), given.quiet = slips_.quiet.data(), given.aim = slips_.aim.data();
+  given.armed = slips_.armed.data(), given.span = slips_.span.data(), given.way = slips_.way.data();
   given.origin = origin_.data(), given.origin_rate = origin_first_.data(), given.origin_second = origin_second_.data();
   given.miss = miss_.data(), given.miss_elapsed = miss_elapsed_.data();
   given.direction = direction_.data(), given.origin_jacobian = jacobian_.data(), given.elapsed = elapsed_.data();
@@ -119,7 +121,8 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
                           found->inertia.data(), found->watched.data(), found->power.data(), found->turned.data(),
                           found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
                           found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
-                          found->slip.state.data(), found->slip.answer.data(), found->slip.level.data(), found->slip.told.data(),
+                          found->slip.state.data(), found->slip.answer.data(), found->slip.span.data(), found->slip.way.data(),
+                          found->slip.level.data(), found->slip.told.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }
@@ -323,6 +326,7 @@ void ChartedMotion::accept(const unsigned char* lanes, const double* time, doubl
     for (int k = 0; k < 2; ++k) done_[k * lanes_ + l] = y[(2 * n + k) * lanes_ + l];
     if (plan_.frictions) hold_sticking(l);
     continue_turns(l, end_.turned);
+    if (plan_.frictions) take(end_.slip.way, 2L * slips_.columns, slips_.way);
     take(end_.state, plan_.states, last_);
     const bool is_kept = keeps_curve(l, time[l], y);
     for (int i = 0; i < n; ++i) y[i * lanes_ + l] = 0.0;

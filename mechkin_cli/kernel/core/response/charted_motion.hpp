@@ -86,6 +86,7 @@ class ChartedMotion : public Motion {
   int quadratures() const override { return works() + (plan_.frictions ? slips_.columns + plan_.frictions : 0); }
   int works() const override { return 2; }
   std::vector<SwitchKind> switches() const override;
+  void begin(const signed char* side, unsigned char* lanes) override;
   void rates(const Places& places, const Rates& rates) override;
   void accept(const unsigned char* lanes, const double* time, double* y, double* rates, double* longest) override;
   void sizes(const unsigned char* lanes, double* size) override;
@@ -143,10 +144,16 @@ class ChartedMotion : public Motion {
   // charted_friction.cpp
   SlipStage make_slips() const;
   void begin_slips();
+  void begin_slips(int lane);
+  void find_spans();
   // A switch for each friction, and one for those that rest with forces that are not unique.
   int slip_switches() const { return plan_.frictions ? plan_.frictions + 1 : 0; }
   bool rubs(int lane, int k) const;
   int slip_columns(int k) const { return slips_.first[k + 1] - slips_.first[k]; }
+  // Whether a joint slips along a line, so that its slip, in its first column, has a sign.
+  bool has_sign(int lane, int k) const {
+    return slip_columns(k) == 1 || slips_.span[(std::size_t)k * lanes_ + lane] == 1.0;
+  }
   double& sense(int lane, int k) { return slips_.sense[(std::size_t)k * lanes_ + lane]; }
   double& quiet(int lane, int k) { return slips_.quiet[(std::size_t)k * lanes_ + lane]; }
   double slip_size(const Packed& of, int lane, int k) const;
@@ -161,6 +168,7 @@ class ChartedMotion : public Motion {
   void tell_undecided(const Stage& found, int lane);
   std::vector<int> sticking(int lane) const;
   void arm(const Stage& found, int lane);
+  void aim_along(const Stage& found, int lane, int k);
   Matrix inertia_matrix(const Stage& found, int lane) const;
   int hold_rates(Stage* found, int lane, const std::vector<int>& joints, double* v);
   void hold_sticking(int lane);
@@ -173,7 +181,7 @@ class ChartedMotion : public Motion {
     std::vector<double> row;
     double rest = 0.0, size = 0.0;
   };
-  SlipRow slip_row(int lane, int c, const std::vector<SlipRow>& basis) const;
+  SlipRow slip_row(int lane, int k, int c, const std::vector<SlipRow>& basis) const;
   std::vector<SlipRow> held_rows(int lane, const std::vector<int>& joints) const;
   bool slips_beside(int lane, const Signs& way, const std::vector<int>& joints) const;
   bool aim(int lane, const std::vector<int>& joints, const Signs& way, const double* place, const double* rate,
@@ -191,6 +199,7 @@ class ChartedMotion : public Motion {
   double margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided);
   void settle(int lane, int event, std::vector<double>* v);
   bool give_rates(int lane, std::vector<double>* v);
+  bool turns_aside(int lane, int event) const;
   bool settled(int lane, int event, std::vector<double>* v);
   double stop_value(int stop, int lane, double watched) const;
   bool is_rounding(const MotionStop& stop, int lane, double value, double speed) const;
@@ -250,6 +259,7 @@ class ChartedMotion : public Motion {
   std::vector<char, AlignedAllocator<char>> wide_, workspace_;
   Packed origin_, origin_first_, origin_second_, direction_, jacobian_, turn_, elapsed_, miss_, miss_elapsed_, place_, rate_, origin_time_;
   Packed inputs_, input_rates_, input_seconds_, time_, side_;
+  Packed decided_by_;  // kinks x lanes: the sides by which it was decided at the start what sticks
   const std::vector<MotionStop> stops_;
   const DrivenLaws* driven_;
   DrivenLaws::Memory laws_memory_;

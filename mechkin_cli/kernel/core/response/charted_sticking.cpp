@@ -32,7 +32,7 @@ double ChartedMotion::along_sense(const Stage& found, int lane, int k) const {
   const double sense = slips_.sense[(std::size_t)k * lanes_ + lane];
   const int begin = slips_.first[k], end = slips_.first[k + 1];
   if (sense == 0.0) return slip_size(found.slip.second, lane, k);
-  if (end - begin == 1) return sense * at(found.slip.second, begin, lane);
+  if (has_sign(lane, k)) return sense * at(found.slip.second, begin, lane);
   double sum = 0.0;
   for (int c = begin; c < end; ++c) sum += at(slips_.aim, c, lane) * at(found.slip.second, c, lane);
   return sum;
@@ -45,7 +45,7 @@ SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int
   take_senses(lane, way);
   std::vector<int> starting;
   for (int k : open)
-    if (slip_columns(k) > 1 && way[k] != 0) starting.push_back(k), t.sense[k] = 1;
+    if (!has_sign(lane, k) && way[k] != 0) starting.push_back(k), t.sense[k] = 1;
   stand_still();
   for (std::size_t i = 0; i < v.size(); ++i) rate_[(long)i * lanes_ + lane] = v[i];
   const bool aimed = aim(lane, starting, way, place_.data(), rate_.data(), &trial_);
@@ -72,7 +72,7 @@ double ChartedMotion::margin(int lane, const Signs& way, const double* place, co
   for (int k = 0; k < plan_.frictions; ++k) {
     if (way[k] == before[k]) continue;
     quiet(lane, k) = 1.0;
-    if (slip_columns(k) > 1) starting.push_back(k);
+    if (!has_sign(lane, k)) starting.push_back(k);
   }
   *decided = aim(lane, starting, way, place, rate, &trial_) && !(trial_.flags[lane] & STAGE_FRICTION) && *decided;
   double least = __builtin_inf();
@@ -153,10 +153,21 @@ void ChartedMotion::list_ways(int lane, const std::vector<double>& v) {
     if (way != now) slips_.ways[lane].push_back(way);
 }
 
+// Whether a slip in several directions that has no speed left along its last direction has some beside it, in trial_.
+bool ChartedMotion::turns_aside(int lane, int event) const {
+  if (event < 0 || event >= plan_.frictions || has_sign(lane, event)) return false;
+  const double none = AT_REST * slips_.fastest[lane] * lever(trial_, lane, event);
+  return slips_.sense[(std::size_t)event * lanes_ + lane] != 0.0 && slip_size(trial_.slip.rate, lane, event) > none;
+}
+
 bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   const int n = plan_.frictions;
   evaluate_here(lane, *v, &trial_);
   const bool breaks = event >= 0 && event < n && sense(lane, event) == 0.0;
+  if (turns_aside(lane, event)) {
+    aim_along(trial_, lane, event);
+    return true;
+  }
   std::vector<int> open = resting(lane, event);
   if (open.empty()) return true;
   // where nothing pushes yet, it goes as it was pushed beyond
@@ -166,11 +177,11 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   hold_rates(&trial_, lane, open, v->data());
   for (int k : open) {
     sense(lane, k) = 0.0;
-    slips_.armed[(std::size_t)k * lanes_ + lane] = 0;
+    slips_.armed[(std::size_t)k * lanes_ + lane] = 0.0;
     slips_.started[(std::size_t)k * lanes_ + lane] = NAN;
   }
   if (breaks) slips_.started[(std::size_t)event * lanes_ + lane] = origin_time_[lane];
-  if (breaks) sense(lane, event) = slip_columns(event) > 1 || push > 0.0 ? 1.0 : -1.0;
+  if (breaks) sense(lane, event) = !has_sign(lane, event) || push > 0.0 ? 1.0 : -1.0;
   evaluate_here(lane, *v, &trial_);
   if (event == n && !go_first_way(lane, &open, *v)) return false;
   return set_going(lane, breaks ? event : -1, &open, *v);
@@ -196,7 +207,7 @@ bool ChartedMotion::give_rates(int lane, std::vector<double>* v) {
   const LeastSquares inertia(inertia_matrix(trial_, lane));
   bool given = false;
   for (int k = 0; k < plan_.frictions; ++k) {
-    if (slip_columns(k) == 1 || sense(lane, k) == 0.0 || !rubs(lane, k)) continue;
+    if (has_sign(lane, k) || sense(lane, k) == 0.0 || !rubs(lane, k)) continue;
     const double by_friction = at(trial_.slip.limit, k, lane) * at(trial_.slip.answer, k, lane);
     const double unit = lever(trial_, lane, k) * slips_.fastest[lane];
     if (slip_size(trial_.slip.rate, lane, k) > AT_REST * unit || along_sense(trial_, lane, k) > NO_START * by_friction) continue;

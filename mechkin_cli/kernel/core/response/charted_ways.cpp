@@ -8,6 +8,8 @@ namespace {
 
 // Rows of slips, in parts of the largest, that are rounding.
 constexpr double NO_ROW = 1e-8;
+// What stays of a slip's derivative, in parts of that by the largest wrench, that is rounding.
+constexpr double NO_REST = 1e-12;
 // Directions in which slips begin: rounds, and what the last may yet change.
 constexpr int AIM_ROUNDS = 1000;
 constexpr double AIM_TIGHT = 1e-14, AIM_ACCEPT = 1e-9;
@@ -68,9 +70,9 @@ double ChartedMotion::turn_aim(int lane, int k, double step, const Stage& found)
   return change;
 }
 
-// Row c of the slips by the chart and what stays of the slip's derivative without it, of the stage in trial_; less what lies
+// Row c of the slips, of joint k, by the chart and what stays of the slip's derivative without it, of the stage in trial_; less what lies
 // along an orthonormal basis, at `place`.
-ChartedMotion::SlipRow ChartedMotion::slip_row(int lane, int c, const std::vector<SlipRow>& basis) const {
+ChartedMotion::SlipRow ChartedMotion::slip_row(int lane, int k, int c, const std::vector<SlipRow>& basis) const {
   const int n = plan_.charts;
   SlipRow r;
   r.rest = at(trial_.slip.second, c, lane);
@@ -86,6 +88,7 @@ ChartedMotion::SlipRow ChartedMotion::slip_row(int lane, int c, const std::vecto
     for (int i = 0; i < n; ++i) r.row[i] -= along * b.row[i];
     r.rest -= along * b.rest;
   }
+  if (std::fabs(r.rest) <= NO_REST * at(trial_.slip.level, 0, lane) * at(trial_.slip.answer, k, lane)) r.rest = 0.0;
   return r;
 }
 
@@ -94,7 +97,7 @@ std::vector<ChartedMotion::SlipRow> ChartedMotion::held_rows(int lane, const std
   std::vector<SlipRow> basis;
   for (int k : joints)
     for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c) {
-      SlipRow r = slip_row(lane, c, basis);
+      SlipRow r = slip_row(lane, k, c, basis);
       double square = 0.0;
       for (double x : r.row) square += x * x;
       const double size = std::sqrt(square);
@@ -114,7 +117,7 @@ bool ChartedMotion::slips_beside(int lane, const Signs& way, const std::vector<i
   const std::vector<SlipRow> basis = held_rows(lane, held);
   const auto can = [&](int k) {
     for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c) {
-      const SlipRow r = slip_row(lane, c, basis);
+      const SlipRow r = slip_row(lane, k, c, basis);
       for (double x : r.row)
         if (std::fabs(x) > NO_ROW * r.size) return true;
       if (r.rest != 0.0 && r.size == 0.0) return true;
@@ -131,7 +134,7 @@ bool ChartedMotion::slips_beside(int lane, const Signs& way, const std::vector<i
 std::vector<Signs> ChartedMotion::ways_of(int lane, const std::vector<int>& open, int forced) {
   std::vector<int> one, several;
   for (int k : open)
-    if (k != forced) (slip_columns(k) == 1 ? one : several).push_back(k);
+    if (k != forced) (has_sign(lane, k) ? one : several).push_back(k);
   std::size_t choices = 1;
   for (std::size_t k = 0; k < several.size() && choices <= MOST_WAYS; ++k) choices *= 3;
   Signs now = senses(lane);
@@ -148,7 +151,7 @@ std::vector<Signs> ChartedMotion::ways_of(int lane, const std::vector<int>& open
     Matrix rows((int)one.size(), plan_.charts);
     std::vector<double> offset;
     for (std::size_t r = 0; r < one.size(); ++r) {
-      const SlipRow row = slip_row(lane, slips_.first[one[r]], basis);
+      const SlipRow row = slip_row(lane, one[r], slips_.first[one[r]], basis);
       for (int i = 0; i < plan_.charts; ++i) rows((int)r, i) = std::fabs(row.row[i]) <= NO_ROW * row.size ? 0.0 : row.row[i];
       offset.push_back(row.rest);
     }

@@ -9,23 +9,6 @@ namespace {
 // such a dependence.
 constexpr double DEPENDENT = 1e-12, NO_PART = 1e-7;
 
-// How the joints slip, arrays of a stage, frictions unless said.
-struct SlipsGiven {
-  const Pack* sense;   // 0 sticks; else slips: 1 or -1 along its one direction, 1 of several
-  const Pack* quiet;   // not 0: with the coefficient of rest
-  const Pack* aim;     // columns: the direction of a slip that is about to begin
-};
-
-// What comes of it.
-struct SlipsFound {
-  Pack *rate, *second, *force;  // columns: slips, their derivatives, friction against them
-  Pack* row;                    // columns x charts: rates by those of the chart
-  Pack *limit, *loose, *state;  // frictions: what it can hold; 1 where a force that sticks is not unique; FrictionState
-  Pack* answer;                 // frictions: slips' derivatives by a unit of their own friction, the largest
-  Pack* level;                  // 1: the largest wrench without friction
-  Pack* told;                   // frictions x TOLD_NUMBERS: see FrictionTold
-};
-
 // Where column j sticks and depends on columns before it: whose forces are not unique, and what slips with loads that
 // change with them, which has no answer.
 inline Mask mark_loose(const Plan& p, const Slips& s, int j, Mask dependent, Pack* null, const SlipsGiven& given,

@@ -16,7 +16,7 @@ struct StageGiven {
   const double* elapsed;          // 1: time since the origin
   const double* time;             // 1
   const double* side;             // kinks of the plan's program: +1 or -1
-  const double *sense, *quiet, *aim;  // frictions, frictions, slips: how joints slip, see SlipsGiven
+  const double *sense, *quiet, *aim, *armed, *span, *way;  // how joints slip, see SlipsGiven
   const double* place;            // charts: u
   const double* rate;             // charts: its rate
   const double *inputs, *input_rates, *input_seconds;  // inputs: of what is driven
@@ -61,7 +61,8 @@ struct StageFound {
   double* turned;        // turn slots: angles and quaternions of the closing joints as the kernel finds them
   double *slip_rate, *slip_second, *slip_force;  // slips: see SlipsFound
   double* slip_row;      // slips x charts
-  double *slip_limit, *slip_loose, *slip_state, *slip_answer;  // frictions
+  double *slip_limit, *slip_loose, *slip_state, *slip_answer, *slip_span;  // frictions
+  double* slip_way;      // 2 x slips
   double* level;         // 1
   double* told;          // frictions x TOLD_NUMBERS: see FrictionTold
   unsigned char* flags;  // lanes: StageFlag

@@ -45,6 +45,11 @@ inline void accelerate(const Plan& p, Workspace& w, const ReducedMotion& m, cons
   }
 }
 
+// Whether a slip has a sign.
+MECHKIN_INLINE Mask slips_along_line(const Slips& s, const SlipsGiven& given, int k) {
+  return s.first[k + 1] - s.first[k] == 1 ? all_lanes(true) : given.span[k] == Pack(1.0);
+}
+
 // Units of friction and coefficients. What sticks has all its columns, what slips the first alone.
 inline void aim_slips(const Plan& p, const Workspace& w, const Slips& s, const SlipsGiven& given) {
   const Rubbing& r = w.rubbing;
@@ -59,21 +64,29 @@ inline void aim_slips(const Plan& p, const Workspace& w, const Slips& s, const S
       s.sticks[c] = sticks;
       s.unit[c] = select(sticks, s.frame[c], zero_wrench());
     }
-    const Pack speed = sqrt(square);
-    if (end - begin == 1) {
+    Pack speed = sqrt(square);
+    const Pack fast = speed;
+    const Mask is_line = slips_along_line(s, given, k);
+    if (all(is_line)) {
       s.unit[begin] = select(sticks, Pack(1.0), given.sense[k]) * s.frame[begin];
     } else {
       const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
       const Mask begins = speed <= Pack(NO_DIRECTION) * lever * rates;
+      // beyond its zero a slip goes on as before
+      Pack ahead = 0.0;
+      for (int c = begin; c < end; ++c) ahead += given.aim[c] * s.rate[c];
+      const Mask is_back = ~is_line & ~(given.armed[k] == Pack(0.0)) & (ahead < Pack(0.0));
+      speed = select(is_back, -speed, speed);
       const Pack per = Pack(1.0) / select(begins, Pack(1.0), speed);
       Wrench along = zero_wrench();
       for (int c = begin; c < end; ++c) along += select(begins, given.aim[c], per * s.rate[c]) * s.frame[c];
+      along = select(is_line, given.sense[k] * s.frame[begin], along);
       s.unit[begin] = select(sticks, s.unit[begin], along);
     }
     // beyond its zero a slip goes on with its sense
-    r.speed[k] = select(sticks, Pack(0.0), end - begin == 1 ? given.sense[k] * s.rate[begin] : speed);
+    r.speed[k] = select(sticks, Pack(0.0), select(is_line, given.sense[k] * s.rate[begin], speed));
     const Mask quiet = ~(given.quiet[k] == Pack(0.0));
-    r.coefficient[k] = select(sticks, Pack(0.0), select(quiet, Pack(f.at_rest), coefficient_at(f, speed)));
+    r.coefficient[k] = select(sticks, Pack(0.0), select(quiet, Pack(f.at_rest), coefficient_at(f, fast)));
     r.state[k] = (double)FRICTION_DECIDED;
   }
 }
@@ -133,9 +146,11 @@ inline void tell_slips(const Plan& p, const Slips& s, const Rubbing& r, const Sl
     found.limit[k] = Pack(p.friction[k].at_rest) * r.normal[k];
     found.state[k] = r.state[k];
     found.answer[k] = 0.0;
+    const Mask is_line = slips_along_line(s, given, k);
     for (int c = begin; c < end; ++c) {
-      const Pack per = Pack(1.0) / select(r.speed[k] > Pack(0.0), r.speed[k], Pack(1.0));
-      const Pack part = end - begin == 1 ? given.sense[k] : select(r.speed[k] > Pack(0.0), per * s.rate[c], given.aim[c]);
+      const Mask rests = r.speed[k] == Pack(0.0);
+      const Pack turned = select(rests, given.aim[c], s.rate[c] / select(rests, Pack(1.0), r.speed[k]));
+      const Pack part = select(is_line, c == begin ? given.sense[k] : Pack(0.0), turned);
       found.rate[c] = s.rate[c];
       found.force[c] = select(s.sticks[c], s.force[c], part * s.force[begin]);
       found.answer[k] = max(found.answer[k], s.inverse[c * s.columns + c]);
@@ -182,7 +197,7 @@ inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Sli
   apply_inertia(balance, true);
   for (int l = 0; l < p.loads; ++l) apply_load(balance, p.load[l], row_value);
   place_contacts(p, w);
-  find_slips(p, w, m, s);
+  find_slips(p, w, m, s, given, found);
   aim_slips(p, w, s, given);
   accelerate(p, w, m, second);
   distribute(p, w, 0);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "response/equations_of_motion.hpp"
+#include "arithmetic/vector_choice.hpp"
 #include "forces/friction.hpp"
 #include "response/slip_components.hpp"
 
@@ -33,6 +34,27 @@ struct Slips {
   Mask* kept;          // columns: sticks, and independent of those before
   Pack *hold, *force;  // columns x (frictions + 1): what sticks, without friction and by units; columns: found
   Vec3 *base, *load;   // contacts; contacts x columns
+};
+
+// How the joints slip, arrays of a stage, frictions unless said.
+struct SlipsGiven {
+  const Pack* sense;   // 0 sticks; else slips: 1 or -1 along its one direction, 1 of several
+  const Pack* quiet;   // not 0: with the coefficient of rest
+  const Pack* aim;     // columns: the direction of a slip that is about to begin, or has
+  const Pack* armed;   // frictions: not 0 where a slip of several directions has begun
+  const Pack* span;    // frictions: independent directions in which the mechanism lets a joint slip; 0 not known
+  const Pack* way;     // 2 x columns: of a joint with fewer directions than components the first two at the origin, in components
+};
+
+// What comes of it.
+struct SlipsFound {
+  Pack *rate, *second, *force;  // columns: slips, their derivatives, friction against them
+  Pack* row;                    // columns x charts: rates by those of the chart
+  Pack *limit, *loose, *state;  // frictions: what it can hold; 1 where a force that sticks is not unique; FrictionState
+  Pack* answer;                 // frictions: slips' derivatives by a unit of their own friction, the largest
+  Pack *span, *way;             // frictions: independent directions here; 2 x columns: as given, here
+  Pack* level;                  // 1: the largest wrench without friction
+  Pack* told;                   // frictions x TOLD_NUMBERS: see FrictionTold
 };
 
 inline long lay_out_slips(const Plan& p, char* at, Slips* s) {
@@ -121,6 +143,81 @@ inline void find_frame(const Plan& p, const Workspace& w, const ReducedMotion& m
   each_direction(w, f, axis, f.turns, [&](Vec3 e) { s.frame[c++] = couple(radius * e); });
 }
 
+// The independent directions in which the mechanism lets a joint slip, in its components: Gram-Schmidt, the fastest first.
+// Where there are no more, they are zero.
+struct SlipSpan {
+  Vec3 direction[3];
+  Mask found[3];
+};
+inline SlipSpan slip_span(const Slips& s, int begin, int count, int directions, Pack least) {
+  SlipSpan span;
+  for (int j = 0; j < 3; ++j) {
+    Pack most = least * least;
+    Vec3 fastest = zero3();
+    for (int i = 0; i < directions; ++i) {
+      const Pack* const row = s.row + begin * directions + i;
+      Vec3 v = {row[0], row[directions], count > 2 ? row[2 * directions] : Pack(0.0)};
+      for (int pass = 0; pass < 2; ++pass)
+        for (int l = 0; l < j; ++l) v = v - dot(span.direction[l], v) * span.direction[l];
+      const Pack square = dot(v, v);
+      const Mask is_faster = square > most;
+      most = select(is_faster, square, most), fastest = select(is_faster, v, fastest);
+    }
+    const Pack square = dot(fastest, fastest);
+    span.found[j] = square > Pack(0.0);
+    span.direction[j] = (Pack(1.0) / sqrt(select(span.found[j], square, Pack(1.0)))) * fastest;
+  }
+  return span;
+}
+
+MECHKIN_INLINE Vec3 normalised_or(const Vec3& a, const Vec3& other) {
+  const Pack square = dot(a, a);
+  const Mask has = square > Pack(0.0);
+  return select(has, (Pack(1.0) / sqrt(select(has, square, Pack(1.0)))) * a, other);
+}
+
+// Where loops let a joint slip in fewer directions than its surfaces could, its components are along these, carried on
+// from the origin's by projection: friction acts where it can slip, and a slip along one line has a sign. In a place where
+// there are fewer yet, they are as at the origin.
+inline void span_frame(const Plan& p, const ReducedMotion& m, const Slips& s, int k, Pack level, const SlipsGiven& given,
+                       const SlipsFound& found) {
+  const Friction& f = p.friction[k];
+  const int begin = s.first[k], count = s.first[k + 1] - begin, d = directions(p);
+  const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
+  for (int c = 0; c < count; ++c)
+    for (int i = 0; i < d; ++i)
+      s.row[(begin + c) * d + i] = power(direction_of(p, m, p.place[f.place], i), s.frame[begin + c]);
+  const SlipSpan span = slip_span(s, begin, count, d, Pack(IMMOBILE) * lever * level);
+  found.span[k] = 0.0;
+  for (int j = 0; j < 3; ++j) found.span[k] += select(span.found[j], Pack(1.0), Pack(0.0));
+  const Pack most = given.span[k];
+  const Mask few = (most > Pack(0.0)) & (most < Pack((double)count)), two = few & (most > Pack(1.0));
+  if (!any(few)) return;
+  const auto way = [&](const Pack* at) { return Vec3{at[0], at[1], count > 2 ? at[2] : Pack(0.0)}; };
+  const Vec3 before[2] = {way(given.way + 2 * begin), way(given.way + 2 * begin + count)};
+  const auto project = [&](const Vec3& a) {
+    return dot(span.direction[0], a) * span.direction[0] +
+           select(two, dot(span.direction[1], a) * span.direction[1], zero3());
+  };
+  const Mask is_told = select(two, found.span[k], Pack(2.0)) > Pack(1.0) & span.found[0];
+  Vec3 now[2];
+  now[0] = normalised_or(project(before[0]), span.direction[0]);
+  const Vec3 second = project(before[1]);
+  now[1] = normalised_or(second - dot(now[0], second) * now[0], span.direction[1]);
+  for (int j = 0; j < 2; ++j) now[j] = select(is_told, now[j], before[j]);
+  Wrench along[2] = {zero_wrench(), zero_wrench()};
+  for (int j = 0; j < 2; ++j) {
+    const Pack part[3] = {now[j].x, now[j].y, now[j].z};
+    for (int c = 0; c < count; ++c) {
+      along[j] += part[c] * s.frame[begin + c];
+      found.way[2 * begin + j * count + c] = part[c];
+    }
+  }
+  s.frame[begin] = select(few, along[0], s.frame[begin]);
+  s.frame[begin + 1] = select(few, select(two, along[1], zero_wrench()), s.frame[begin + 1]);
+  if (count > 2) s.frame[begin + 2] = select(few, zero_wrench(), s.frame[begin + 2]);
+}
+
 // The derivative of a slip at u'' = 0, right where the joint does not slip: of slides by the accelerations of its point.
 inline Pack convective_slip(const Workspace& w, const JointPlace& j, const Vec3& point, const Wrench& frame) {
   const Motion &a = motion_of(w, j.first), &b = motion_of(w, j.second);
@@ -129,7 +226,8 @@ inline Pack convective_slip(const Workspace& w, const JointPlace& j, const Vec3&
 }
 
 // Frames, rates and rows of all slips.
-inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m, const Slips& s) {
+inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m, const Slips& s, const SlipsGiven& given,
+                       const SlipsFound& found) {
   const int d = directions(p);
   Pack level = 0.0;
   for (int k = 0; k < p.links * p.charts; ++k) level = component_level(level, {m.twist[k].angular, m.twist[k].linear});
@@ -138,6 +236,8 @@ inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m
     const Friction& f = p.friction[k];
     const JointPlace& j = p.place[f.place];
     find_frame(p, w, m, s, k);
+    found.span[k] = 1.0;
+    if (s.first[k + 1] - s.first[k] > 1) span_frame(p, m, s, k, level, given, found);
     const Pack lever = (f.slides < 0 ? Pack(0.0) : Pack(1.0)) + (f.turns < 0 ? Pack(0.0) : Pack(f.radius));
     for (int c = s.first[k]; c < s.first[k + 1]; ++c) {
       const Wrench frame = s.frame[c];

@@ -14,8 +14,11 @@ constexpr double CHEBYSHEV[9] = {0.99240387650610404, 0.93301270189221932, 0.821
                                  0.0075961234938959606};
 // Change of the extrapolated place by its last order; at branch points of parallelograms 1e-12 is met.
 constexpr double DOUBT = 1e-8;
-// How far from the last node, which steps reach to the root of a rounding, it may lie.
-constexpr double NEAR = 1e-5;
+// How far from the last node it may lie, and how far in parts of the way over which it was extrapolated: steps end where the
+// least singular value is the root of a rounding, which it is the farther off the more loops lie singular at once.
+constexpr double NEAR = 1e-5, NEAR_PART = 1e-3;
+// Ways beyond this (arclength, rad and parts of the size) make it no farther: what runs away has long ones.
+constexpr double LONG = 0.1;
 // Way before it from which its states are predicted: the third order leaves 1e-13, rounding over the way 1e-12.
 constexpr double NEAR_STATE = 1e-4;
 // Singular values below this part of the largest are zero at the extrapolated place, which is known to some 1e-8.
@@ -99,7 +102,8 @@ bool branch_point_ahead(Arc& arc, const std::vector<Node>& nodes, BranchPointAhe
     const double doubt = way > 0.0 ? place_over(arc, *base, last - base->place, &seen) : HUGE_VAL;
     if (doubt < best) best = doubt, *found = seen;
   }
-  return best <= DOUBT && std::fabs(found->base.place + found->distance - last) <= NEAR;
+  const double most = std::max(NEAR, NEAR_PART * std::min(last - found->base.place, LONG));
+  return best <= DOUBT && std::fabs(found->base.place + found->distance - last) <= most;
 }
 
 namespace {

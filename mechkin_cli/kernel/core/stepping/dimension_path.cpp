@@ -57,6 +57,8 @@ namespace {
 constexpr double ON_PARABOLA = 1e-4;
 // Times that Newton begins again: its steps take that to the root of rounding: on the fold each halves the distance.
 constexpr int COMING_DOWN = 4;
+// Least singular value of a block from which on derivatives of the base are well known: 1e-4 from a fold it is far smaller.
+constexpr double NARROW = 1e-2;
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
@@ -64,32 +66,67 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// Closes the target from a place next to a fold that is no nearer than the target: at a distance d in sigma from it
-// x' = h / 2d and x'' = h / 4d^2, so h = x'^2 / x'' and d = x' / 2x''. On a parabola Newton's method stays on the side where
-// it begins, and steps that shrink with the distance need not be known to rounding.
-bool come_down(Stepper& stepper, const Node& node, Node* target) {
+// Closes a place next to a fold from another: on a parabola Newton's method stays on the side where it begins.
+bool newton_beside_fold(Stepper& stepper, double sigma, const std::vector<double>& from, Node* to) {
+  std::vector<double> guess = from;
+  for (int k = 0; !stepper.rest(sigma, guess.data(), to); ++k, guess = to->state)
+    if (k == COMING_DOWN) return false;
+  return true;
+}
+
+// Whether the way to a place `rest` nearer to the fold lies on the parabola of a node: at a distance d in sigma from the
+// fold x' = h / 2d and x'' = -h / 4d^2, so h = x'^2 / x'' and d = x' / 2x''. `sense`: that of sigma towards the fold.
+bool is_on_parabola(const Node& node, double sense, double rest, const std::vector<double>& other) {
   const double first = product(node.state_first, node.state_first);
   const double second = std::sqrt(product(node.state_second, node.state_second));
-  const double way = first / second, rest = 1.0 - node.sigma;
-  if (!(way <= ON_PARABOLA) || !(product(node.state_first, node.state_second) > 0.0)) return false;
+  const double way = first / second;
+  if (!(way <= ON_PARABOLA) || !(sense * product(node.state_first, node.state_second) > 0.0)) return false;
   if (!(rest * second <= std::sqrt(first))) return false;
-  std::vector<double> guess = node.state;
-  for (int k = 0; !stepper.rest(1.0, guess.data(), target); ++k, guess = target->state)
-    if (k == COMING_DOWN) return false;
   double square = 0.0;
   for (std::size_t s = 0; s < node.state.size(); ++s) {
-    const double moved = target->state[s] - node.state[s];
+    const double moved = other[s] - node.state[s];
     square += moved * moved;
   }
   return square <= 4.0 * way * way;
 }
 
-}  // namespace
+// Closes the target from a place next to a fold that is no nearer than the target: steps that shrink with the distance
+// need not be known to rounding.
+bool come_down(Stepper& stepper, const Node& node, Node* target) {
+  return is_on_parabola(node, 1.0, 1.0 - node.sigma, node.state) &&
+         newton_beside_fold(stepper, 1.0, node.state, target) &&
+         is_on_parabola(node, 1.0, 1.0 - node.sigma, target->state);
+}
 
-bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
+// Whether some block's least singular value is so small that derivatives by the plan may be rounding.
+bool is_narrow(const Plan& plan, const Node& node) {
+  long at = 0;
+  for (int b = 0; b < plan.blocks; ++b) {
+    Matrix matrix(plan.block[b].rows, plan.block[b].size);
+    for (double& entry : matrix.a) entry = node.jacobian[at++];
+    if (!(Factored(matrix).squares.least_singular_bound() >= NARROW)) return true;
+  }
+  return false;
+}
+
+// Leaves a place so near to a fold that its derivatives are rounding, for the farthest one on the parabola, whose own
+// derivatives tell that the fold lies behind both.
+bool go_up(Stepper& stepper, const Node& node, Node* next) {
+  Node there;
+  for (double h = 1.0 - node.sigma; h >= stepper.limits().least_step; h *= 0.25) {
+    const double sigma = h == 1.0 - node.sigma ? 1.0 : node.sigma + h;
+    if (newton_beside_fold(stepper, sigma, node.state, &there) &&
+        stepper.close_after(h, sigma, there.state.data(), next) && next->side == node.side &&
+        is_on_parabola(*next, -1.0, h, node.state))
+      return true;
+  }
+  return false;
+}
+
+// Follows the branch from a node to sigma 1; false where the steps become too short.
+bool step_to_target(Stepper& stepper, Node* node) {
   const StepLimits& limits = stepper.limits();
   Node next;
-  if (!stepper.begin(0.0, start, node)) return false;
   double h = stepper.wanted_step(*node);
   for (int steps = 0; node->sigma < 1.0; ++steps) {
     if (steps >= limits.most_steps) return false;
@@ -109,4 +146,14 @@ bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
     return true;
   }
   return true;
+}
+
+}  // namespace
+
+bool follow_to_target(Stepper& stepper, const double* start, Node* node) {
+  if (stepper.begin(0.0, start, node) && step_to_target(stepper, node)) return true;
+  Node base, next;
+  if (!stepper.stand(0.0, start, &base) || !is_narrow(stepper.plan(), base) || !go_up(stepper, base, &next)) return false;
+  *node = next;
+  return step_to_target(stepper, node);
 }

@@ -3,14 +3,6 @@
 #include <cmath>
 #include <cstring>
 
-namespace {
-
-// Of a step, for the places from which its derivatives are read: their differences are wrong by its square, a hundredth,
-// and rounding is seen sixty times as large.
-constexpr double PART_OF_STEP = 0.125;
-
-}  // namespace
-
 void Line::at(double sigma, PathPoint* point) const {
   const int n = plan_.inputs;
   point->inputs.resize(n), point->first.assign(u_, u_ + n), point->second.assign(n, 0.0);

@@ -113,6 +113,12 @@ class Stepper {
   bool begin(double sigma, const double* guess, Node* node);
   // The same without derivatives: on a fold there are none.
   bool rest(double sigma, const double* guess, Node* node) { return solve(sigma, guess, false, node); }
+  // The same with the sides of the blocks.
+  bool stand(double sigma, const double* guess, Node* node) { return solve(sigma, guess, true, node); }
+  // The same as `close`, with derivatives by the plan from places that suit a step as long as h.
+  bool close_after(double h, double sigma, const double* guess, Node* node) {
+    return close(sigma, guess, PART_OF_STEP * h, node);
+  }
   // Reads a node's derivatives by the plan from places that suit steps as short as h; false as `close`, or where they do.
   bool suit(double h, Node* node);
   // Second-order prediction of the states a step h away; quaternions have unit length.
@@ -164,6 +170,10 @@ class Stepper {
   PathPoint point_;
 
  private:
+  // Of a step, for the places from which its derivatives are read: their differences are wrong by its square, a hundredth,
+  // and rounding is seen sixty times as large.
+  static constexpr double PART_OF_STEP = 0.125;
+
   bool close(double sigma, const double* guess, double apart, Node* node);
   double apart_for(double h) const;
   bool solve(double sigma, const double* guess, bool moving, Node* node);

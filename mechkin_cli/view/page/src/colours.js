@@ -9,12 +9,14 @@ const GOOD = "#2fa36b";
 const DOUBTFUL = "#d9a21b";
 const BAD = "#d64545";
 
-export const CURVES = [
+const CURVES = [
   "#3b82d6", "#e5782e", "#2fa36b", "#c94f7c", "#8b6fd0", "#29a0b1", "#c2a01d", "#b0603a",
 ];
 
-/** So many other modes are compared at once: of more, nothing could be told apart. */
-export const MOST_COMPARED = 8;
+/** The colour of a curve, or of a mode that is compared, by its number. */
+export function curveColour(index) {
+  return CURVES[index] ?? spread(index, 52);
+}
 
 export const MARKS = { "dead-centre": "#d64545", "branch-point": "#8b6fd0", event: "#29a0b1" };
 
@@ -25,9 +27,13 @@ export function linkColour(link, index) {
   if (/^#[0-9a-f]{6}$/i.test(link.colour ?? "")) return link.colour;
   if (index === 0) return GROUND;
   if (index <= LINKS.length) return LINKS[index - 1];
-  // beyond the list, hues by the golden angle lie as far from each other as they can
+  return spread(index, 48);
+}
+
+/** Beyond a list, hues by the golden angle lie as far from each other as they can. */
+function spread(index, saturation) {
   const hue = (137.508 * index) % 360;
-  return `hsl(${hue.toFixed(1)}, 48%, ${index % 2 ? 42 : 56}%)`;
+  return `hsl(${hue.toFixed(1)}, ${saturation}%, ${index % 2 ? 42 : 56}%)`;
 }
 
 /** The colour of a verdict: only `ok` is good, and what was computed with a doubt is not lost. */

@@ -41,6 +41,20 @@ export function listenToKeys({ state, player, actions }) {
     event.preventDefault();
     action(event);
   });
+  leaveAfterClicks();
+}
+
+/** What was clicked keeps no keys: Space plays after it. Who goes by Tab stays where they are. */
+function leaveAfterClicks() {
+  let byPointer = false;
+  const leave = (target, elements) => {
+    const pressed = byPointer && target.closest?.(elements);
+    if (pressed && pressed.contains(document.activeElement)) document.activeElement.blur();
+  };
+  document.addEventListener("pointerdown", () => (byPointer = true), true);
+  document.addEventListener("keydown", () => (byPointer = false), true);
+  document.addEventListener("click", ({ target }) => leave(target, "button, summary, label, input[type=checkbox]"));
+  document.addEventListener("change", ({ target }) => leave(target, "select"));
 }
 
 /** Whether the key belongs to the element: to a text field or a list of choices, and Space to what it presses. */

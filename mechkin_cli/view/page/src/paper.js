@@ -1,6 +1,6 @@
-// Printing: the canvas as a picture, in light colours, with all panels below it.
+// Printing: the stage as a picture, with its names and values, in light colours, with all panels below it.
 
-import { find } from "./dom.js";
+import { element, find } from "./dom.js";
 
 export function preparePaper(theme, theatre) {
   const picture = find("#printed");
@@ -10,6 +10,15 @@ export function preparePaper(theme, theatre) {
     picture.hidden = !theme.printing || !theatre;
     if (picture.hidden) return;
     theatre.stage.draw();
-    picture.src = theatre.stage.renderer.domElement.toDataURL("image/png");
+    picture.src = pictureOf(theatre);
   });
+}
+
+function pictureOf(theatre) {
+  const { domElement } = theatre.stage.renderer;
+  const sheet = element("canvas", { width: domElement.width, height: domElement.height });
+  const brush = sheet.getContext("2d");
+  brush.drawImage(domElement, 0, 0);
+  theatre.labels.write(brush, domElement.width / theatre.stage.width);
+  return sheet.toDataURL("image/png");
 }

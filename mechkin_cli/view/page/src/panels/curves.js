@@ -1,7 +1,7 @@
 // Curves of any columns: one plot for each unit, a common cursor, a click that seeks, marks and verdicts.
 
 import uPlot from "uplot";
-import { CURVES, MARKS, MOST_COMPARED, verdictColour } from "../colours.js";
+import { MARKS, curveColour, verdictColour } from "../colours.js";
 import { numbers } from "../data.js";
 import { element } from "../dom.js";
 import { told } from "../numbers.js";
@@ -61,7 +61,7 @@ export class Curves {
     const columns = branch.columns.filter((column) => keys.has(keyOf(column)));
     this.axis = new RowAxis(branch);
     const units = [...new Set(columns.map((column) => column.unit))];
-    const colours = new Map(columns.map((column, k) => [keyOf(column), CURVES[k % CURVES.length]]));
+    const colours = new Map(columns.map((column, k) => [keyOf(column), curveColour(k)]));
     this.choice.paint(colours);
     this.plots = units.map((unit, k) =>
       this.#plot(unit, columns.filter((column) => column.unit === unit), colours, k === units.length - 1, units.length),
@@ -120,7 +120,6 @@ export class Curves {
     return this.state.branches()
       .map((branch, index) => ({ branch, index }))
       .filter(({ branch }) => branch !== this.state.branch && branch.poseCount > 0)
-      .slice(0, MOST_COMPARED)
       .map((each) => ({ ...each, axis: new RowAxis(each.branch) }));
   }
 

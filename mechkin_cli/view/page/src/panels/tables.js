@@ -1,8 +1,8 @@
 // Tables with verdicts. Only the rows that are seen are elements, so that 20 000 rows scroll as ten do.
 
 import { verdictColour } from "../colours.js";
+import { numbers } from "../data.js";
 import { choice, element } from "../dom.js";
-import { told } from "../numbers.js";
 
 const ROW = 26; // pixels; the style sheet has the same
 const BEYOND = 10; // rows above and below what is seen
@@ -44,6 +44,8 @@ export class Tables {
     const run = table.status?.length ? this.state.data.runs.find((each) => each.name === table.run) : undefined;
     this.run = run ?? null;
     this.own = run ? this.state.branches(run)[0] : null;
+    const curves = this.own?.columns.filter((each) => each.table === table.name) ?? [];
+    this.exact = table.columns.map(({ exact, label }) => numbers(exact ?? curves.find((each) => each.label === label)?.values));
     this.places = new Map();
     if (run) table.rows.forEach((_, at) => this.places.set(this.#runRow(at), at));
     const cells = table.columns.map(({ label, unit }) =>
@@ -78,8 +80,7 @@ export class Tables {
   }
 
   #row(at) {
-    const shown = this.theme.printing ? rounded : (text) => text;
-    const cells = this.table.rows[at].map((text) => element("td", {}, shown(text)));
+    const cells = this.table.rows[at].map((text, k) => element("td", allDigits(this.exact[k]?.[at], text), text));
     const row = element("tr", { data: { at } }, ...cells);
     const code = this.table.status?.[at];
     if (code !== undefined) {
@@ -132,7 +133,7 @@ export class Tables {
   }
 }
 
-/** A number with so many digits that columns fit on paper; other texts as they are. */
-function rounded(text) {
-  return text.length > 9 && /^-?\d*\.\d+(e[-+]?\d+)?$/i.test(text) ? told(Number(text)) : text;
+/** What a cell shows on hover: all digits of its number, where the text has fewer. */
+function allDigits(number, text) {
+  return Number.isFinite(number) && Number(text) !== number ? { title: String(number) } : {};
 }

@@ -12,23 +12,46 @@ export class Labels {
     this.made = new Map();
   }
 
-  /** @param wanted  [{key, text, places: [Vector3], kind}]: at the first place that is seen; the rest goes away */
+  /**
+   * @param wanted  [{key, text, places: [Vector3], kind}]: at the first place that is seen; the rest goes away
+   * @returns  keys of those that are seen and have no free place
+   */
   show(wanted, camera, width, height) {
     const kept = new Set();
     const taken = [];
+    const left = [];
     for (const { key, text, places, kind } of wanted) {
       const seen = places.map((place) => place.clone().project(camera)).find(isSeen);
       if (!seen) continue;
       const label = this.#label(key, text, kind);
       const at = [((1 + seen.x) * width) / 2, ((1 - seen.y) * height) / 2];
       const box = freePlace(at, label.size, taken, width, height);
-      if (!box) continue;
+      if (!box) {
+        left.push(key);
+        continue;
+      }
       taken.push(box);
       kept.add(key);
       label.node.style.transform = `translate(${Math.round(box[0])}px, ${Math.round(box[1])}px)`;
       label.node.hidden = false;
+      label.box = box;
     }
     for (const [key, label] of this.made) if (!kept.has(key)) label.node.hidden = true;
+    return left;
+  }
+
+  /** Writes the names that are shown into a picture of the stage, `ratio` of its pixels to one of the page. */
+  write(brush, ratio) {
+    brush.textBaseline = "middle";
+    for (const { node, text, box } of this.made.values()) {
+      if (node.hidden) continue;
+      const { color, fontWeight, fontSize, fontFamily } = getComputedStyle(node);
+      brush.font = `${fontWeight} ${parseFloat(fontSize) * ratio}px ${fontFamily}`;
+      brush.fillStyle = color;
+      const [left, top, right, bottom] = box.map((each) => each * ratio);
+      const width = Math.min(brush.measureText(text).width, right - left);
+      brush.fillText(text, (left + right - width) / 2, (top + bottom) / 2, right - left);
+    }
   }
 
   #label(key, text, kind) {

@@ -5,10 +5,11 @@ import {
   SphereGeometry,
 } from "three";
 import { linkColour } from "../colours.js";
+import { curveThrough } from "./between.js";
 import { vector } from "./vectors.js";
 import { poseMatrix } from "./travel.js";
 
-/** The paths of one branch: lines in their links' colours, broken where rows have no pose. */
+/** The paths of one branch: lines in their links' colours, smooth through the rows' places, broken where rows have no pose. */
 export class Paths {
   constructor(data, branch, unit, opacity = 1) {
     this.data = data;
@@ -34,11 +35,11 @@ export class Paths {
         stretch = [];
         stretches.push(stretch);
       }
-      stretch.push(...drawn.clone().applyMatrix4(poseMatrix(branch.pose(index, point.link))).toArray());
+      stretch.push(drawn.clone().applyMatrix4(poseMatrix(branch.pose(index, point.link))));
     }
     for (const places of stretches) {
       const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
+      geometry.setAttribute("position", new Float32BufferAttribute(curveThrough(places).flatMap((place) => place.toArray()), 3));
       const material = new LineBasicMaterial({ color: colour, transparent: opacity < 1, opacity });
       this.object.add(new Line(geometry, material));
     }

@@ -1,17 +1,17 @@
 // What is on the stage: the mechanism at the row that is shown, ghosts of other modes, paths, arrows, names.
 
-import { CURVES, MOST_COMPARED } from "../colours.js";
+import { curveColour } from "../colours.js";
 import { Arrows } from "./arrows.js";
 import { posesAt } from "./between.js";
 import { Labels } from "./labels.js";
 import { Mechanism, jointUnit } from "./mechanism.js";
 import { Paths } from "./paths.js";
 import { Stage, dispose } from "./stage.js";
+import { Ties } from "./ties.js";
 import { vector } from "./vectors.js";
 import { diagonal, firstDirection, placesOf, withRoom } from "./viewpoint.js";
 
 const FLOOR = 2.6; // below the lowest joint, in joint sizes
-const MOST_VALUES = 8; // arrows whose values are written beside them
 const LOST = 0.35; // opacity of the mechanism in a row without position
 
 /** Draws the state. */
@@ -26,6 +26,7 @@ export class Theatre {
     this.ghosts = [];
     this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
+    this.noRoom = host.querySelector("#no-room");
     this.stage.afterDraw = () => this.#name();
     this.stage.whenSized = () => this.home();
     // until somebody turns or moves it, the view fits the stage, however large that becomes
@@ -56,15 +57,16 @@ export class Theatre {
     const { branch } = this.state;
     const zoom = this.arrows?.zoom ?? 1;
     if (this.mechanism) scene.remove(this.mechanism.object);
-    for (const old of [this.paths, this.arrows]) if (old) dispose(old.object);
+    for (const old of [this.paths, this.arrows, this.ties]) if (old) dispose(old.object);
     if (!this.mechanisms.has(branch)) this.mechanisms.set(branch, new Mechanism(this.data, branch, this.unit));
     this.mechanism = this.mechanisms.get(branch);
     this.mechanism.links.forEach((group, link) => (group.visible = !this.hidden.has(link)));
     this.paths = new Paths(this.data, branch, this.unit);
     this.arrows = new Arrows(this.data, branch, this.unit, this.size);
     this.arrows.zoom = zoom;
+    this.ties = new Ties(this.state.run.ties, this.unit);
     this.#choose();
-    scene.add(this.mechanism.object, this.paths.object, this.arrows.object);
+    scene.add(this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
     this.places = placesOf(this.data, branch);
     this.floorHeight = Math.min(...this.places.map((place) => place.dot(this.stage.up))) - FLOOR * this.unit;
     this.#floor();
@@ -88,8 +90,8 @@ export class Theatre {
     this.ghosts = [];
     if (!this.state.compare) return;
     const others = this.state.branches().filter((branch) => branch !== this.state.branch && branch.poseCount > 0);
-    this.ghosts = others.slice(0, MOST_COMPARED).map((branch) => {
-      const colour = CURVES[this.state.branches().indexOf(branch) % CURVES.length];
+    this.ghosts = others.map((branch) => {
+      const colour = curveColour(this.state.branches().indexOf(branch));
       const mechanism = new Mechanism(this.data, branch, this.unit, colour);
       const paths = new Paths(this.data, branch, this.unit, 0.4);
       this.stage.scene.add(mechanism.object, paths.object);
@@ -104,11 +106,13 @@ export class Theatre {
     this.mechanism.object.visible = index >= 0;
     this.paths.object.visible = index >= 0 && this.shown.paths;
     this.arrows.object.visible = index >= 0;
+    this.ties.object.visible = index >= 0;
     if (index >= 0) this.mechanism.show(branch, index, next, share);
     this.#fade(index < 0 || !this.#hasPose(branch, row));
     if (index >= 0) {
       this.paths.show(this.mechanism);
       this.arrows.show(this.mechanism, index);
+      this.ties.show(this.mechanism);
     }
     for (const { branch: other, mechanism } of this.ghosts) {
       const at = other.poseNear(other.rows === branch.rows ? row : other.rowAt(branch.x[row]));
@@ -152,14 +156,16 @@ export class Theatre {
       }
     }
     const arrows = this.arrows.all.filter(({ group, tip }) => group.visible && tip);
-    for (const { arrow, group, magnitude, tip } of arrows.length > MOST_VALUES ? [] : arrows) {
+    for (const { arrow, group, magnitude, tip } of this.arrows.object.visible ? arrows : []) {
       // what a name says in brackets stands in the list of arrows
       const name = arrow.name.replace(/ \(.*\)$/, "*");
       wanted.unshift({
         key: `arrow ${arrow.name}`, text: `${name} ${magnitude.toPrecision(4)} ${arrow.unit}`, places: [tip, group.position], kind: arrow.kind,
       });
     }
-    this.labels.show(wanted, camera, width, height);
+    const left = this.labels.show(wanted, camera, width, height).filter((key) => key.startsWith("arrow ")).length;
+    this.noRoom.hidden = left === 0;
+    this.noRoom.textContent = `${left} of ${arrows.length} values have no room: come nearer, or choose fewer under forces`;
   }
 
   /** Looks from where the page looked first, so that everything is seen. */
