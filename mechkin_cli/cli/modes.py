@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.cli.answer import answer
-from mechkin_cli.cli.messages import ExitCode, Record, put, say
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.cli.messages import ExitCode, Record, put, say, values_by_name
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,15 +42,7 @@ def _place(texts: list[str] | None) -> str | dict[str, str] | None:
         return None
     if len(texts) == 1 and "=" not in texts[0]:
         return texts[0]
-    place = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals or not value.strip():
-            raise UsageError(f"--at {text}: expected INPUT=VALUE, for example O1.theta=50")
-        if name.strip() in place:
-            raise UsageError(f"--at gives {name.strip()} twice; leave one of them out")
-        place[name.strip()] = value.strip()
-    return place
+    return values_by_name("--at", texts, "INPUT=VALUE, for example O1.theta=50")
 
 
 def _record(model: Model, found: Modes) -> Record:

@@ -28,7 +28,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
-from mechkin_cli.view.joints import drawn_joints, link_poses
+from mechkin_cli.view.joints import carried, drawn_joints, link_poses
 from mechkin_cli.view.page import packed
 
 if TYPE_CHECKING:
@@ -150,7 +150,8 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
         if isinstance(load, LinkLoad) and load.link in links:
             vector = np.stack([_amount(analysis, each) for each in load.value], axis=1)
             if load.axes == "link":
-                vector = _turned(poses[:, links.index(load.link)], vector)
+                pose = poses[:, links.index(load.link)]
+                vector = carried(pose, vector) - pose[:, :3]
             kind = KINDS[0] if load.kind == "force" else KINDS[1]
             place = Attached(load.link, load.point)
             if load.kind == "torque":
@@ -165,7 +166,9 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
         elif isinstance(load, Spring) and load.between is not None:
             if not all(end.link in links for end in load.between):
                 continue
-            first, second = (_place(poses[:, links.index(e.link)], e) for e in load.between)
+            first, second = (
+                carried(poses[:, links.index(end.link)], end.vector) for end in load.between
+            )
             apart = second - first
             length = np.sqrt((apart * apart).sum(axis=1))
             pull = load.preload + load.stiffness * (length - load.free)
@@ -182,18 +185,6 @@ def _amount(analysis: Readable, amount: Amount) -> Floats:
         return np.full(analysis.rows, amount)
     law = result.problem.load_laws[amount.number]
     return np.asarray(law_value(law, result.quantity, analysis.rows), dtype=np.float64)
-
-
-def _turned(poses: Floats, vectors: Floats) -> Floats:
-    """Vectors (rows, 3) turned by poses (rows, 7)."""
-    scalar, axis = poses[:, 3:4], poses[:, 4:]
-    twice = 2.0 * np.cross(axis, vectors)
-    return np.asarray(vectors + scalar * twice + np.cross(axis, twice), dtype=np.float64)
-
-
-def _place(poses: Floats, point: Attached) -> Floats:
-    """Where a point of a link is (rows, 3), in m."""
-    return poses[:, :3] + _turned(poses, np.broadcast_to(point.vector, (len(poses), 3)))
 
 
 def _drawable(values: Floats) -> Floats:

@@ -213,8 +213,8 @@ def continuous(poses: Floats) -> Floats:
     return found
 
 
-def carried(poses: Floats, point: Vector) -> Floats:
-    """Where a point as drawn on a link is in its poses (..., 7), shape (..., 3): t + R x0 with
+def carried(poses: Floats, point: Vector | Floats) -> Floats:
+    """Where a point as drawn on a link, or one for each pose, is in poses (..., 7): t + R x0 with
     R x0 = x0 + 2 q0 (v x x0) + 2 v x (v x x0), v the vector part."""
     start = np.asarray(point, dtype=np.float64)
     v = poses[..., 4:]

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrator/crossing_search.hpp"
+#include "integrator/cubic.hpp"
 #include "integrator/march.hpp"
 
 namespace {
@@ -21,21 +22,18 @@ constexpr int RETURNS = 3;              // passes at one place that hold a motio
 // The least that the values at four places may have between them: of the cubic through all, whose extrema and whose values
 // are doubted by parts of the step and of the values' range. Without an extremum, of the inner values.
 double least_between(const double* x, const double* y) {
-  const double d01 = (y[1] - y[0]) / (x[1] - x[0]), d12 = (y[2] - y[1]) / (x[2] - x[1]),
-               d23 = (y[3] - y[2]) / (x[3] - x[2]);
-  const double bend = (d12 - d01) / (x[2] - x[0]), third = ((d23 - d12) / (x[3] - x[1]) - bend) / (x[3] - x[0]);
-  const auto value = [&](double at) { return y[0] + (at - x[0]) * (d01 + (at - x[1]) * (bend + third * (at - x[2]))); };
+  const Cubic cubic(x, y);
   double least = std::min(y[1], y[2]);
   // the extremum where the second derivative is positive: of a slope a + b t + c t^2
-  const double c = 3.0 * third, b = 2.0 * (bend - third * (x[0] + x[1] + x[2])),
-               a = d01 - bend * (x[0] + x[1]) + third * (x[0] * x[1] + x[0] * x[2] + x[1] * x[2]);
+  const double third = cubic.third, c = 3.0 * third, b = 2.0 * (cubic.bend - third * (x[0] + x[1] + x[2])),
+               a = cubic.slope - cubic.bend * (x[0] + x[1]) + third * (x[0] * x[1] + x[0] * x[2] + x[1] * x[2]);
   const double root = b * b - 4.0 * a * c;
   if (!(root >= 0.0)) return least;
   const double below = b + std::copysign(std::sqrt(root), b), one = -2.0 * a / below, other = -0.5 * below / c;
   const double most = std::max({y[0], y[1], y[2], y[3]}), range = most - std::min({y[0], y[3], least});
   for (double at : {one, other}) {
     if (!(at > x[0] - OUTSIDE && at < x[3] + OUTSIDE) || !(b + 2.0 * c * at > 0.0)) continue;
-    least = std::min(least, value(std::max(x[0], std::min(x[3], at))) - DOUBT * range);
+    least = std::min(least, cubic(std::max(x[0], std::min(x[3], at))) - DOUBT * range);
   }
   return least;
 }

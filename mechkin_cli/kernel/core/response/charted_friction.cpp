@@ -22,8 +22,9 @@ constexpr double NO_START = 1e-9, GOES = 10.0;
 // Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
 constexpr double NO_SLIP = 1e-14;
 
-// Where the slips' independent directions are counted: from the start so far, in rad and parts of the size, so many places.
-constexpr double NEAR_START[] = {0.0, 1e-4, 1e-2};
+// Where the slips' independent directions are counted beside the start: from it so far, in rad and parts of the size, so many
+// places.
+constexpr double NEAR_START[] = {1e-4, 1e-2};
 constexpr int PLACES_NEAR = 2;
 constexpr double GOLDEN = 0.6180339887498949;
 
@@ -114,20 +115,24 @@ void ChartedMotion::find_spans() {
   std::fill(rate_.begin(), rate_.end(), 0.0), std::fill(elapsed_.begin(), elapsed_.end(), 0.0);
   evaluate(place_.data(), rate_.data(), &trial_);
   jacobian_ = trial_.jacobian;
+  const auto count = [&] {
+    evaluate(place_.data(), rate_.data(), &trial_);
+    for (int l = 0; l < lanes_; ++l) {
+      if (trial_.flags[l] & (STAGE_NOT_CLOSED | STAGE_OFF_BRANCH)) continue;
+      for (int k = 0; k < plan_.frictions; ++k) {
+        double& most = span[(std::size_t)k * lanes_ + l];
+        most = std::max(most, at(trial_.slip.span, k, l));
+      }
+    }
+  };
+  count();
   for (double far : NEAR_START)
     for (int which = 0; which < PLACES_NEAR; ++which) {
       for (int i = 0; i < n; ++i) {
         const double part = (i + 1) * GOLDEN + which * GOLDEN * GOLDEN;
         for (int l = 0; l < lanes_; ++l) place_[(long)i * lanes_ + l] = far * (part - std::floor(part) - 0.5);
       }
-      evaluate(place_.data(), rate_.data(), &trial_);
-      for (int l = 0; l < lanes_; ++l) {
-        if (trial_.flags[l] & (STAGE_NOT_CLOSED | STAGE_OFF_BRANCH)) continue;
-        for (int k = 0; k < plan_.frictions; ++k) {
-          double& most = span[(std::size_t)k * lanes_ + l];
-          most = std::max(most, at(trial_.slip.span, k, l));
-        }
-      }
+      count();
     }
   std::fill(place_.begin(), place_.end(), 0.0);
   slips_.span = span;
