@@ -96,7 +96,8 @@ def judge(seed: int) -> Judged:
     way, count = int(rng.integers(-1, 2)), int(rng.integers(1, 30))
     count = min(count, 2) if text.startswith("exp") else count
     rate, force = float(round(rng.uniform(0.2, 3), 3)), float(rng.choice([0.0, 0.0, 1.5, -2.0]))
-    place, rows = float(round(rng.uniform(-1, 1), 3)), int(rng.choice([2, 6, 101]))
+    # not where a value jumps at once
+    place, rows = float(round(rng.uniform(-1, 1), 3)) + 0.00037, int(rng.choice([2, 6, 101]))
     file = FILE.format(
         force=force, place=place, rate=rate, rows=rows, value=text, at=at, count=count,
         direction={0: "any", 1: "up", -1: "down"}[way],

@@ -167,15 +167,15 @@ std::vector<Crossing> CrossingSearch::run(const Flags& crossed, const Flags& sus
   method_.prepare_dense(states_, &open_);
   for (int i = 0; i < states_.lanes; ++i)
     if (asked[i] && !open_[i]) found_[i].kind = Crossing::FAULT;
-  scan(suspected);
+  scan(crossed, suspected);
   look_early();
   close_in();
   return found_;
 }
 
 // Looks into the suspected lanes at equal parts, then where their values are likely to be least, and narrows them to the
-// first bad place that it meets.
-void CrossingSearch::scan(const Flags& suspected) {
+// first bad place that it meets; those without one that are crossed keep the step's end.
+void CrossingSearch::scan(const Flags& crossed, const Flags& suspected) {
   Flags waiting(states_.lanes, 0);
   std::vector<Samples> samples(states_.lanes);
   for (int i = 0; i < states_.lanes; ++i) {
@@ -186,7 +186,7 @@ void CrossingSearch::scan(const Flags& suspected) {
   for (int k = 1; k < SCAN + DEEPER && any(open_); ++k) {
     for (int i = 0; i < states_.lanes; ++i) {
       part_[i] = (double)k / SCAN;
-      if (open_[i] && k >= SCAN && !samples[i].deepest(&part_[i])) end(i, Crossing::NONE);
+      if (open_[i] && k >= SCAN && !samples[i].deepest(&part_[i])) crossed[i] ? std::swap(open_[i], waiting[i]) : end(i, Crossing::NONE);
     }
     look();
     for (int i = 0; i < states_.lanes; ++i) {
@@ -209,7 +209,7 @@ void CrossingSearch::scan(const Flags& suspected) {
     }
   }
   for (int i = 0; i < states_.lanes; ++i) {
-    if (open_[i]) end(i, Crossing::NONE);
+    if (open_[i]) crossed[i] ? (void)(waiting[i] = 1) : end(i, Crossing::NONE);
     if (suspected[i] && !waiting[i]) find_touch(i, samples[i]);
     open_[i] = waiting[i];
   }

@@ -56,7 +56,7 @@ class CrossingSearch {
   int first(int lane, double* where) const;
   bool is_bad(int lane) const;
   void find_touch(int lane, const Samples& samples);
-  void scan(const Flags& suspected);
+  void scan(const Flags& crossed, const Flags& suspected);
   void look_early();
   void close_in();
   void move(int lane, bool is_bad);

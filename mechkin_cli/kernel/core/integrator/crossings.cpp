@@ -78,6 +78,13 @@ bool March::may_dip(int lane, int landing) const {
   return false;
 }
 
+// The same of those that are not passed at the end.
+bool March::may_dip_beside(int lane) const {
+  for (int s = 0; s < (int)states_.kinds.size(); ++s)
+    if (!is_ignored(lane, s) && !is_crossed_by(lane, s) && least_inside(lane, s, false) < 0.0) return true;
+  return false;
+}
+
 void March::look_for_crossings(Method& method, Flags* mask) {
   Flags crossed(states_.lanes, 0), suspected(states_.lanes, 0);
   for (std::size_t k = 0; k < states_.switch_end.size(); ++k) {
@@ -96,7 +103,8 @@ void March::look_for_crossings(Method& method, Flags* mask) {
       }
     }
     crossed[i] = is_crossed(i, -1);
-    suspected[i] = !crossed[i] && may_dip(i, -1);
+    // beside one that is passed at the end another may be passed there and back before
+    suspected[i] = crossed[i] ? may_dip_beside(i) : may_dip(i, -1);
     if (!crossed[i] && !suspected[i]) c.landing = -1;
   }
   if (any(crossed) || any(suspected)) search(method, crossed, suspected, mask);

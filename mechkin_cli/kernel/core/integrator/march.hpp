@@ -76,6 +76,7 @@ class March {
   bool is_crossed(int lane, int but) const;
   bool is_crossed_by(int lane, int which) const;
   bool may_dip(int lane, int landing) const;
+  bool may_dip_beside(int lane) const;
   double least_inside(int lane, int which, bool stages_alone) const;
   void hold(int lane, int which);
   void meet_events(const Flags& mask);
