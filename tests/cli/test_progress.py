@@ -16,7 +16,7 @@ from cli import files
 HIDE, SHOW = b"\x1b[?25l", b"\x1b[?25h"
 WORK = """
 import sys, time
-from mechkin_cli.cli.main import end_quietly
+from mechkin_cli.__main__ import end_quietly
 from mechkin_cli.cli.messages import say
 from mechkin_cli.cli.progress import working
 end_quietly()

@@ -107,7 +107,7 @@ def test_the_new_pair_passes_the_identity_tests(copy: Path) -> None:
 
 
 def test_the_json_schema_is_generated_with_it(copy: Path) -> None:
-    run = "from mechkin_cli.cli.main import main; sys.argv[:] = ['mechkin', 'schema']; main()"
+    run = "from mechkin_cli.__main__ import main; sys.argv[:] = ['mechkin', 'schema']; main()"
     text = python(copy, run)
     json.loads(text)
     assert f'"const": "{LETTER}"' in text

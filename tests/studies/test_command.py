@@ -11,7 +11,7 @@ from references import FILE_OF
 from studies.studies import KEPT, MECHANISMS, RCSR, study_text
 
 import mechkin_cli as mk
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 from mechkin_cli.cli.progress import clock
 
 
