@@ -511,7 +511,7 @@ def _coefficients(
     sliding = _coefficient(fields, (*path, "sliding"), coefficient.sliding)
     if at_rest < sliding:
         text = "the static coefficient is smaller than that of sliding"
-        hint = "surfaces hold at least as well as they drag: exchange the two"
+        hint = "static friction is never below sliding friction: exchange the two values"
         fields.error(_FRICTION, (*path, "static"), text, hint)
     if coefficient.speed is None:
         return at_rest, sliding, None

@@ -460,7 +460,7 @@ JOINT_KEYS: Final = {
     **dict.fromkeys(("at", "position", "location", "origin"), "the place is point:, a vector"),
     **dict.fromkeys(
         ("initial", "initial_value", "value", "theta0", "angle"),
-        "every coordinate is zero as drawn; which assembly is meant says assembly: {near: ...}",
+        "every coordinate is zero as drawn; assembly: {near: ...} selects the assembly",
     ),
 }
 """Keys of every joint."""

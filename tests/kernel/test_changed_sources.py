@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kernel.added_pair import ADDITIONS, GENERATED, LETTER, MECHANISM
 from kernel.compiler import COMPILER, NARROW
-from kernel.pin_in_slot import ADDITIONS, GENERATED, LETTER, MECHANISM
 from kernel.test_power_balance import MECHANISM as LOADED
 
 ROOT = Path(__file__).parents[2]
