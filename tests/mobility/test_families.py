@@ -162,6 +162,16 @@ def test_a_load_about_the_rods_has_no_finite_reactions() -> None:
     assert said.measured == f"{most:.6g} N*m"
 
 
+def test_variants_say_that_no_finite_reactions_hold_them() -> None:
+    """Also where no reaction is asked for, whose being arbitrary would have them run alone."""
+    loads = "[{type: torque, link: top, torque: [0, 0, turning]}]"
+    text = "parameters: {turning: 5 N*m}\n" + table(loads=loads, columns="c.position.z")
+    found = mk.loads(text).vary({"turning": [0.0, 5.0]}, ["c.position.x.effort", "c.position.z"])
+    assert found.status.tolist() == [["ok"] * 3, ["unsupported"] * 3]
+    assert np.abs(found["c.position.x.effort"][0]).max() < 1e-12
+    assert np.isnan(found["c.position.x.effort"][1]).all()
+
+
 def test_a_load_square_to_the_rods_is_carried() -> None:
     x, y = PLACES[0]
     loads = f"[{{type: torque, link: top, torque: [{-y!r}, {x!r}, 0]}}]"
