@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
+from mechkin_cli.assembly import is_home_singular
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -66,7 +67,7 @@ from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import MechanismFile
-from mechkin_cli.session import solver_graph
+from mechkin_cli.session import Session, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
 from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
@@ -137,7 +138,7 @@ def build(
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
-    if isinstance(graph, SolverGraph):
+    if isinstance(graph, SolverGraph) and is_home_singular(Session.of(problem, graph)):
         held = mobility.held_to_family(problem)
         if held != problem.held:
             problem = replace(problem, held=held)
