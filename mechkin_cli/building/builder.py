@@ -56,6 +56,7 @@ from mechkin_cli.mechanism import (
     TIME_OF_ROW,
     ZERO,
     Attached,
+    LockedFreedom,
     Mechanism,
     MotionInputs,
     Problem,
@@ -108,9 +109,13 @@ class Built(NamedTuple):
 
 
 def build(
-    file: MechanismFile, document: Document, given: Mapping[str, Quantity] = _NOTHING
+    file: MechanismFile,
+    document: Document,
+    given: Mapping[str, Quantity] = _NOTHING,
+    alike: Sequence[LockedFreedom] = (),
 ) -> Built:
     """Builds everything that a file describes; `given` values replace those of some parameters.
+    What holds a design `alike` as drawn, as `Problem.stopped`, is what holds this one if it can.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
@@ -139,7 +144,7 @@ def build(
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
     if isinstance(graph, SolverGraph) and is_home_singular(Session.of(problem, graph)):
-        held = mobility.held_to_family(problem)
+        held = mobility.held_to_family(problem, alike)
         if held != problem.held:
             problem = replace(problem, held=held)
             graph = _graph(fields, file, problem)
