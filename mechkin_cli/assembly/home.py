@@ -21,7 +21,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import TrackEnd, home_inputs, home_state
+from mechkin_cli.plan import Demand, TrackEnd, home_inputs, home_state
 from mechkin_cli.record import dataclass
 from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
 from mechkin_cli.session import Ask, Followed, RowInputs, Session
@@ -40,6 +40,15 @@ def is_home_assembled(session: Session) -> bool:
     home = home_state(session.layout)[:, None]
     batch = session.run(RowInputs(inputs, home), Ask(iterations=0, tests=tests))
     return bool(batch.good[0])
+
+
+def is_home_singular(session: Session) -> bool:
+    """Whether some block is near singular in the home drawing, assembled or not."""
+    home = home_inputs(session.layout)[:, None], home_state(session.layout)[:, None]
+    batch = session.run(RowInputs(*home), Ask(Demand.CONDITION, iterations=0))
+    assert batch.condition is not None
+    # no number is below the limit where a block has none
+    return not batch.condition[0] < tolerances.CONDITION_NEAR_SINGULAR
 
 
 def _from_home(session: Session, path: Floats) -> Floats:

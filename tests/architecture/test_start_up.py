@@ -104,6 +104,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         ("response.runs", "responses"),
         ("balances.runs", "balances"),
+        ("mobility.families", "drawings that are singular as driven"),
+        ("mobility.configurations", "mobility"),
         ("tables.json", "JSON"),
         ("tables.summary", "summaries"),
         ("fit.result", "fits"),
