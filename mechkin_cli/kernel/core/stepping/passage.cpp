@@ -36,6 +36,8 @@ constexpr double SINGULAR_PIVOTS = 100.0;
 // Arclength (rad, length units) on which the path moves by less than this where a walk comes to nothing: a slide that
 // grows without bound. A screw of a thousandth of the size's lead moves it by some tenths.
 constexpr double FARTHEST = 1000.0, STANDING = 1e-6;
+// Half a unit in the last place of an equation, and how many of them its unknowns round by.
+constexpr double ROUNDING = 1e-16, LOOSE = 10.0;
 // Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
 constexpr int MOST_BEHIND = 300;
 // Rate and second derivative of sigma by arclength that are rounding.
@@ -100,6 +102,23 @@ class Walker {
       : limits_(limits), refused_(refused), until_(until) {}
 
   void walk(const Node& from, Passage* p) const {
+    go(from, p);
+    if (p->end == PassageEnd::lost && p->blame < 0 && !p->unbounded)
+      p->blame = loosest_before(*p->arc, p->nodes.empty() ? from : p->nodes.back());
+  }
+
+ private:
+  // Of the blocks that its own hang on the one nearest to a singular place, -1 where the rounding of none moves the
+  // equations by more than is accepted: each look closes them anew. What is walked together has one rounding.
+  int loosest_before(const Arc& arc, const Node& a) const {
+    int loosest = -1;
+    double least = LOOSE * ROUNDING / limits_.accept;
+    for (std::size_t k = 0; k < a.singular.size(); ++k)
+      if (arc.before()[k] && a.singular[k] < least) loosest = (int)k, least = a.singular[k];
+    return loosest;
+  }
+
+  void go(const Node& from, Passage* p) const {
     Arc& arc = *p->arc;
     Node a, b;
     if (!arc.enter(from, &a)) return;
@@ -151,7 +170,6 @@ class Walker {
     }
   }
 
- private:
   // Whether sigma stands still but for rounding, as it does in a narrow place that a block turns through while nothing
   // else moves: its rate's sign there says nothing.
   bool rests(const Arc& arc, const Node& a, const Node& b) const {
