@@ -41,9 +41,7 @@ def test_joints_at_rest_beside_friction_that_feeds_itself(seed: int) -> None:
     assert found.error < 1e-9
 
 
-@pytest.mark.parametrize(
-    "seed", [1150, 1290, 1328, 1393, 1486, 1573, 1637, 1682, 5057, 5168, 5229]
-)
+@pytest.mark.parametrize("seed", [1150, 1290, 1328, 1393, 1486, 1573, 1637, 1682, 5057, 5168, 5229])
 def test_joints_that_rest_together_are_decided(seed: int) -> None:
     """Rounding of where each begins to go is no room between them."""
     text = rubbing_loop(seed)
