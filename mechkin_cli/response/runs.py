@@ -109,8 +109,9 @@ def _rates(
         return rates
     # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
     lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
+    # behind the inputs is what is held, at rest
     inputs = session.problem.motion.inputs
-    named = [one.name for one, wrong in zip(inputs, lost & (rates != 0.0), strict=True) if wrong]
+    named = [one.name for k, one in enumerate(inputs) if lost[k] and rates[k] != 0.0]
     if not named:
         return rates
     return Diagnostic(

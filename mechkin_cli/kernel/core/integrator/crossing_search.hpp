@@ -8,6 +8,9 @@
 
 #include "integrator/lane_states.hpp"
 
+// Of an event's values at the ends of a step: a dip below its zero that is none.
+constexpr double TOUCH = 1e-12;
+
 struct Crossing {
   enum Kind {
     NONE,

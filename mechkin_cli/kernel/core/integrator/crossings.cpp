@@ -10,7 +10,6 @@
 
 namespace {
 
-constexpr double ROUNDING = 2.220446049250313e-16;
 constexpr double SMALL = 1e-12;         // of the values at the ends: what is no dip
 constexpr double DOUBT = 0.1;           // of the values' range: about the cubic's least value
 constexpr double OUTSIDE = 0.1;         // of the step: how far beyond it the cubic may have it
@@ -121,8 +120,7 @@ void March::land(int lane, Flags* mask) {
     if (slope < 0.0) c.landing_slope = slope;
   }
   const double wanted = c.landing_slope < 0.0 ? -value / c.landing_slope : 0.0;
-  const double rounding = 4.0 * ROUNDING * std::max(std::fabs(states_.until[lane]), step);
-  if (std::fabs(wanted) <= rounding || c.landing_tries >= LANDINGS) {
+  if (std::fabs(wanted) <= states_.time_rounding(lane) || c.landing_tries >= LANDINGS) {
     c.landed = true;
     return;
   }
@@ -253,16 +251,16 @@ void March::meet_events(const Flags& mask) {
       const std::size_t k = (std::size_t)s * lanes + i;
       if (!at_zero[i] || !states_.kinds[s].is_event() || std::fabs(values_[k]) > rounding[k]) continue;
       if (std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k])) <= rounding[k]) continue;
-      if (ahead[k] * states_.side[k] > 0)
-        states_.motion.touch(i, s, states_.time[i]);
-      else
-        jump(i, s);
+      // one that was passed at this place lies at its zero, too
+      const int goes = ahead[k] * states_.side[k];
+      if (goes < 0 || (goes == 0 && !control_[i].passed[s])) jump(i, s);
     }
 }
 
 void March::jump(int lane, int which) {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
   states_.side[k] = (std::int8_t)-states_.side[k];
+  ++control_[lane].passed[which];
   ++control_[lane].met[which];
   control_[lane].jumped.push_back(which);
 }

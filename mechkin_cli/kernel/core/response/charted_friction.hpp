@@ -9,6 +9,7 @@
 // A stage's slips, as StageFound has them.
 struct SlipStage {
   Packed rate, second, force, row, limit, loose, state, answer, level, told, span, way;
+  Packed system;  // empty where nothing asks
 };
 
 struct SlipMemory {
