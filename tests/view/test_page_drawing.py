@@ -175,18 +175,47 @@ def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
 
 def test_a_spring_ends_at_its_points(show: Show) -> None:
     data = four_bar()
-    tie = {"kind": "spring", "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
-    data["runs"][0]["ties"] = [tie, {**tie, "kind": "damper"}]
+    tie = {"joint": None, "turns": False, "links": [0, 1], "radius": None}
+    tie["places"] = [[0, 50, 0], [30, 0, 0]]
+    kinds = ("spring", "damper", "cylinder")
+    data["runs"][0]["ties"] = [{**tie, "kind": kind} for kind in kinds]
     browser = show(data)
     bar = FourBar(np.radians([90.0]))
     browser.evaluate("window.mechkin.seek(18)")
-    for k in (0, 1):
+    for k in range(3):
         ends = browser.evaluate(f"""(() => {{
-          const {{ group }} = window.mechkin.theatre.ties.all[{k}];
+          const {{ group, coil, rod, least }} = window.mechkin.theatre.ties.all[{k}];
           group.updateMatrixWorld(true);
-          const whole = window.mechkin.theatre.ties.all[{k}].length;
-          const place = (y) => group.position.clone().set(0, y, 0);
-          const at = (y) => place(y).applyMatrix4(group.matrixWorld).toArray();
-          return [at(0), at(whole)];
+          const end = coil ? coil.scale.z * least : rod.position.z + rod.scale.z;
+          const place = (z) => group.position.clone().set(0, 0, z);
+          const at = (z) => place(z).applyMatrix4(group.matrixWorld).toArray();
+          return [at(0), at(end)];
         }})()""")
         np.testing.assert_allclose(ends, [[0, 50, 0], bar.crank[0]], atol=SINGLE * 300)
+
+
+def test_a_piston_stays_in_its_tube(show: Show) -> None:
+    data = four_bar()
+    tie = {"joint": None, "turns": False, "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
+    data["runs"][0]["ties"] = [{**tie, "kind": k, "radius": None} for k in ("damper", "cylinder")]
+    browser = show(data)
+    for at in range(0, 37, 6):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        for k in (0, 1):
+            start, piston, end, rod = browser.evaluate(f"""(() => {{
+              const {{ cup, piston, rod }} = window.mechkin.theatre.ties.all[{k}];
+              return [cup[0], piston.position.z, cup[1], rod.position.z + rod.scale.z];
+            }})()""")
+            assert start < piston < end < rod
+
+
+@pytest.mark.parametrize("kind", ["spring", "damper"])
+def test_what_is_about_a_pin_turns_with_it(show: Show, kind: str) -> None:
+    data = four_bar()
+    tie = {"kind": kind, "joint": 0, "turns": True, "links": [0, 1], "places": [], "radius": None}
+    data["runs"][0]["ties"] = [tie]
+    browser = show(data)
+    for at in (0, 3, 9, 15):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        found = browser.evaluate("window.mechkin.theatre.ties.all[0].angle")
+        assert found == pytest.approx(np.radians(5.0 * at), abs=1e-5)

@@ -64,7 +64,7 @@ export class Theatre {
     this.paths = new Paths(this.data, branch, this.unit);
     this.arrows = new Arrows(this.data, branch, this.unit, this.size);
     this.arrows.zoom = zoom;
-    this.ties = new Ties(this.state.run.ties, this.unit);
+    this.ties = new Ties(this.state.run.ties, this.data, branch, this.unit);
     this.#choose();
     scene.add(this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
     this.places = placesOf(this.data, branch);
