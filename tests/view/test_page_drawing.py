@@ -15,6 +15,7 @@ from view.page_data import (
     joint,
     link,
     one_of_every_type,
+    packed,
     page_data,
     rod,
     slider,
@@ -145,6 +146,44 @@ def test_values_of_many_arrows_are_written_or_counted(show: Show) -> None:
     told = browser.evaluate("document.querySelector('#no-room').textContent")
     assert written > 0
     assert told.startswith(f"{30 - written} of 30 values have no room")
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_nothing_that_is_read_lies_under_tools_or_legend(show: Show, width: int) -> None:
+    data = four_bar()
+    data["view"]["camera"] = [0, 0, 1]
+    for one in data["runs"][0]["branches"]:
+        arrow = one["arrows"][0]
+        one["arrows"] = [{**arrow, "name": f"A{k}.force"} for k in range(40)]
+    browser = show(data, width=width)
+    browser.press("f")
+    for at in (0, 18, 36):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        browser.evaluate("window.mechkin.theatre.stage.draw()")
+        browser.evaluate("window.mechkin.theatre.stage.draw()")
+        boxes = """[...document.querySelectorAll('SELECTOR')].map((each) => {
+          const { left, top, right, bottom } = each.getBoundingClientRect();
+          return [left, top, right, bottom];
+        })"""
+        read = browser.evaluate(boxes.replace("SELECTOR", ".name:not([hidden]), #no-room"))
+        over = browser.evaluate(boxes.replace("SELECTOR", "#tools > *, #legend > *"))
+        assert len(read) > 3
+        for a in read:
+            for b in over:
+                apart = a[2] <= b[0] + 1 or b[2] <= a[0] + 1 or a[3] <= b[1] + 1 or b[3] <= a[1] + 1
+                assert apart, (at, a, b)
+
+
+def test_rounding_is_read_as_zero(show: Show) -> None:
+    data = four_bar()
+    own = data["runs"][0]["branches"][0]
+    values = 100.0 * np.sin(np.radians(np.arange(0, 361, 5)))
+    own["columns"] = [{**own["columns"][0], "values": packed("f64", values)}]
+    browser = show(data)
+    browser.evaluate("window.mechkin.seek(36)")  # 100 sin(pi) is 1.2e-14
+    assert "psi 0 deg" in browser.evaluate("document.querySelector('#curves').innerText")
+    browser.evaluate("window.mechkin.seek(6)")
+    assert "psi 50 deg" in browser.evaluate("document.querySelector('#curves').innerText")
 
 
 def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
