@@ -321,6 +321,8 @@ class LoadBuilder:
             return False
         what = "link" if key == "link" else "point"
         hint = nearest_hint(name, list(known))
+        if what == "point" and name in self.joints:
+            hint = f"{name} is a joint: name its point under points"
         self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
         return False
 

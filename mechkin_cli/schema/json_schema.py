@@ -289,6 +289,9 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("StudyFile", "vary"): {"P1": [0.48, "0.5 in"], "P2": {"tolerance": "0.01 in"}},
     ("Tolerance", "tolerance"): ["-0.1 mm", "0.2 mm"],
     ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
+    ("PartBetween", "kind"): "spring",
+    ("PartBetween", "points"): ["P", "Q"],
+    ("ViewSection", "between"): [{"kind": "spring", "points": ["P", "Q"]}],
 }
 
 INSTEAD_OF_ANY: Final[dict[str, Any]] = {

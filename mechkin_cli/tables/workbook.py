@@ -41,7 +41,8 @@ def workbook_bytes(runs: Sequence[Results]) -> bytes:
     """The workbook of all tables of all runs, each with its summary behind it.
 
     Raises:
-        UsageError: openpyxl is not installed, or a table is larger than a sheet may be.
+        UsageError: openpyxl is not installed, or a table is larger than a sheet may be, or one of
+            its texts longer than a cell.
     """
     book = _openpyxl().Workbook(write_only=True)
     book.properties.creator = "mechkin"
@@ -104,6 +105,14 @@ def _refuse_large(table: Columns) -> None:
                 f"table {table.name} has {count} {what}, and a sheet of a workbook at most {most}; "
                 "write it as --format csv"
             )
+    for column in table.columns:
+        words = column.values.words if isinstance(column.values, Words) else ()
+        longest = max(map(len, map(legible, (f"{column.label} [{column.unit}]", *words))))
+        if longest > LONGEST_TEXT:
+            raise UsageError(
+                f"table {table.name} has a text of {longest} characters, and a cell of a workbook "
+                f"holds at most {LONGEST_TEXT}; write it as --format csv"
+            )
 
 
 def _rows(table: Columns, units: bool, sheet: Any) -> Iterator[list[Any]]:
@@ -116,7 +125,7 @@ def _rows(table: Columns, units: bool, sheet: Any) -> Iterator[list[Any]]:
         return cell
 
     def text(value: str) -> Any:
-        return cell_of(legible(value)[:LONGEST_TEXT], "s")  # never a formula
+        return cell_of(legible(value), "s")  # never a formula
 
     def number(value: float) -> Any:
         # as a text of all digits: of floats openpyxl writes 16

@@ -48,7 +48,7 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
         if results.errors is not None:
             written.append(worst_table(results.errors, results.run))
         for table in written:
-            content = markdown_bytes(table, results.source, results.threads)
+            content = markdown_bytes(table, results.source, results.threads, results.decimal_comma)
             yield f"{table.name}.md", content
 
 
@@ -64,7 +64,7 @@ def _latex(runs: Sequence[Results]) -> Iterator[File]:
 
     for results in runs:
         for table in results.tables:
-            yield f"{table.name}.tex", latex_bytes(table, results.source)
+            yield f"{table.name}.tex", latex_bytes(table, results.source, results.decimal_comma)
 
 
 def _workbook(runs: Sequence[Results]) -> Iterator[File]:

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from mechkin_cli.building import DrawnBetween
     from mechkin_cli.mechanism import Amount, Mechanism, Problem
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Readable
@@ -52,18 +53,42 @@ Arrow = tuple[str, Kind, Attached, "Floats"]
 """Name, kind, place on a link, and vectors over the rows (rows, 3) in the file's units."""
 
 
-def tie_records(mechanism: Mechanism, links: Sequence[str], lengths: Lengths) -> list[Plain]:
-    """Springs and dampers between points for the page."""
-    return [
+def tie_records(
+    mechanism: Mechanism, drawn: Sequence[DrawnBetween], links: Sequence[str], lengths: Lengths
+) -> list[Plain]:
+    """Springs, dampers and cylinders for the page: those of loads between points and on joints that
+    slide or turn about one axis, and those that are only `drawn`."""
+    loads = [load for load in mechanism.loads if isinstance(load, Spring | Damper)]
+    kinds = {Spring: "spring", Damper: "damper"}
+    ends = [(kinds[type(load)], load.between, None) for load in loads if load.between is not None]
+    found: list[Plain] = [
         {
-            "kind": "spring" if isinstance(load, Spring) else "damper",
-            "links": [links.index(end.link) for end in load.between],
-            "places": [lengths.vector(end.vector) for end in load.between],
+            "kind": kind,
+            "joint": None,
+            "turns": False,
+            "links": [links.index(end.link) for end in between],
+            "places": [lengths.vector(end.vector) for end in between],
+            "radius": None if radius is None else lengths.one(radius),
         }
-        for load in mechanism.loads
-        if isinstance(load, Spring | Damper) and load.between is not None
-        if all(end.link in links for end in load.between)
+        for kind, between, radius in (*ends, *drawn)
+        if all(end.link in links for end in between)
     ]
+    joints = drawn_joints(mechanism)
+    for load in loads:
+        joint = mechanism.joints.get(load.joint or "")
+        if joint is None or joint not in joints or len(joint.type.steps) > 1:
+            continue  # of several displacements each has its own axis
+        found.append(
+            {
+                "kind": kinds[type(load)],
+                "joint": joints.index(joint),
+                "turns": is_angle(load.coordinate or ""),
+                "links": [links.index(joint.first), links.index(joint.second)],
+                "places": [],
+                "radius": None,
+            }
+        )
+    return found
 
 
 def has_forces(mechanism: Mechanism) -> bool:

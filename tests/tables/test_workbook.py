@@ -78,6 +78,18 @@ def test_too_many_rows_are_refused(source, monkeypatch):
         workbook.workbook_bytes([results_of(source, Columns("t", "", (column("x"),)))])
 
 
+def test_too_long_a_text_is_refused_and_not_cut(source):
+    pytest.importorskip("openpyxl")
+    for length in (32_767, 32_768):
+        table = Columns("t", "", (TableColumn("status", "", words_of(["x" * length])),))
+        if length == 32_767:
+            (sheet,) = book(workbook.workbook_bytes([results_of(source, table)])).worksheets
+            assert sheet["A2"].value == "x" * length
+            continue
+        with pytest.raises(UsageError, match=r"table t has a text of 32768 .*at most 32767.*csv"):
+            workbook.workbook_bytes([results_of(source, table)])
+
+
 def test_without_openpyxl_the_command_to_install_it_is_said(source, monkeypatch):
     monkeypatch.setitem(sys.modules, "openpyxl", None)
     with pytest.raises(UsageError, match=r"pip install 'mechkin\[xlsx\]'"):

@@ -29,6 +29,7 @@ def _packed(kind: str) -> dict[str, Any]:
 TEXT = {"type": "string"}
 NUMBER = {"type": "number"}
 SWITCH = {"type": "boolean"}
+LENGTH = {"type": "number", "exclusiveMinimum": 0}
 INDEX = {"type": "integer", "minimum": 0}
 VECTOR = _list(NUMBER, minItems=3, maxItems=3)
 COLUMN = _object(label=TEXT, unit=TEXT)
@@ -41,7 +42,9 @@ def _shape(kind: Any, **more: Any) -> dict[str, Any]:
 
 SHAPE = {
     "oneOf": [
-        _shape({"enum": ["rod", "none"]}),
+        _shape({"const": "none"}),
+        _shape({"enum": ["rod", "cylinder"]}, radius=_or_null(LENGTH)),
+        _shape({"const": "wheel"}, normal=VECTOR, radius=LENGTH, width=LENGTH),
         _shape({"const": "plate"}, normal=VECTOR),
         _shape({"const": "star"}, centre=VECTOR),
     ]
@@ -106,9 +109,12 @@ DATA = _object(
             x=COLUMN,
             ties=_list(
                 _object(
-                    kind={"enum": ["spring", "damper"]},
+                    kind={"enum": ["spring", "damper", "cylinder"]},
+                    joint=_or_null(INDEX),
+                    turns=SWITCH,
                     links=_list(INDEX, minItems=2, maxItems=2),
-                    places=_list(VECTOR, minItems=2, maxItems=2),
+                    places=_list(VECTOR, maxItems=2),
+                    radius=_or_null(LENGTH),
                 )
             ),
             branches=_list(BRANCH, minItems=1),

@@ -73,7 +73,7 @@ def joint(
 
 
 def rod(*points: Any) -> dict[str, Any]:
-    return {"kind": "rod", "points": [list(each) for each in points]}
+    return {"kind": "rod", "points": [list(each) for each in points], "radius": None}
 
 
 NOTHING = {"kind": "none", "points": []}

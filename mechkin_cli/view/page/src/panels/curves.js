@@ -183,7 +183,7 @@ export class Curves {
     for (const plot of this.plots) this.#moveLine(plot);
     this.choice.tell((key) => {
       const column = this.state.branch.columns.find((each) => keyOf(each) === key);
-      return column ? told(numbers(column.values)[this.state.row]) : "";
+      return column ? told(numbers(column.values)[this.state.row], 6, largest(numbers(column.values))) : "";
     });
   }
 
@@ -247,6 +247,7 @@ class RowAxis {
   }
 }
 
+const largest = (values) => values.reduce((most, each) => (Math.abs(each) > most ? Math.abs(each) : most), 0);
 const finite = (value) => (Number.isFinite(value) ? value : null);
 const keyOf = (column) => `${column.table ?? ""}\u0000${column.label}`;
 const withUnit = (label, unit) => (unit ? (label ? `${label} in ${unit}` : unit) : label);
