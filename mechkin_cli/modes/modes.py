@@ -227,7 +227,7 @@ def _result(
     certify: bool,
 ) -> Modes:
     problem = session.problem
-    notes = [*notes, *_search_notes(assemblies)]
+    notes = [*notes, *_search_notes(assemblies), *_family_notes(problem)]
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
@@ -269,6 +269,14 @@ def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: floa
     if name in inputs and turned == value:
         return inputs[name]
     return float(problem.units.from_si(turned, dimension_of(name.rpartition(".")[2])))
+
+
+def _family_notes(problem: Problem) -> list[Diagnostic]:
+    """Of which motion the modes are, where several motions have assemblies."""
+    words = "; ".join(dict.fromkeys(one.words for one in problem.stopped))
+    text = f"{words}: the modes are those of the motion in which it rests, others are not sought"
+    hint = "mobility tells which motions meet"
+    return [Diagnostic("family-modes", "note", text, hint=hint)] if words else []
 
 
 def _search_notes(assemblies: Assemblies) -> list[Diagnostic]:

@@ -357,6 +357,10 @@ FREE_INPUT_MISS: Final = 3e-9
 """Closing equation after that step above which an input may be locked, and the mobility is asked: a
 locked one misses by a part of the step or of its square, 9e-8."""
 
+STOPPED_MISS: Final = 1e-6
+"""Closing equation after that step above which the loops stop the input to first order: below, to
+second order at most, 9e-8 times curvatures."""
+
 # --- whole turns ---------------------------------------------------------------------------------
 
 HALF_TURN_SIDE: Final = 1e-9

@@ -166,7 +166,7 @@ def test_variants_go_on_in_the_family_of_the_file(
     x, y = np.array(PLACES).T
     model.analyze()
     assert len(searches) == 1
-    lengths = np.linspace(0.9, 1.5, variants)
+    lengths = np.linspace(0.8, 1.5, variants)
     varied = model.vary({"L": lengths}, ["c.position.z", "c.position.x.effort"])
     z = -np.sqrt(lengths[:, None] ** 2 - x * x - y * y)
     assert np.abs(varied["c.position.z"] - z).max() < 1e-12
@@ -200,6 +200,25 @@ def test_efforts_are_those_of_the_sphere() -> None:
     assert analysis["c.position.x.effort"] == pytest.approx(100.0 * x / z, rel=1e-12)
     assert analysis["c.position.y.effort"] == pytest.approx(100.0 * y / z, rel=1e-12)
     assert np.isnan(analysis["B0.force.z"]).all()  # four rods, three of which would do
+
+
+@pytest.mark.parametrize("drawn", [(0.0, 0.0), (0.3, 0.2)], ids=str)
+def test_modes_are_those_of_the_sphere(drawn: tuple[float, float]) -> None:
+    """A table that tilts has assemblies at the same inputs that the rods hold without a turn more:
+    none of its own family."""
+    model = mk.loads(table(drawn=drawn, columns="c.position.z, c.position.x.effort"))
+    found = model.modes()
+    assert [mode.name for mode in found.modes] == ["A", "B"]
+    assert [d.code for d in found.diagnostics if "turns to first order" in d.message] == [
+        "family-modes"
+    ]
+    x, y = np.array(PLACES).T
+    for mode, side in (("A", -1.0), ("B", 1.0)):
+        analysis = model.analyze(mode=mode)
+        z = side * np.sqrt(1.0 - x * x - y * y)
+        assert analysis["row.status"].tolist() == ["ok"] * len(PLACES)
+        assert np.abs(analysis["c.position.z"] - z).max() < 1e-12
+        assert np.abs(analysis["c.position.x.effort"] + 100.0 * x / z).max() < 1e-9
 
 
 def test_rates_are_those_of_the_sphere() -> None:
