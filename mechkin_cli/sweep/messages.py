@@ -242,9 +242,15 @@ def unrated_notes(
     by_rates = Demand.VELOCITY | Demand.FORCES
     shown = [q for q in asked if q.name not in unasked]
     powers = bool(mechanism.loads) or any(link.has_mass for link in mechanism.links.values())
-    by_rate = [demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY for q in shown]
-    by_rate = [powers if q.kind == "power_error" else b for q, b in zip(shown, by_rate, strict=True)]
-    rates = [q.name for q, b in zip(shown, by_rate, strict=True) if b]
+    rates = [
+        q.name
+        for q in shown
+        if (
+            powers
+            if q.kind == "power_error"
+            else demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY
+        )
+    ]
     needs = [f"{listed(rates)} {'is' if len(rates) == 1 else 'are'} as at rest"] if rates else []
     forces = [q for q in asked if q.kind not in _WITHOUT_RATES]
     if any(demand_of(mechanism, [q]) & by_rates == by_rates for q in forces):
