@@ -451,6 +451,20 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     return _dependent(problem.held, body, motions)
 
 
+def hold_ends(held: Iterable[LockedFreedom]) -> tuple[str, str]:
+    """What is locked and cannot keep its value beyond a place, in words, and what to do."""
+    held = tuple(held)
+    words = "; ".join(dict.fromkeys(one.words for one in held))
+    conventions = ", ".join(dict.fromkeys(one.convention for one in held))
+    names = [one.name for one in held if one.cure == f"drive {one.name}"]
+    drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
+    return (
+        f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
+        "itself has no dead centre",
+        f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
+    )
+
+
 def _dependent(
     held: tuple[LockedFreedom, ...], body: Body, motions: Floats
 ) -> tuple[LockedFreedom, ...]:

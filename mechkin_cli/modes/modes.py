@@ -32,6 +32,7 @@ from mechkin_cli.assembly import (
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem, Wanted, dimension_of
+from mechkin_cli.mobility import hold_ends
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand, TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
@@ -430,8 +431,17 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         *problem.diagnostics,
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
+        *_hold_notes(walker),
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
+
+
+def _hold_notes(walker: Walker) -> list[Diagnostic]:
+    """That ends of ranges are those of what holds idle freedoms, and not of the mechanism."""
+    if not walker.lost_holds:
+        return []
+    text, hint = hold_ends(walker.lost_holds.values())
+    return [Diagnostic("hold-ends", "warning", text, hint=hint)]
 
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:

@@ -129,3 +129,27 @@ def test_the_dead_centre_of_another_loop_is_that_of_the_mechanism() -> None:
     )
     found, _ = ended(text)
     assert found.code == "dead-centre"
+
+
+def test_ranges_end_where_the_hold_does() -> None:
+    """They say so; the ends of the pad that is held are where the rod stands across its slide."""
+    found = mk.loads(ROD_AND_PAD.format(way=[0, 1, 0], height=0.5, x=0.6, y=0.3)).ranges()
+    reach = sqrt(0.6**2 + 0.3**2)
+    for item in found.ranges:
+        assert (item.lower.kind, item.upper.kind) == ("hold-ends", "hold-ends")
+        assert abs(item.lower.value - (0.3 - reach)) < LIMIT
+        assert abs(item.upper.value - (0.3 + reach)) < LIMIT
+    (note,) = [d for d in found.diagnostics if d.code == "hold-ends"]
+    assert "E.y" in note.message
+    assert "drive it" in (note.hint or "")
+
+
+def test_ranges_of_the_mechanism_itself_end_at_its_dead_centres() -> None:
+    """The upper end rises from 0.5 to the rod's length, and falls as far below the plane."""
+    found = mk.loads(ROD_AND_PAD.format(way=[0, 0, 1], height=0.5, x=0.6, y=0)).ranges()
+    reach = sqrt(0.6**2 + 0.5**2)
+    for item in found.ranges:
+        assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
+        assert abs(item.lower.value - (-0.5 - reach)) < LIMIT
+        assert abs(item.upper.value - (-0.5 + reach)) < LIMIT
+    assert "hold-ends" not in {d.code for d in found.diagnostics}
