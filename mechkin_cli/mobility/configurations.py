@@ -298,8 +298,13 @@ class Configuration:
 
     @property
     def assembled(self) -> bool:
-        """Whether all loops close."""
-        return self.miss < tolerances.MOBILITY_CLOSED
+        """Whether all loops close, in parts of how far the links are."""
+        return self.miss < tolerances.MOBILITY_CLOSED * self.reach
+
+    @cached_property
+    def reach(self) -> float:
+        """How far the links are from the drawing's centre, in parts of its size; at least 1."""
+        return max(1.0, *(float(np.abs(at).max()) for _, at in self.poses.values()))
 
     def point(self, joint: Joint) -> Floats:
         """Where the joint's point on its first link is."""
@@ -438,9 +443,9 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     if place is None:
         return ()
     # lengths in parts of how far the links are, where that is more than the size; unit columns
-    far = max(1.0, *(float(np.abs(at).max()) for _, at in place.poses.values()))
+    far = 1.0 / place.reach
     jacobian = place.jacobian
-    parts = np.array([1.0, 1.0, 1.0, 1.0 / far, 1.0 / far, 1.0 / far])
+    parts = np.array([1.0, 1.0, 1.0, far, far, far])
     matrix = jacobian * np.tile(parts, len(jacobian) // 6)[:, None]
     lengths = np.sqrt((matrix * matrix).sum(axis=0))
     driven = np.eye(body.count)[[body.column(*each) for each in problem.motion.driven]]

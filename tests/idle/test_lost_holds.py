@@ -3,7 +3,7 @@ the message blames what is held, at a place that closed forms know, and only the
 
 from __future__ import annotations
 
-from math import acos, degrees, sqrt
+from math import acos, asin, degrees, sqrt
 
 import numpy as np
 import pytest
@@ -110,12 +110,16 @@ def test_a_plane_held_at_its_ball_ends_at_a_branch_point_of_its_own() -> None:
     assert abs(found.numbers[0].value - degrees(acos(1.0 / 3.0))) < LIMIT
 
 
-def test_a_held_slide_between_two_planes_runs_away() -> None:
+@pytest.mark.parametrize(("to", "half_turns"), [(360, 0), (-360, -1)])
+def test_a_held_slide_between_two_planes_runs_away(to: int, half_turns: int) -> None:
     """The line of both planes comes to stand across the slide that is held: its direction is that
-    of n1 x n3, and x of the fixed plane is along [1, 0, 0]."""
-    found, _ = ended(TWO_PLANES)
+    of n1 x n3, and x of the fixed plane is along [1, 0, 0], so that sin(theta) = 0.5 0.3. The slide
+    is thousands of times as long as the drawing before it, where following stops."""
+    found, _ = ended(TWO_PLANES.replace("to: 360", f"to: {to}"))
     assert found.code == "hold-ends"
     assert "E2.x" in found.message
+    place = 180 * half_turns + (-1) ** half_turns * degrees(asin(0.15))
+    assert abs(found.numbers[0].value - place) < 1e-2
 
 
 def test_the_dead_centre_of_another_loop_is_that_of_the_mechanism() -> None:
