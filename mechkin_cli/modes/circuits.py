@@ -15,6 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mobility import lost_holds
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.search import pose_number
@@ -23,17 +24,22 @@ from mechkin_cli.session import Ending, Runaway, find_limit
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from mechkin_cli.mechanism import LockedFreedom
     from mechkin_cli.session import Followed, InputPath, Session
     from mechkin_cli.show import Floats
 
-EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
+EndKind = Literal[
+    "dead-centre", "branch-point", "hold-ends", "unbounded", "branch-lost", "full-turn", "far"
+]
 
 
 class End(NamedTuple):
     """Where a branch ends: the input there (kernel units), and what may lie beyond.
 
-    `unbounded`: a slide grew out of bounds before it; `full-turn`: it came to an assembly that was
-    met before, turns ago; `far`: not found within the reach that is looked over.
+    `hold-ends`: a coordinate that holds an idle freedom cannot be kept beyond it, where the
+    mechanism itself is regular; `unbounded`: a slide grew out of bounds before it; `full-turn`: it
+    came to an assembly that was met before, turns ago; `far`: not found within the reach that is
+    looked over.
     """
 
     kind: EndKind
@@ -79,6 +85,7 @@ class Walker:
         layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
+        self.lost_holds: dict[str, LockedFreedom] = {}
         self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
 
     def circuit(self, state: Floats) -> list[Branch]:
@@ -140,15 +147,7 @@ class Walker:
             followed = self.follow(np.array([value, target]), state)
             if followed.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, followed)
-                last = float(followed.inputs[self.number])
-                if limit is None:
-                    return End("branch-lost", last), places
-                if isinstance(limit, Runaway):
-                    return End("unbounded", last), places
-                at = float(limit.inputs[self.number])
-                if limit.is_dead_centre:
-                    return End("dead-centre", at, limit), places
-                return End("branch-point", at), places
+                return self._end_at(followed, limit), places
             value, state = target, followed.state
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places
@@ -156,6 +155,20 @@ class Walker:
                 return End("full-turn", target), places
             places.append((value, state))
         return End("far", value), places
+
+    def _end_at(self, followed: Followed, limit: Ending | Runaway | None) -> End:
+        """The end at which following stopped."""
+        at = limit if isinstance(limit, Ending) else followed
+        held = lost_holds(self.session, at.inputs, at.state)
+        self.lost_holds |= {one.name: one for one in held}
+        value = float(at.inputs[self.number])
+        fold = limit if isinstance(limit, Ending) and limit.is_dead_centre else None
+        kind: EndKind = "dead-centre" if fold else "branch-point"
+        if held:
+            kind = "hold-ends"
+        elif not isinstance(limit, Ending):
+            kind = "unbounded" if limit else "branch-lost"
+        return End(kind, value, fold)
 
     def follow(self, values: Floats, state: Floats) -> Followed:
         """The branch through a state along values of the input."""

@@ -32,6 +32,7 @@ from mechkin_cli.assembly import (
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem, Wanted, dimension_of
+from mechkin_cli.mobility import hold_ends
 from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
 from mechkin_cli.plan import Demand, TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
@@ -39,6 +40,7 @@ from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import Assemblies, all_assemblies, pose_number, with_assemblies
 from mechkin_cli.session import (
     Ask,
+    KernelInputs,
     RowInputs,
     Session,
     followers_of,
@@ -47,6 +49,7 @@ from mechkin_cli.session import (
     input_path,
     input_text,
     kernel_inputs,
+    turn_of,
 )
 from mechkin_cli.show import Floats, Listed, Listing
 
@@ -151,7 +154,8 @@ def find_modes(
     """The assembly modes at the first row, or with the inputs `at` (by name, in the file's units)
     in place of the values there; with proofs if they are to be certified."""
     layout = session.layout
-    first = session.inputs.values[:, 0]
+    # an assembly is the same whole turns of an input away; a way to it is not
+    first = session.inputs.reduced[:, 0]
     named = name_modes(session, first)
     start = choose_start(session)
     state = state_at_first_row(session, start)
@@ -161,8 +165,10 @@ def find_modes(
         notes = start.diagnostics
         names = [named.letters[i] for i in range(named.number)]
         return _result(session, first, {}, named.found, names, letter, notes, certify)
-    place = _inputs_at(session, at)
-    ends, notes = _follow_all(session, first, place, named)
+    inputs = _inputs_at(session, at)
+    way = np.stack([session.inputs.values[:, 0], inputs.values[:, 0]], axis=1)
+    ends, notes = _follow_all(session, way, named)
+    place = inputs.reduced[:, 0]
     assemblies = all_assemblies(session, place)
     if ends:
         states = np.stack([*ends.values()], axis=1)
@@ -177,27 +183,26 @@ def find_modes(
     return _result(session, place, at, assemblies, names, letter, notes, certify)
 
 
-def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
-    """Inputs (inputs,) in kernel units."""
+def _inputs_at(session: Session, at: Mapping[str, float]) -> KernelInputs:
+    """The inputs of the first row with those `at` in their place, in all rows."""
     problem = session.problem
     inputs = []
     for item in problem.motion.inputs:
-        value = float(item.values[0])
-        if item.name in at:
-            value = float(problem.units.to_si(at[item.name], dimension_of(item.coordinate)))
-        inputs.append(item._replace(values=np.full(problem.motion.rows, value)))
+        written = item.written_orders.copy()
+        written[0] = at.get(item.name, item.written[0])
+        values = problem.units.to_si(written[0].copy(), dimension_of(item.coordinate))
+        inputs.append(item._replace(values=np.asarray(values), written_orders=written))
     changed = replace(problem, motion=problem.motion._replace(inputs=tuple(inputs)))
-    return kernel_inputs(changed, session.layout).values[:, 0]
+    return kernel_inputs(changed, session.layout)
 
 
 def _follow_all(
-    session: Session, first: Floats, place: Floats, named: NamedModes
+    session: Session, path: Floats, named: NamedModes
 ) -> tuple[dict[str, Floats], list[Diagnostic]]:
-    """States at `place` by letter, of the branches that arrive there; a note for each that does
-    not."""
+    """States by letter of the branches that arrive at the path's end, from the first row's modes at
+    its beginning; a note for each that does not."""
     ends: dict[str, Floats] = {}
     notes = []
-    path = np.stack([first, place], axis=1)
     for number, letter in named.letters.items():
         followed = session.follow(path, named.found.states[:, number])
         if followed.end == TrackEnd.FINISHED:
@@ -406,12 +411,12 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
                 f"there is no coordinate {output[:LONGEST_NAME]}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
-    path, row = session.inputs.values, 0
+    path, row = session.inputs.reduced, 0
     named = name_modes(session, path[:, row])
     if named.number == 0 and is_home_assembled(session):
         row = nearest_to_home(session, path)
         named = name_modes(session, path[:, row])
-    item, first = problem.motion.inputs[number], path[:, row]
+    item = problem.motion.inputs[number]
     leader, moved = _leader(session, number)
     at = {
         i.name: float(i.written[row])
@@ -422,16 +427,29 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(session, leader, first, input_path(session, leader, row))
-    ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
+    way = input_path(session, leader, row)
+    # inputs that follow others do so with their whole turns
+    first = path[:, row] if way is None else session.inputs.values[:, row]
+    walker = Walker(session, leader, first, way)
+    left_out = 0.0 if way else float(session.inputs.whole[number, row])
+    ranges, circuits = _Survey(session, named, walker, number, left_out, outputs).ranges()
     # in the order of the letters: A, B, ..., AA
     shown = tuple(tuple(sorted(modes, key=lambda m: (len(m), m))) for modes, _ in circuits)
     notes = (
         *problem.diagnostics,
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
+        *_hold_notes(walker),
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
+
+
+def _hold_notes(walker: Walker) -> list[Diagnostic]:
+    """That ends of ranges are those of what holds idle freedoms, and not of the mechanism."""
+    if not walker.lost_holds:
+        return []
+    text, hint = hold_ends(walker.lost_holds.values())
+    return [Diagnostic("hold-ends", "warning", text, hint=hint)]
 
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:
@@ -472,7 +490,8 @@ def _lost_ends(item: Range) -> int:
 
 
 class _Survey:
-    """The circuits of all modes, one after the other; values are those of the input `shown`."""
+    """The circuits of all modes, one after the other; values are those of the input `shown`, which
+    stands the whole `turns` farther than the walker has it."""
 
     def __init__(
         self,
@@ -480,10 +499,13 @@ class _Survey:
         named: NamedModes,
         walker: Walker,
         shown: int,
+        turns: float,
         outputs: Sequence[str],
     ) -> None:
         self.session, self.problem, self.layout = session, session.problem, session.layout
         self.named, self.walker, self.shown = named, walker, shown
+        turn = turn_of(self.problem, self.problem.motion.inputs[shown])
+        self.farther = turns * float(turn) if turn else 0.0
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
 
@@ -543,7 +565,7 @@ class _Survey:
     def _limit_value(self, value: float) -> float:
         if self.shown != self.walker.number:
             value = float(self.walker.at(np.array([value]))[0, self.shown, 0]) + 0.0
-        return input_number(self.problem, self.layout, self.shown, value).value
+        return input_number(self.problem, self.layout, self.shown, value).value + self.farther
 
 
 class _Stationary:

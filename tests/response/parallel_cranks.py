@@ -34,8 +34,8 @@ def parallel_cranks(
         joints = joints.replace(f", 0], {AXIS}", "]")
     down = f"[0, -{GRAVITY}]" if flat else f"[0, -{GRAVITY}, 0]"
     return (
-        f"format: 1\nname: parallel cranks\n{plane}units: {{angle: rad}}\nlinks:\n"
-        f"{links}joints:\n{joints}"
+        f"format: 1\nname: parallel cranks\n{plane}units: {{angle: rad}}\n"
+        f"links:\n{links}joints:\n{joints}"
         f"loads: [{{type: gravity, g: {down}}}]\n{asked}{more}"
         f"responses:\n  run:\n" + "".join(f"    {line}\n" for line in lines)
     )
