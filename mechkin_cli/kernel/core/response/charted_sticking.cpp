@@ -43,8 +43,8 @@ double ChartedMotion::along_sense(const Stage& found, int lane, int k) const {
   return sum;
 }
 
-// Whether joints cannot start as a way says, whatever their friction, of the stage in trial_. The direction of one with several is
-// that of one friction force alone, which rules out no other.
+// Whether joints cannot start as a way says, whatever their friction, of the stage in trial_. The direction of one with
+// several is that of one friction force alone, which rules out no other.
 bool ChartedMotion::rules_out(int lane, const Signs& way, const std::vector<int>& joints) const {
   const int n = plan_.frictions;
   long number = 0;
@@ -223,8 +223,8 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   if (!set_going(lane, breaks ? event : -1, &open, *v)) return false;
   // beside rounding also what the rates could not be freed of, as in a dead centre of a joint's own
   for (int k : rested) {
-    const double left = NOISE * slip_size(trial_.slip.rate, lane, k), none = NO_SLIP * slips_.fastest[lane] * lever(trial_, lane, k);
-    slips_.left[(std::size_t)k * lanes_ + lane] = std::max(left, none);
+    const double none = NO_SLIP * slips_.fastest[lane] * lever(trial_, lane, k);
+    slips_.left[(std::size_t)k * lanes_ + lane] = std::max(NOISE * slip_size(trial_.slip.rate, lane, k), none);
   }
   return true;
 }
