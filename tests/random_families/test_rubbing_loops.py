@@ -58,6 +58,14 @@ def test_joints_that_rest_together_are_decided(seed: int) -> None:
     assert judge(text, motion_alone=True).word == "ok"
 
 
+def test_joints_with_two_ways_to_start_are_named() -> None:
+    text = rubbing_loop(5533)
+    assert text is not None
+    (error,) = [d for d in mk.loads(text).respond("run").diagnostics if d.severity == "error"]
+    assert error.code == "friction-undecided"
+    assert "friction of J5, J3, J2 has" in error.message
+
+
 def test_a_ball_whose_friction_feeds_itself_jams() -> None:
     """Its normal load grows without bound, by the dense equations, too."""
     text = rubbing_loop(401)

@@ -133,11 +133,11 @@ std::vector<int> ChartedMotion::resting(int lane, int event) {
 bool ChartedMotion::set_going(int lane, int forced, std::vector<int>* open, const std::vector<double>& v) {
   while (!open->empty()) {
     for (int k : *open) quiet(lane, k) = 1.0;
+    slips_.doubtful[lane] = *open;
     std::vector<SlipTrial> trials;
     for (const Signs& way : ways_of(lane, *open, forced)) trials.push_back(trial(lane, way, *open, v));
     const int found = trial_that_holds(trials, *open, forced);
     for (int k : *open) quiet(lane, k) = 0.0;
-    if (trials.empty()) slips_.doubtful[lane] = *open;
     if (found < 0) return false;
     const SlipTrial again = trial(lane, trials[found].way, *open, v);
     std::vector<int> kept;
