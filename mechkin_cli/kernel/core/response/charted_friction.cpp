@@ -19,8 +19,6 @@ constexpr double NO_FORCE = 1e-12;
 // Accelerations of a slip that was just let go, in parts of that by its friction, that are rounding; and how many times
 // more tells that it goes.
 constexpr double NO_START = 1e-9, GOES = 10.0;
-// Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
-constexpr double NO_SLIP = 1e-14;
 
 // Where the slips' independent directions are counted beside the start: from it so far, in rad and parts of the size, so many
 // places.
@@ -64,7 +62,7 @@ void ChartedMotion::begin_slips() {
   s.sense.assign((std::size_t)n * lanes_, 1.0), s.quiet.assign((std::size_t)n * lanes_, 0.0);
   s.span.assign((std::size_t)n * lanes_, 0.0), s.way.assign(2 * (std::size_t)s.columns * lanes_, 0.0);
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0.0);
-  s.started.assign((std::size_t)n * lanes_, NAN);
+  s.started.assign((std::size_t)n * lanes_, NAN), s.left.assign((std::size_t)n * lanes_, 0.0);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
@@ -155,13 +153,12 @@ double ChartedMotion::lever(const Stage& found, int lane, int k) const {
   return largest;
 }
 
-// What of a slip's speed is rounding, where friction has just let it go: at that limit a load that barely grows leaves no
+// What of a slip's speed is rounding, where it has just begun. Where friction has let it go a load that barely grows leaves no
 // acceleration that tells the sense.
 double ChartedMotion::unsure(const Stage& found, int lane, int k) const {
-  const double started = slips_.started[(std::size_t)k * lanes_ + lane];
-  if (!(started <= time_[lane])) return 0.0;
-  const double growing = NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
-  return growing + NO_SLIP * slips_.fastest[lane] * lever(found, lane, k);
+  const double started = slips_.started[(std::size_t)k * lanes_ + lane], left = slips_.left[(std::size_t)k * lanes_ + lane];
+  if (!(started <= time_[lane])) return left;
+  return left + NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
 }
 
 // Not negative as long as a joint goes on to slip, or to stick.
@@ -245,9 +242,10 @@ void ChartedMotion::tell_undecided(const Stage& found, int lane) {
 void ChartedMotion::arm(const Stage& found, int lane) {
   for (int k = 0; k < plan_.frictions; ++k) {
     const std::size_t e = (std::size_t)k * lanes_ + lane;
-    if (has_sign(lane, k) && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k) &&
-        time_[lane] > slips_.started[e])
-      slips_.started[e] = NAN;
+    if (has_sign(lane, k) && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k)) {
+      slips_.left[e] = 0.0;
+      if (time_[lane] > slips_.started[e]) slips_.started[e] = NAN;
+    }
     if (has_sign(lane, k) || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
     const double size = slip_size(found.slip.rate, lane, k), least = slips_.armed[e] != 0.0 ? 1.0 : ARMED;
     if (size > least * AT_END * slips_.fastest[lane] * lever(found, lane, k)) aim_along(found, lane, k);

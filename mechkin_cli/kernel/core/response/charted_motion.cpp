@@ -125,7 +125,8 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
                           found->slip.rate.data(), found->slip.second.data(), found->slip.force.data(),
                           found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
                           found->slip.state.data(), found->slip.answer.data(), found->slip.span.data(), found->slip.way.data(),
-                          found->slip.level.data(), found->slip.told.data(), found->slip.system.empty() ? nullptr : found->slip.system.data(),
+                          found->slip.level.data(), found->slip.told.data(),
+                          found->slip.system.empty() ? nullptr : found->slip.system.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }

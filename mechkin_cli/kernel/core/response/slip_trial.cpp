@@ -9,7 +9,7 @@ namespace {
 // Accelerations, in parts of the largest of a trial, up to which there is none, or two are one.
 constexpr double NO_SLIP = 1e-9, SAME = 1e-7;
 // Boxes of friction forces that are looked at; what of a load is rounding.
-constexpr int MOST_BOXES = 4000;
+constexpr int MOST_BOXES = 1000;
 constexpr double ROUNDING = 1e-12;
 
 // Friction forces: from low to high.
