@@ -12,7 +12,7 @@ the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil, pi, sqrt
 from typing import TYPE_CHECKING
 
@@ -69,13 +69,15 @@ def follow_from_home(session: Session, inputs: Floats) -> Followed:
 
 
 class Probe:
-    """Reads coordinates and joint points of assemblies."""
+    """Reads coordinates and joint points of assemblies; `joints` names those of the points."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
         mechanism = session.problem.mechanism
         self.coordinates = list(mechanism.coordinates)
-        self.points = [at for _, at in mechanism.joint_points() if at.link != GROUND_NAME]
+        moving = [(n, at) for n, at in mechanism.joint_points() if at.link != GROUND_NAME]
+        self.joints = [name for name, _ in moving]
+        self.points = [at for _, at in moving]
         self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
         self.datum = np.array(mechanism.datum)[:, None]
         self.readout = session.readout(coordinate_quantities(mechanism), self.points)
@@ -99,6 +101,36 @@ class Probe:
         extent = every.max(axis=0) - every.min(axis=0)
         x, y, z = (float(e) for e in extent)
         return sqrt(x * x + y * y + z * z) or 1.0
+
+
+def telling_points(coordinates: Sequence[Floats], points: Floats) -> list[int]:
+    """Numbers of a few points that tell those of some assemblies apart which the coordinates do
+    not.
+
+    Args:
+        coordinates: of all assemblies, (assemblies,) each, in SI.
+        points: (points, 3, assemblies), in m.
+    """
+    count = points.shape[2]
+    if not points.size:
+        return []
+    alike = ~np.eye(count, dtype=bool)
+    for values in coordinates:
+        alike &= np.abs(values[:, None] - values[None, :]) <= tolerances.TOLD_APART
+    size = float(np.max(np.ptp(points, axis=(0, 2))))
+    apart = [
+        np.max(np.abs(each[:, :, None] - each[:, None, :]), axis=0) > tolerances.TOLD_APART * size
+        for each in points
+    ]
+    found: list[int] = []
+    while alike.any():
+        gains = [int(np.count_nonzero(alike & each)) for each in apart]
+        best = gains.index(max(gains))
+        if gains[best] == 0:
+            break
+        found.append(best)
+        alike &= ~apart[best]
+    return found
 
 
 @remembered

@@ -100,15 +100,15 @@ def _table(model: Model, found: Modes) -> Columns:
 
     from mechkin_cli.mechanism import dimension_of
     from mechkin_cli.tables import Columns, TableColumn, Words
+    from mechkin_cli.units import LENGTH
 
     modes, units = found.modes, model.problem.units
     names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
     columns = [TableColumn("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
-    for name in modes[0].coordinates:
-        unit = units.label(dimension_of(name.rpartition(".")[2]))
-        columns.append(
-            TableColumn(name, unit, np.array([mode.coordinates[name] for mode in modes]))
-        )
+    for name in modes[0].numbers:
+        is_place = name in modes[0].places
+        unit = units.label(LENGTH if is_place else dimension_of(name.rpartition(".")[2]))
+        columns.append(TableColumn(name, unit, np.array([mode.numbers[name] for mode in modes])))
     columns.append(TableColumn("residual", "", np.array([mode.residual for mode in modes])))
     columns.append(TableColumn("condition", "", np.array([mode.condition for mode in modes])))
     return Columns("modes", "assembly modes", tuple(columns))

@@ -28,6 +28,7 @@ from mechkin_cli.assembly import (
     nothing_found,
     probe_of,
     state_at_first_row,
+    telling_points,
     wrapped,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
@@ -52,6 +53,7 @@ from mechkin_cli.session import (
     turn_of,
 )
 from mechkin_cli.show import Floats, Listed, Listing
+from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,12 +65,22 @@ UNNAMED = "-"
 
 class Mode(NamedTuple):
     """One assembly; coordinates in the file's units, angles in (-180, 180] degrees but
-    for threads."""
+    for threads.
+
+    Where coordinates tell not all modes apart, as with ball joints, which have none, `places` has
+    those of joints' points that do: their components in ground axes, `A.point.x`, file's units.
+    """
 
     name: str
     coordinates: dict[str, float]
     residual: float
     condition: float
+    places: dict[str, float]
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What tells it from others: coordinates and places."""
+        return self.coordinates | self.places
 
 
 @dataclass(frozen=True, repr=False)
@@ -107,11 +119,11 @@ class Modes(Listed):
         head = f"Modes{' at ' if place else ''}{place}: {self.sentence}"
         if not self.modes:
             return Listing(head)
-        names = tuple(self.modes[0].coordinates)
+        names = tuple(self.modes[0].numbers)
         rows = tuple(
             (
                 f"{mode.name}{'*' if mode.name == self.picked else ''}",
-                *(f"{mode.coordinates[name]:.6g}" for name in names),
+                *(f"{mode.numbers[name]:.6g}" for name in names),
                 f"{mode.residual:.1e}",
             )
             for mode in self.modes
@@ -236,7 +248,10 @@ def _result(
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
-    coordinates, _ = probe_of(session).read(place, assemblies.states)
+    probe = probe_of(session)
+    coordinates, points = probe.read(place, assemblies.states)
+    telling = telling_points(list(coordinates.values()), points)
+    axes = "xy" if problem.mechanism.plane else "xyz"
     order = sorted(
         range(assemblies.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )
@@ -246,6 +261,11 @@ def _result(
             {n: _shown(problem, inputs, n, float(v[i])) for n, v in coordinates.items()},
             float(assemblies.residual[i]),
             float(assemblies.condition[i]),
+            {
+                f"{probe.joints[k]}.point.{axis}": float(problem.units.from_si(value, LENGTH))
+                for k in telling
+                for axis, value in zip(axes, points[k, :, i].tolist(), strict=False)
+            },
         )
         for i in order
     )

@@ -20,6 +20,7 @@ from modes.random_loops import (
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.templates import template_text
 
 
 def text(*joints: str) -> str:
@@ -126,6 +127,20 @@ def test_letters_follow_branches_and_not_the_order_elsewhere() -> None:
             assert (mode.coordinates["O4.theta"] - sweep) % 360 == pytest.approx(0, abs=1e-9) or (
                 mode.coordinates["O4.theta"] - sweep
             ) % 360 == pytest.approx(360, abs=1e-9)
+
+
+def test_places_tell_modes_apart_where_coordinates_do_not() -> None:
+    """The Delta robot's rods hang in balls, which have no coordinate: sixteen lines were alike."""
+    model = mk.loads(template_text("delta"))
+    found = model.modes()
+    told = [tuple(round(value, 3) for value in mode.places.values()) for mode in found.modes]
+    assert len(set(told)) == len(found.modes) == 16
+    for mode in found.modes[::5]:
+        first = model.analyze(tables=[], mode=mode.name)
+        for name, value in mode.places.items():
+            assert first[name][0] == pytest.approx(value, abs=1e-9)
+    assert all(next(iter(mode.places)) in str(found) for mode in found.modes)
+    assert all(mode.places == {} for mode in mk.load(RCSR).modes().modes)
 
 
 def test_modes_that_no_branch_reaches_have_no_letter() -> None:

@@ -71,6 +71,25 @@ def test_the_bytes_depend_on_the_tables_alone(source, monkeypatch):
     assert core.count("1980-01-01T00:00:00Z") == 2
 
 
+def test_rows_and_columns_beyond_a_piece_and_a_letter_are_in_their_places(source, monkeypatch):
+    monkeypatch.setattr(workbook, "ROWS_AT_ONCE", 3)
+    numbers = np.arange(8.0)
+    columns = [column_of_numbers(f"c{k}", "mm", numbers + 100 * k) for k in range(60)]
+    (sheet,) = book(
+        workbook.workbook_bytes([results_of(source, Columns("t", "", tuple(columns)))])
+    ).worksheets
+    for row, index, place in ((2, 0, "A2"), (4, 25, "Z4"), (5, 26, "AA5"), (9, 59, "BH9")):
+        assert sheet[place].value == 100 * index + row - 2
+    assert (sheet.max_row, sheet.max_column) == (9, 60)
+    text = words_of(['<b> & "c"', " blank ", "\u00e4"])
+    (sheet,) = book(
+        workbook.workbook_bytes(
+            [results_of(source, Columns("t", "", (TableColumn("s", "", text),)))]
+        )
+    ).worksheets
+    assert [sheet[f"A{row}"].value for row in (2, 3, 4)] == ['<b> & "c"', " blank ", "\u00e4"]
+
+
 def test_too_many_rows_are_refused(source, monkeypatch):
     pytest.importorskip("openpyxl")
     monkeypatch.setattr(workbook, "MOST_ROWS", 8)
