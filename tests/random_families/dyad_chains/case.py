@@ -23,8 +23,8 @@ Array = Any
 
 ROUNDINGS = 1e-13
 """Of a discriminant, in parts of its first terms."""
-CLOSED = 1e-10
-"""What closing to the kernel's limit leaves of a coordinate."""
+CLOSED = 1e-8
+"""What may be wrong of a coordinate: positions are right to eight digits."""
 Z: Point = (Decimal(0), Decimal(0), Decimal(1))
 DIRECTIONS = [("1", "0"), ("0.6", "0.8"), ("-0.28", "0.96"), ("0.8", "-0.6"), ("-0.96", "-0.28")]
 """Unit vectors in decimals."""
@@ -136,16 +136,16 @@ class Dyad(NamedTuple):
         return np.arctan2(b * c + a * root, a * c - b * root)
 
     def roundings(self, u: Array) -> Array:
-        """Of the discriminant: a short arm makes the most of them."""
+        """Of the discriminant: a short arm, and one far from the origin, make the most of them."""
         a, b, c, _ = self.coefficients(u)
-        if not self.output.turns:
-            return ROUNDINGS * np.maximum(1, (a / c) ** 2)
         tip, foot = self.driver.moved(self.start, u), long(self.output.foot)[:, None]
-        reach = dot(tip - foot, tip - foot) + dot(
-            long(self.end) - foot[:, 0], long(self.end) - foot[:, 0]
-        )
+        far = np.sqrt(dot(tip, tip) + dot(foot, foot))
+        if not self.output.turns:
+            return ROUNDINGS * np.maximum(1, np.maximum((a / c) ** 2, far / c))
+        arm = long(self.end) - foot[:, 0]
+        reach = dot(tip - foot, tip - foot) + dot(arm, arm)
         size = np.sqrt(a * a + b * b) if self.kind[1] not in "PC" else a * a + b * b
-        return ROUNDINGS * np.maximum(1, 4 * reach / size)
+        return ROUNDINGS * np.maximum(1, 4 * np.maximum(reach, far * np.sqrt(reach)) / size)
 
     def drawn_side(self) -> int:
         """The sign of the branch on which the output is drawn."""
