@@ -10,6 +10,7 @@ import pytest
 from random_families.dyad_chains.case import Long
 from random_families.dyad_chains.drawn import sweep
 from random_families.dyad_chains.judge import judge
+from random_families.dyad_chains.varied import judge_variants, varied
 
 CHAINS = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
@@ -66,3 +67,10 @@ def test_a_branch_point_is_passed_by_a_walk_that_begins_next_to_it() -> None:
     assert found.wrong == []
     assert found.counts["lost behind a branch point: branch-lost"] == 0
     assert found.counts["right, behind a branch point: ok"] >= 1
+
+
+def test_variants_about_dead_centres_and_branch_points() -> None:
+    cases = [case for number in range(CHAINS // 2) if (case := varied(number, 25))]
+    judged = [judge_variants(case) for case in cases]
+    assert [line for one in judged for line in one.wrong] == []
+    assert [line for one in judged for line in one.lost] == []

@@ -135,11 +135,12 @@ class Dyad(NamedTuple):
         root = self.side * np.sqrt(square * np.maximum(1 - c * c / square + more, 0))
         return np.arctan2(b * c + a * root, a * c - b * root)
 
-    def roundings(self, u: Array) -> Array:
-        """Of the discriminant: a short arm, and one far from the origin, make the most of them."""
+    def roundings(self, u: Array, extent: float = 0.0) -> Array:
+        """Of the discriminant: a short arm, and one far from the origin, make the most of them, and
+        one in a mechanism of great extent, in parts of which the kernel closes."""
         a, b, c, _ = self.coefficients(u)
         tip, foot = self.driver.moved(self.start, u), long(self.output.foot)[:, None]
-        far = np.sqrt(dot(tip, tip) + dot(foot, foot))
+        far = np.maximum(np.sqrt(dot(tip, tip) + dot(foot, foot)), 0.1 * extent)
         if not self.output.turns:
             return ROUNDINGS * np.maximum(1, np.maximum((a / c) ** 2, far / c))
         arm = long(self.end) - foot[:, 0]
@@ -171,9 +172,11 @@ class Chain(NamedTuple):
         """Outputs, what they are uncertain by, and the discriminants in parts of their uncertainty
         (dyads, places)."""
         outputs, within, left = [], [], []
+        points = np.array([point for dyad in self.dyads for point in (dyad.start, dyad.end)])
+        extent = float(np.sqrt(np.sum(np.ptp(points.astype(float), axis=0) ** 2)))
         off = np.zeros_like(u)
         for dyad in self.dyads:
-            shift, at = dyad.roundings(u), dyad.place(u)
+            shift, at = dyad.roundings(u, extent), dyad.place(u)
             around = [u - off, u, u + off]
             found = dyad.discriminant(u)
             moved = np.max([np.abs(dyad.discriminant(x) - found) for x in around], axis=0)
