@@ -10,6 +10,7 @@ import pytest
 from random_families.dyad_chains.case import Long
 from random_families.dyad_chains.drawn import sweep
 from random_families.dyad_chains.judge import judge
+from random_families.dyad_chains.varied import judge_variants, varied
 
 CHAINS = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
@@ -29,10 +30,47 @@ def test_rows_about_dead_centres_and_branch_points() -> None:
 
 
 def test_a_chain_of_other_dimensions_is_found_out() -> None:
-    """The judge says wrong where a coordinate of the file is off by 1e-7 of itself."""
+    """The judge says wrong where a coordinate of the file is off by 1e-5 of itself."""
     case = next(case for number in range(100) if (case := sweep(number, 40)))
     dyad = case.chain.dyads[0]
     x, y, z = dyad.start
-    other = dyad._replace(start=(x + x / 10**7, y, z))
+    other = dyad._replace(start=(x + x / 10**5, y, z))
     chain = case.chain._replace(dyads=(other, *case.chain.dyads[1:]))
     assert judge(case._replace(chain=chain)).wrong
+
+
+def test_what_hangs_on_a_short_arc_may_move_far() -> None:
+    """A slide of a hundredth of a millimetre next to its dead centre turns an arm of the next dyad
+    by a thousand times as much; its row, far from singular, was not converged."""
+    case = sweep(1257, 400)
+    assert case is not None
+    values = (0.0, case.values[35])
+    near = ", ".join(f"{case.chain.name(k + 1)}: 0" for k in range(len(case.chain.dyads)))
+    text = case.chain.text(f"values: {list(values)}", near, straight=False)
+    found = judge(case._replace(text=text, values=values, start=0.0))
+    assert found.counts == {"right: ok": 2}
+
+
+def test_a_branch_point_is_passed_by_a_walk_that_begins_next_to_it() -> None:
+    """The next dyads hang on the one that folds."""
+    case = sweep(1026, 30)
+    assert case is not None
+    (place,) = (one for one in case.places if not one.inward)
+    side = 1 if case.values[0] > place.at else -1
+    ways = (0.02, 0.002, 1e-4, 1e-6, 1e-8, -1e-8, -1e-6, -1e-4, -0.01)
+    values = tuple(place.at + side * way for way in ways)
+    known = case.chain.judged(np.array([Long(values[0])]))[0][:, 0]
+    near = ", ".join(f"{case.chain.name(k + 1)}: {float(x)!r}" for k, x in enumerate(known))
+    text = case.chain.text(f"values: {list(values)}", near, straight=True)
+    start = values[0]
+    found = judge(case._replace(text=text, values=values, start=start, straight=True))
+    assert found.wrong == []
+    assert found.counts["lost behind a branch point: branch-lost"] == 0
+    assert found.counts["right, behind a branch point: ok"] >= 1
+
+
+def test_variants_about_dead_centres_and_branch_points() -> None:
+    cases = [case for number in range(CHAINS // 2) if (case := varied(number, 25))]
+    judged = [judge_variants(case) for case in cases]
+    assert [line for one in judged for line in one.wrong] == []
+    assert [line for one in judged for line in one.lost] == []

@@ -23,8 +23,8 @@ Array = Any
 
 ROUNDINGS = 1e-13
 """Of a discriminant, in parts of its first terms."""
-CLOSED = 1e-10
-"""What closing to the kernel's limit leaves of a coordinate."""
+CLOSED = 1e-8
+"""What may be wrong of a coordinate: positions are right to eight digits."""
 Z: Point = (Decimal(0), Decimal(0), Decimal(1))
 DIRECTIONS = [("1", "0"), ("0.6", "0.8"), ("-0.28", "0.96"), ("0.8", "-0.6"), ("-0.96", "-0.28")]
 """Unit vectors in decimals."""
@@ -135,17 +135,18 @@ class Dyad(NamedTuple):
         root = self.side * np.sqrt(square * np.maximum(1 - c * c / square + more, 0))
         return np.arctan2(b * c + a * root, a * c - b * root)
 
-    def roundings(self, u: Array) -> Array:
-        """Of the discriminant: a short arm makes the most of them."""
+    def roundings(self, u: Array, extent: float = 0.0) -> Array:
+        """Of the discriminant: a short arm, and one far from the origin, make the most of them, and
+        one in a mechanism of great extent, in parts of which the kernel closes."""
         a, b, c, _ = self.coefficients(u)
-        if not self.output.turns:
-            return ROUNDINGS * np.maximum(1, (a / c) ** 2)
         tip, foot = self.driver.moved(self.start, u), long(self.output.foot)[:, None]
-        reach = dot(tip - foot, tip - foot) + dot(
-            long(self.end) - foot[:, 0], long(self.end) - foot[:, 0]
-        )
+        far = np.maximum(np.sqrt(dot(tip, tip) + dot(foot, foot)), 0.1 * extent)
+        if not self.output.turns:
+            return ROUNDINGS * np.maximum(1, np.maximum((a / c) ** 2, far / c))
+        arm = long(self.end) - foot[:, 0]
+        reach = dot(tip - foot, tip - foot) + dot(arm, arm)
         size = np.sqrt(a * a + b * b) if self.kind[1] not in "PC" else a * a + b * b
-        return ROUNDINGS * np.maximum(1, 4 * reach / size)
+        return ROUNDINGS * np.maximum(1, 4 * np.maximum(reach, far * np.sqrt(reach)) / size)
 
     def drawn_side(self) -> int:
         """The sign of the branch on which the output is drawn."""
@@ -171,9 +172,11 @@ class Chain(NamedTuple):
         """Outputs, what they are uncertain by, and the discriminants in parts of their uncertainty
         (dyads, places)."""
         outputs, within, left = [], [], []
+        points = np.array([point for dyad in self.dyads for point in (dyad.start, dyad.end)])
+        extent = float(np.sqrt(np.sum(np.ptp(points.astype(float), axis=0) ** 2)))
         off = np.zeros_like(u)
         for dyad in self.dyads:
-            shift, at = dyad.roundings(u), dyad.place(u)
+            shift, at = dyad.roundings(u, extent), dyad.place(u)
             around = [u - off, u, u + off]
             found = dyad.discriminant(u)
             moved = np.max([np.abs(dyad.discriminant(x) - found) for x in around], axis=0)

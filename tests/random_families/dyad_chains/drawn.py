@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from random_families.dyad_chains.case import DIRECTIONS, Chain, Dyad, Link, Long, Point, Z
@@ -106,29 +106,46 @@ def _rows(
 
 def places_of(chain: Chain, start: Long, span: float) -> list[Place]:
     """The ends of the branch through a value, and between them where it nearly ends."""
-    kept, at = [], float(start)
+    found: list[Place] = []
     for way in (1, -1):
-        found = []
         grid = start + way * np.linspace(Long(0), Long(span), GRID)
-        left = chain.discriminants(grid)
-        over = np.flatnonzero(~(left.min(axis=0) >= 0))
-        last = over[0] if over.size else GRID
-        for k in range(len(chain.dyads)):
-            row = left[k, :last]
-            least = np.flatnonzero((row[1:-1] <= row[:-2]) & (row[1:-1] < row[2:])) + 1
-            for i in least[row[least] < 0.1]:
-                u, value = _least(chain, k, grid[i - 1], grid[i + 1])
-                if value < -3:
-                    zero = _zero(chain, grid[i - 1], u)
-                    found.append(Place(float(zero), 0.0, -way))
-                    last = min(last, i)
-                    break
-                found.append(Place(float(u), float(value), 0, k))
-        if over.size and last == over[0]:
-            found.append(Place(float(_zero(chain, grid[last - 1], grid[last])), 0.0, -way))
-        end = min((abs(one.at - at) for one in found if one.inward == -way), default=np.inf)
-        kept += [one for one in found if abs(one.at - at) <= end]
-    return kept
+        some, last = _places_on(chain, grid, way)
+        if last < GRID:
+            # what lies between the last places of the grid and the end
+            end = some[-1].at if some and some[-1].inward else float(grid[last])
+            near = np.linspace(grid[max(last - 3, 0)], Long(repr(end)), GRID)
+            more, _ = _places_on(chain, near, way)
+            nearest = [one for one in more if one.inward] or [one for one in some if one.inward]
+            some = [one for one in [*some, *more] if not one.inward] + nearest
+            far = abs(nearest[0].at - float(start)) if nearest else np.inf
+            some = [one for one in some if abs(one.at - float(start)) <= far]
+        found += some
+    return found
+
+
+def _places_on(chain: Chain, grid: Any, way: int) -> tuple[list[Place], int]:
+    """Those on a grid of values up to the first end, which is the last of them, and the number of
+    the grid's value behind it."""
+    found = []
+    left = chain.discriminants(grid)
+    over = np.flatnonzero(~(left.min(axis=0) >= 0))
+    last = int(over[0]) if over.size else grid.size
+    end = None if not over.size else _zero(chain, grid[last - 1], grid[last])
+    for k in range(len(chain.dyads)):
+        row = left[k, :last]
+        least = np.flatnonzero((row[1:-1] <= row[:-2]) & (row[1:-1] < row[2:])) + 1
+        for i in least[row[least] < 0.1].tolist():
+            if i >= last:
+                break
+            u, value = _least(chain, k, grid[i - 1], grid[i + 1])
+            if value < -3:
+                end, last = _zero(chain, grid[i - 1], u), i + 1
+                break
+            found.append(Place(float(u), float(value), 0, k))
+    if end is None:
+        return found, last
+    found = [one for one in found if (float(end) - one.at) * way >= 0]
+    return [*found, Place(float(end), 0.0, -way)], last
 
 
 def _least(chain: Chain, k: int, low: Long, high: Long) -> tuple[Long, Long]:

@@ -14,8 +14,11 @@ import mechkin_cli as mk
 HAVE = ("ok", "near-singular", "dead-centre", "rank-unclear")
 UNDECIDED = 3.0
 """Parts of its rounding within which a discriminant may be zero."""
-TURNED_BACK = 2e-12
-"""How far beyond a dead centre, in parts of the input, it counts as one at which a row turns."""
+EXACT = 0.01
+"""The same of a branch point; between the two rounding tells a gap from none."""
+TURNED_BACK = 1e-12
+"""How far beyond a dead centre, in parts of the input, rows turn back at it: half and twice of it
+are left to either."""
 
 
 class Judged(NamedTuple):
@@ -51,9 +54,9 @@ class Reach:
         for place in self.case.places:
             over = (place.at - value) * place.inward
             if place.inward and over > 0:
-                rounding = over <= TURNED_BACK * max(1.0, abs(place.at))
-                if low < -1 or not rounding:
-                    self._ended(low > -1 or rounding)
+                over /= TURNED_BACK * max(1.0, abs(place.at))
+                if low < -UNDECIDED or over > 0.5:
+                    self._ended(low > -UNDECIDED or over < 2)
             elif not place.inward and (self.at - place.at) * (value - place.at) <= 0:
                 if abs(place.left) < UNDECIDED:
                     self.flipped |= {place.dyad}
@@ -78,7 +81,12 @@ def judge(case: Sweep) -> Judged:
     at = np.array([Long(x) for x in case.values])
     left = case.chain.judged(at)[2].min(axis=0)
     left = np.where(np.isnan(left), -np.inf, left)
-    off = _parts(case.chain, at, values)
+    off = parts_of(case.chain, at, values)
+    behind = {
+        place.dyad: case.chain.flipped(place.dyad).judged(at)[2].min(axis=0)
+        for place in case.places
+        if abs(place.left) < EXACT
+    }
     known = Reach.rows(case, left.astype(float).tolist())
     counts, lost, wrong = Counter[str](), [], []
     for row, value in enumerate(case.values):
@@ -88,11 +96,14 @@ def judge(case: Sweep) -> Judged:
         )
         if status[row] not in HAVE:
             word = {"known": "lost", "beyond": "refused"}.get(verdict, verdict)
+            if case.straight and flipped <= set(behind) and flipped:
+                far = min(behind[k][row] for k in flipped) > UNDECIDED
+                word = "lost behind a branch point" if far else word
             counts[f"{word}: {status[row]}"] += 1
             if word == "lost":
                 lost.append(here)
             continue
-        others = [_parts(case.chain.flipped(k), at, values) for k in flipped]
+        others = [parts_of(case.chain.flipped(k), at, values) for k in flipped]
         if verdict != "beyond" and off[row] < 1:
             counts[f"right: {status[row]}"] += 1
         elif verdict != "beyond" and any(other[row] < 1 for other in others):
@@ -103,7 +114,7 @@ def judge(case: Sweep) -> Judged:
     return Judged(counts, lost, wrong)
 
 
-def _parts(chain: Chain, at: Array, values: Array) -> Array:
+def parts_of(chain: Chain, at: Array, values: Array) -> Array:
     """The largest miss of the outputs (outputs, rows), in parts of their uncertainty."""
     outputs, within, _ = chain.judged(at)
     off = [turned(dyad, v - o) for dyad, v, o in zip(chain.dyads, values, outputs, strict=True)]

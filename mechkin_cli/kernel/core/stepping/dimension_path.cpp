@@ -53,8 +53,12 @@ const Plan& DimensionPath::plan(double sigma) const {
 
 namespace {
 
-// Distance from a fold (rad, length units) up to which the branch is its parabola but for parts as small.
-constexpr double ON_PARABOLA = 1e-4;
+// Distance from a fold (rad, length units) up to which the branch is its parabola but for parts as small; and up to which
+// it is, where two nodes tell the same fold. What a short arm moves is lost in rounding before it comes as near as the first.
+constexpr double ON_PARABOLA = 1e-4, SEEN_PARABOLA = 1e-2;
+// Part of the distance from a fold by which two nodes may tell it differently; the least way between them, and the least
+// and most that is left of the way to the target, in parts of it.
+constexpr double SAME_FOLD = 0.05, APART = 0.1, LEAST_LEFT = 0.5, MOST_LEFT = 1.0 + SAME_FOLD;
 // Times that Newton begins again: its steps take that to the root of rounding: on the fold each halves the distance.
 constexpr int COMING_DOWN = 4;
 // Least singular value of a block from which on derivatives of the base are well known: 1e-4 from a fold it is far smaller.
@@ -98,6 +102,35 @@ bool come_down(Stepper& stepper, const Node& node, Node* target) {
          is_on_parabola(node, 1.0, 1.0 - node.sigma, target->state);
 }
 
+double distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double square = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(square);
+}
+
+// The parabola of a node: the distances from its fold, in sigma and in the states; sigma rises to the fold with `sense` 1.
+struct Parabola {
+  double ahead, way;
+  Parabola(const Node& node, double sense) {
+    const double first = product(node.state_first, node.state_first);
+    const double second = std::sqrt(product(node.state_second, node.state_second));
+    const bool falls = sense * product(node.state_first, node.state_second) > 0.0;
+    ahead = falls ? 0.5 * std::sqrt(first) / second : HUGE_VAL, way = first / second;
+  }
+};
+
+// The same from farther off where this node and the one before it tell the same fold, about where the target is.
+bool come_down_seen(Stepper& stepper, const Node& before, const Node& node, Node* target) {
+  const Parabola a(before, 1.0), b(node, 1.0);
+  const double moved = node.sigma - before.sigma, left = 1.0 - node.sigma;
+  if (!(b.way <= SEEN_PARABOLA && moved >= APART * b.ahead && left >= LEAST_LEFT * b.ahead && left <= MOST_LEFT * b.ahead))
+    return false;
+  if (!(std::fabs(a.ahead - b.ahead - moved) <= SAME_FOLD * b.ahead)) return false;
+  // of the distance h^2 in sigma the states are at h times a vector: its length is the same seen from both
+  if (!(std::fabs(a.way * std::sqrt(b.ahead / a.ahead) - b.way) <= SAME_FOLD * b.way)) return false;
+  return newton_beside_fold(stepper, 1.0, node.state, target) && distance(node.state, target->state) <= 1.2 * b.way;
+}
+
 // Whether some block's least singular value is so small that derivatives by the plan may be rounding.
 bool is_narrow(const Plan& plan, const Node& node) {
   long at = 0;
@@ -112,12 +145,25 @@ bool is_narrow(const Plan& plan, const Node& node) {
 // Leaves a place so near to a fold that its derivatives are rounding, for the farthest one on the parabola, whose own
 // derivatives tell that the fold lies behind both.
 bool go_up(Stepper& stepper, const Node& node, Node* next) {
+  // a ladder of places, each four times as far from the fold as the one before it, from which Newton's method comes to it
+  const double whole = 1.0 - node.sigma;
+  std::vector<std::vector<double>> places;
+  std::vector<double> steps;
+  for (double h = whole; h >= stepper.limits().least_step; h *= 0.0625) steps.push_back(h);
   Node there;
-  for (double h = 1.0 - node.sigma; h >= stepper.limits().least_step; h *= 0.25) {
-    const double sigma = h == 1.0 - node.sigma ? 1.0 : node.sigma + h;
-    if (newton_beside_fold(stepper, sigma, node.state, &there) &&
-        stepper.close_after(h, sigma, there.state.data(), next) && next->side == node.side &&
-        is_on_parabola(*next, -1.0, h, node.state))
+  const std::vector<double>* from = &node.state;
+  places.resize(steps.size());
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    if (!newton_beside_fold(stepper, k ? node.sigma + steps[k] : 1.0, *from, &there)) continue;
+    places[k] = there.state, from = &places[k];
+  }
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const double h = steps[k], sigma = k ? node.sigma + h : 1.0;
+    if (places[k].empty() || !stepper.close_after(h, sigma, places[k].data(), next) || next->side != node.side) continue;
+    if (is_on_parabola(*next, -1.0, h, node.state)) return true;
+    const Parabola seen(*next, -1.0);
+    if (seen.way <= SEEN_PARABOLA && std::fabs(seen.ahead - h) <= SAME_FOLD * h &&
+        std::fabs(distance(next->state, node.state) - seen.way) <= SAME_FOLD * seen.way)
       return true;
   }
   return false;
@@ -126,7 +172,7 @@ bool go_up(Stepper& stepper, const Node& node, Node* next) {
 // Follows the branch from a node to sigma 1; false where the steps become too short.
 bool step_to_target(Stepper& stepper, Node* node) {
   const StepLimits& limits = stepper.limits();
-  Node next;
+  Node next, target;
   double h = stepper.wanted_step(*node);
   for (int steps = 0; node->sigma < 1.0; ++steps) {
     if (steps >= limits.most_steps) return false;
@@ -136,6 +182,10 @@ bool step_to_target(Stepper& stepper, Node* node) {
     if (stepper.step(*node, step, last ? 1.0 : node->sigma + step, &next)) {
       h = std::fmin(stepper.wanted_step(next), 4.0 * step);
       std::swap(*node, next);
+      if (node->sigma < 1.0 && come_down_seen(stepper, next, *node, &target)) {
+        std::swap(*node, target);
+        return true;
+      }
       continue;
     }
     h = 0.5 * step;
