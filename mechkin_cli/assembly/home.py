@@ -202,7 +202,7 @@ def rows_from_home(session: Session) -> Iterator[tuple[int, Followed, bool]]:
     leading[: len(inputs)] = [not item.follows for item in inputs]
     tried = set()
     for path, rows, turned in _paths(session, leading):
-        for row in _two_sides(_from_home(session, path)[leading], rows):
+        for row in two_sides(_from_home(session, path)[leading], rows):
             target = np.ascontiguousarray(path[:, row])
             if (row, target.tobytes()) not in tried:
                 tried.add((row, target.tobytes()))
@@ -224,7 +224,7 @@ def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[n
     yield _without_turns(session, inputs.reduced), every, True
 
 
-def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
+def two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
     """Of some rows (of inputs from the drawing's, rows) the nearest to the drawing, and of all rows
     the nearest on its other side."""
     if not path.size:
