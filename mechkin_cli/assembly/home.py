@@ -42,13 +42,14 @@ def is_home_assembled(session: Session) -> bool:
     return bool(batch.good[0])
 
 
-def is_home_singular(session: Session) -> bool:
-    """Whether some block is near singular in the home drawing, assembled or not."""
+def is_home_singular(session: Session, limit: float = tolerances.CONDITION_NEAR_SINGULAR) -> bool:
+    """Whether the condition of some block is above a limit in the home drawing, assembled or
+    not."""
     home = home_inputs(session.layout)[:, None], home_state(session.layout)[:, None]
     batch = session.run(RowInputs(*home), Ask(Demand.CONDITION, iterations=0))
     assert batch.condition is not None
     # no number is below the limit where a block has none
-    return not batch.condition[0] < tolerances.CONDITION_NEAR_SINGULAR
+    return not batch.condition[0] < limit
 
 
 def _from_home(session: Session, path: Floats) -> Floats:

@@ -259,26 +259,34 @@ def _nearest_about(
 
 def _from_home(session: Session) -> AssemblyStart:
     """Followed from the drawing to the row whose inputs are nearest to it, or on its other side."""
-    beside = _from_beside_home(session) if is_home_singular(session) else []
-    if len(beside) == 1:
-        return replace(beside[0], diagnostics=[_MEETING])
+    singular = is_home_singular(session, tolerances.CONDITION_RANK_UNCLEAR)
+    beside = _from_beside_home(session) if singular else []
+    # a way that ends in the drawing itself is lost there, unless it is to go straight on
+    off = np.abs(session.inputs.values - home_inputs(session.layout)[:, None])
+    drawn = bool((np.max(off, axis=0, initial=0.0) <= tolerances.PASSED).any())
+    if len(beside) == 1 and (session.problem.assembly.straight or not drawn):
+        return replace(beside[0], diagnostics=[_meeting("the rows go on")])
     first = None
     for row, followed, turned in rows_from_home(session):
         if followed.end == TrackEnd.FINISHED:
             how = "followed from the home drawing" + (", whole turns away" if turned else "")
-            return AssemblyStart(followed.state, HOME, how, row=row)
+            start = AssemblyStart(followed.state, HOME, how, row=row)
+            notes = [_meeting("rows would go on")] if len(beside) == 1 else []
+            return replace(start, diagnostics=notes)
         first = first or followed
     assert first is not None
     return _several_motions(session, beside) if beside else _ends_before_rows(session, first)
 
 
-_MEETING = Diagnostic(
-    "motions-meet",
-    "note",
-    "several motions meet in the drawing: the rows go on in the only one in which the inputs move",
-    hint="mobility of the file without inputs tells which; assembly: {at_branch_points: straight} "
-    "goes through the drawing",
-)
+def _meeting(rows: str) -> Diagnostic:
+    """That a drawing lies where motions meet, and in which of them `rows` go on."""
+    return Diagnostic(
+        "motions-meet",
+        "note",
+        f"several motions meet in the drawing: {rows} in the only one in which the inputs move",
+        hint="assembly: {at_branch_points: straight} goes through the drawing; mobility of the "
+        "file without inputs names the motions",
+    )
 
 
 def _from_beside_home(session: Session) -> list[AssemblyStart]:
@@ -287,7 +295,7 @@ def _from_beside_home(session: Session) -> list[AssemblyStart]:
     moves with the inputs held, or is as singular."""
     home, drawn = home_inputs(session.layout), home_state(session.layout)
     path = session.inputs.values - home[:, None]
-    away = np.flatnonzero(np.any(path != 0.0, axis=0))
+    away = np.flatnonzero(np.max(np.abs(path), axis=0, initial=0.0) > tolerances.PASSED)
     left = {session.layout.state(*at) for block in session.graph.blocks for at in block.unknowns}
     within = box_about(session, (drawn, frozenset(left), True), tolerances.HOME_BOX)
     for row in two_sides(path, away) if away.size else []:

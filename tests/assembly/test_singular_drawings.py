@@ -76,6 +76,21 @@ def test_they_go_through_the_drawing_where_that_is_asked(count: int) -> None:
     assert near(analysis["A1.theta"], np.array(angles))
 
 
+@pytest.mark.parametrize("angles", [[-20.0, 0.0, 20.0], [0.0, 20.0, 40.0]], ids=str)
+def test_a_row_in_the_drawing_is_as_singular_as_it(angles: list[float]) -> None:
+    """It has a position, and the others go on where the way is to go straight on."""
+    straight = mk.loads(bars(3, angles, more=STRAIGHT)).analyze(["A1.theta"])
+    drawn = angles.index(0.0)
+    assert np.delete(straight["row.status"], drawn).tolist() == ["ok"] * 2
+    assert straight["row.status"][drawn] == "rank-unclear"
+    assert near(straight["A1.theta"], np.array(angles))
+    plain = mk.loads(bars(3, angles)).analyze(["A1.theta"])
+    assert plain["row.status"][drawn] == "rank-unclear"
+    (said,) = (d for d in plain.diagnostics if d.code == "motions-meet")
+    assert said.hint is not None
+    assert "at_branch_points: straight" in said.hint
+
+
 def test_a_flat_parallelogram_moves_in_two_ways() -> None:
     """As a parallelogram and crossed; of three bars only the first is left."""
     analysis = mk.loads(bars(2, [20.0, 40.0], spacing=2.0)).analyze()
