@@ -42,13 +42,14 @@ def is_home_assembled(session: Session) -> bool:
     return bool(batch.good[0])
 
 
-def is_home_singular(session: Session) -> bool:
-    """Whether some block is near singular in the home drawing, assembled or not."""
+def is_home_singular(session: Session, limit: float = tolerances.CONDITION_NEAR_SINGULAR) -> bool:
+    """Whether the condition of some block is above a limit in the home drawing, assembled or
+    not."""
     home = home_inputs(session.layout)[:, None], home_state(session.layout)[:, None]
     batch = session.run(RowInputs(*home), Ask(Demand.CONDITION, iterations=0))
     assert batch.condition is not None
     # no number is below the limit where a block has none
-    return not batch.condition[0] < tolerances.CONDITION_NEAR_SINGULAR
+    return not batch.condition[0] < limit
 
 
 def _from_home(session: Session, path: Floats) -> Floats:
@@ -234,7 +235,7 @@ def rows_from_home(session: Session) -> Iterator[tuple[int, Followed, bool]]:
     leading[: len(inputs)] = [not item.follows for item in inputs]
     tried = set()
     for path, rows, turned in _paths(session, leading):
-        for row in _two_sides(_from_home(session, path)[leading], rows):
+        for row in two_sides(_from_home(session, path)[leading], rows):
             target = np.ascontiguousarray(path[:, row])
             if (row, target.tobytes()) not in tried:
                 tried.add((row, target.tobytes()))
@@ -256,7 +257,7 @@ def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[n
     yield _without_turns(session, inputs.reduced), every, True
 
 
-def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
+def two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
     """Of some rows (of inputs from the drawing's, rows) the nearest to the drawing, and of all rows
     the nearest on its other side."""
     if not path.size:

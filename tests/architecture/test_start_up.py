@@ -106,6 +106,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("balances.runs", "balances"),
         ("mobility.families", "drawings that are singular as driven"),
         ("mobility.configurations", "mobility"),
+        ("proofs.rows", "proofs"),
         ("tables.json", "JSON"),
         ("tables.summary", "summaries"),
         ("fit.result", "fits"),
