@@ -55,7 +55,7 @@ BRANCH = _object(
     rows=INDEX,
     x=_packed("f64"),
     poses=_object(rows=_packed("i32"), values=_packed("f32")),
-    status=_object(words=_list(TEXT), codes=_packed("u8")),
+    status=_object(words=_list(TEXT), doubts=_list({"enum": [0, 1, 2]}), codes=_packed("u8")),
     marks=_list(
         _object(x=NUMBER, kind={"enum": ["dead-centre", "branch-point", "event"]}, text=TEXT)
     ),

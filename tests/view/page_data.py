@@ -106,6 +106,7 @@ def branch(
         },
         "status": {
             "words": ["ok", "near-singular", "beyond-dead-centre"],
+            "doubts": [0, 1, 2],
             "codes": packed("u8", np.zeros(len(x)) if codes is None else codes),
         },
         "marks": [],
