@@ -306,7 +306,7 @@ class _Resolver:
             dimension = self.run.problem.parameters[name].dimension
             return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
         if name not in self.known:
-            raise UnknownName(name, list(self.known))
+            raise UnknownName(name, list(self.known), self.run.problem.why_not(name))
         wanted = self.known[name]
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self)
