@@ -12,7 +12,6 @@ which modes belong to one circuit.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,17 +31,24 @@ from mechkin_cli.assembly import (
     wrapped,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
-from mechkin_cli.mechanism import Problem, Wanted, dimension_of
+from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.mobility import hold_ends
-from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
-from mechkin_cli.plan import Demand, TrackEnd
+from mechkin_cli.modes.circuits import (
+    Branch,
+    Circuit,
+    End,
+    Stationary,
+    Walker,
+    is_open,
+    joined,
+    undecided,
+)
+from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import Assemblies, all_assemblies, pose_number, with_assemblies
 from mechkin_cli.session import (
-    Ask,
     KernelInputs,
-    RowInputs,
     Session,
     followers_of,
     input_number,
@@ -577,7 +583,7 @@ class _Survey:
         """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
         extremes = []
         for wanted in self.outputs if branch.places else ():
-            for at, value in _Stationary(self, branch, wanted).places():
+            for at, value in Stationary(self.walker, branch, wanted).places():
                 output = float(self.problem.units.from_si(value, wanted.dimension))
                 extremes.append(OutputExtreme(wanted.name, output, self._limit_value(at - shift)))
         return tuple(extremes)
@@ -586,66 +592,3 @@ class _Survey:
         if self.shown != self.walker.number:
             value = float(self.walker.at(np.array([value]))[0, self.shown, 0]) + 0.0
         return input_number(self.problem, self.layout, self.shown, value).value + self.farther
-
-
-class _Stationary:
-    """Zeros of an output's rate along a branch: signs at many places, then Newton."""
-
-    def __init__(self, survey: _Survey, branch: Branch, wanted: Wanted) -> None:
-        self.walker, self.branch = survey.walker, branch
-        self.session, known = survey.session, survey.problem.quantities()
-        orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
-        self.readout = self.session.readout(orders)
-        self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
-
-    def places(self) -> list[tuple[float, float]]:
-        """(input, output) in kernel units and SI."""
-        begin, state = self.branch.places[0]
-        ends = (self.branch.lower.value, self.branch.upper.value)
-        places: list[tuple[float, float]] = []
-        if not all(isfinite(end) for end in ends):
-            return places
-        for first, last in ((begin, ends[0]), (begin, ends[1])):
-            if first == last:
-                continue
-            parts = np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
-            steps = first + (last - first) * parts
-            followed = self.walker.follow(steps, state)
-            count = followed.reached
-            rates = self._derivatives(steps[:count], followed.guess[:, :count])[1]
-            for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
-                place = self._refined(followed.guess[:, k], steps[k], steps[k + 1])
-                if place is not None and not any(place[0] == other[0] for other in places):
-                    places.append(place)
-        return sorted(places)
-
-    def _derivatives(self, values: Floats, guess: Floats) -> Floats:
-        """The output and its first two derivatives by the input, (3, places)."""
-        inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
-        rows = RowInputs(inputs, guess, rates, accelerations)
-        ask = Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout)
-        batch = self.session.run(rows, ask)
-        assert batch.outputs is not None
-        return batch.outputs[self.slots]
-
-    def _refined(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
-        """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
-        low, high = min(first, last), max(first, last)
-        value = 0.5 * (low + high)
-        sign_low: float | None = None
-        for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
-            places = np.array([first, value])
-            state = self.walker.follow(places, guess).state
-            output, rate, bend = self._derivatives(places[1:], state[:, None])[:, 0].tolist()
-            if sign_low is None:
-                ends = self._derivatives(places[:1], guess[:, None])[1, 0]
-                sign_low = float(ends) if first == low else -float(ends)
-            low, high = (value, high) if rate * sign_low > 0.0 else (low, value)
-            step = -rate / bend if bend != 0.0 else np.inf
-            following = value + step
-            if not low < following < high:
-                following = 0.5 * (low + high)
-            if abs(following - value) <= tolerances.DEAD_CENTRE_STEP:
-                return following, output
-            value = following
-        return None
