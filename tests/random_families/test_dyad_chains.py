@@ -74,3 +74,13 @@ def test_variants_about_dead_centres_and_branch_points() -> None:
     judged = [judge_variants(case) for case in cases]
     assert [line for one in judged for line in one.wrong] == []
     assert [line for one in judged for line in one.lost] == []
+
+
+def test_a_variant_does_not_go_over_to_a_branch_that_passes_by_little() -> None:
+    """A rod too long by 1e-12 of itself: two branches pass at 3e-5 rad from one another."""
+    case = varied(5128, 60)
+    assert case is not None
+    ways = (1e-1, 1e-3, 1e-5, 1e-7, 0.0, -1e-7, -1e-5, -1e-3, -1e-1)
+    found = judge_variants(case._replace(values=(case.start, *(way * case.start for way in ways))))
+    assert found.wrong == []
+    assert found.lost == []

@@ -59,6 +59,11 @@ constexpr double ON_PARABOLA = 1e-4, SEEN_PARABOLA = 1e-2;
 // Part of the distance from a fold by which two nodes may tell it differently; the least way between them, and the least
 // and most that is left of the way to the target, in parts of it.
 constexpr double SAME_FOLD = 0.05, APART = 0.1, LEAST_LEFT = 0.5, MOST_LEFT = 1.0 + SAME_FOLD;
+// Part of the square of a node's distance from the fold by which half the way may miss the parabola; its derivatives may be
+// wrong by a fifth where rounding has the last of them.
+constexpr double SAME_HALF = 0.2;
+// Least cosine between the ways to a target and to half of it.
+constexpr double SAME_WAY = 0.95;
 // Times that Newton begins again: its steps take that to the root of rounding: on the fold each halves the distance.
 constexpr int COMING_DOWN = 4;
 // Least singular value of a block from which on derivatives of the base are well known: 1e-4 from a fold it is far smaller.
@@ -94,14 +99,6 @@ bool is_on_parabola(const Node& node, double sense, double rest, const std::vect
   return square <= 4.0 * way * way;
 }
 
-// Closes the target from a place next to a fold that is no nearer than the target: steps that shrink with the distance
-// need not be known to rounding.
-bool come_down(Stepper& stepper, const Node& node, Node* target) {
-  return is_on_parabola(node, 1.0, 1.0 - node.sigma, node.state) &&
-         newton_beside_fold(stepper, 1.0, node.state, target) &&
-         is_on_parabola(node, 1.0, 1.0 - node.sigma, target->state);
-}
-
 double distance(const std::vector<double>& a, const std::vector<double>& b) {
   double square = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
@@ -119,6 +116,28 @@ struct Parabola {
   }
 };
 
+// Whether half the way from a node to a target lies between them and on their parabola, where the squares of the distances
+// from the fold are linear in sigma: where the branch passes another one by little, Newton's method may come to that.
+bool keeps_to_parabola(Stepper& stepper, const Node& node, const Node& target) {
+  Node half;
+  if (!newton_beside_fold(stepper, 0.5 * (node.sigma + 1.0), node.state, &half)) return false;
+  const double to_half = distance(node.state, half.state), to_target = distance(node.state, target.state);
+  const double way = Parabola(node, 1.0).way, near = way - to_half, end = way - to_target;
+  double along = 0.0;
+  for (std::size_t s = 0; s < node.state.size(); ++s)
+    along += (half.state[s] - node.state[s]) * (target.state[s] - node.state[s]);
+  if (!(along >= SAME_WAY * to_half * to_target)) return false;
+  return to_half <= to_target && std::fabs(near * near - 0.5 * (way * way + end * end)) <= SAME_HALF * way * way;
+}
+
+// Closes the target from a place next to a fold that is no nearer than the target: steps that shrink with the distance
+// need not be known to rounding.
+bool come_down(Stepper& stepper, const Node& node, Node* target) {
+  return is_on_parabola(node, 1.0, 1.0 - node.sigma, node.state) &&
+         newton_beside_fold(stepper, 1.0, node.state, target) &&
+         is_on_parabola(node, 1.0, 1.0 - node.sigma, target->state) && keeps_to_parabola(stepper, node, *target);
+}
+
 // The same from farther off where this node and the one before it tell the same fold, about where the target is.
 bool come_down_seen(Stepper& stepper, const Node& before, const Node& node, Node* target) {
   const Parabola a(before, 1.0), b(node, 1.0);
@@ -128,7 +147,8 @@ bool come_down_seen(Stepper& stepper, const Node& before, const Node& node, Node
   if (!(std::fabs(a.ahead - b.ahead - moved) <= SAME_FOLD * b.ahead)) return false;
   // of the distance h^2 in sigma the states are at h times a vector: its length is the same seen from both
   if (!(std::fabs(a.way * std::sqrt(b.ahead / a.ahead) - b.way) <= SAME_FOLD * b.way)) return false;
-  return newton_beside_fold(stepper, 1.0, node.state, target) && distance(node.state, target->state) <= 1.2 * b.way;
+  return newton_beside_fold(stepper, 1.0, node.state, target) && distance(node.state, target->state) <= 1.2 * b.way &&
+         keeps_to_parabola(stepper, node, *target);
 }
 
 // Whether some block's least singular value is so small that derivatives by the plan may be rounding.
