@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from mechkin_cli import tables
 from mechkin_cli.cli.answer import answer
 from mechkin_cli.cli.messages import ExitCode, Record, put, say, values_by_name
 
@@ -99,16 +100,21 @@ def _table(model: Model, found: Modes) -> Columns:
     import numpy as np
 
     from mechkin_cli.mechanism import dimension_of
-    from mechkin_cli.tables import Columns, TableColumn, Words
     from mechkin_cli.units import LENGTH
 
     modes, units = found.modes, model.problem.units
     names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
-    columns = [TableColumn("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
+    columns = [
+        tables.TableColumn("mode", "", tables.Words(np.arange(len(modes), dtype=np.int32), names))
+    ]
     for name in modes[0].numbers:
         is_place = name in modes[0].places
         unit = units.label(LENGTH if is_place else dimension_of(name.rpartition(".")[2]))
-        columns.append(TableColumn(name, unit, np.array([mode.numbers[name] for mode in modes])))
-    columns.append(TableColumn("residual", "", np.array([mode.residual for mode in modes])))
-    columns.append(TableColumn("condition", "", np.array([mode.condition for mode in modes])))
-    return Columns("modes", "assembly modes", tuple(columns))
+        columns.append(
+            tables.TableColumn(name, unit, np.array([mode.numbers[name] for mode in modes]))
+        )
+    columns.append(tables.TableColumn("residual", "", np.array([mode.residual for mode in modes])))
+    columns.append(
+        tables.TableColumn("condition", "", np.array([mode.condition for mode in modes]))
+    )
+    return tables.Columns("modes", "assembly modes", tuple(columns))

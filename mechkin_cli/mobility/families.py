@@ -71,7 +71,8 @@ class MotionFamily(NamedTuple):
         text = "1 freedom" if self.dimension == 1 else f"{self.dimension} freedoms"
         text += f" (everywhere {self.excess} more to first order)" if self.excess else ""
         if self.rests:
-            verb = "rests" if len(self.rests) == 1 else "rest"
+            one = len(self.rests) == 1 and not self.rests[0].startswith("the turns")
+            verb = "rests" if one else "rest"
             text += f": {', '.join(self.rests)} {verb}"
         return f"{text}; free inputs: {', '.join(self.inputs)}" if self.inputs else text
 
