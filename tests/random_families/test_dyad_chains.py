@@ -76,6 +76,16 @@ def test_variants_about_dead_centres_and_branch_points() -> None:
     assert [line for one in judged for line in one.lost] == []
 
 
+@pytest.mark.parametrize("number", [5084, 20040, 20306])
+def test_variants_of_a_base_at_a_dead_centre_go_out_on_its_own_side(number: int) -> None:
+    """Rounding decides on which side of the fold the first place beside the base is closed."""
+    case = varied(number, 60)
+    assert case is not None
+    found = judge_variants(case)
+    assert found.wrong == []
+    assert found.lost == []
+
+
 def test_a_variant_does_not_go_over_to_a_branch_that_passes_by_little() -> None:
     """A rod too long by 1e-12 of itself: two branches pass at 3e-5 rad from one another."""
     case = varied(5128, 60)

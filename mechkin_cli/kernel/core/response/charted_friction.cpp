@@ -44,7 +44,7 @@ SlipStage ChartedMotion::make_slips() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long m = ::slip_columns(plan_), n = plan_.frictions;
   return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1),
-          make(n * TOLD_NUMBERS), make(n), make(2 * m)};
+          make(n * TOLD_NUMBERS), make(n), make(2 * m), {}};
 }
 
 bool ChartedMotion::rubs(int lane, int k) const {

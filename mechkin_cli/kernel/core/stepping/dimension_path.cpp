@@ -177,9 +177,14 @@ bool go_up(Stepper& stepper, const Node& node, Node* next) {
     if (!newton_beside_fold(stepper, k ? node.sigma + steps[k] : 1.0, *from, &there)) continue;
     places[k] = there.state, from = &places[k];
   }
-  for (std::size_t k = 0; k < steps.size(); ++k) {
+  // next to the fold rounding decides on which side of it the ladder goes up: the other side is its mirror image
+  for (std::size_t turn = 0; turn < 2 * steps.size(); ++turn) {
+    const std::size_t k = turn % steps.size();
+    if (places[k].empty()) continue;
+    if (turn >= steps.size())
+      for (std::size_t s = 0; s < places[k].size(); ++s) places[k][s] = 2.0 * node.state[s] - places[k][s];
     const double h = steps[k], sigma = k ? node.sigma + h : 1.0;
-    if (places[k].empty() || !stepper.close_after(h, sigma, places[k].data(), next) || next->side != node.side) continue;
+    if (!stepper.close_after(h, sigma, places[k].data(), next) || next->side != node.side) continue;
     if (is_on_parabola(*next, -1.0, h, node.state)) return true;
     const Parabola seen(*next, -1.0);
     if (seen.way <= SEEN_PARABOLA && std::fabs(seen.ahead - h) <= SAME_FOLD * h &&
