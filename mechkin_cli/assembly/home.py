@@ -115,23 +115,35 @@ def telling_points(coordinates: Sequence[Floats], points: Floats) -> list[int]:
     count = points.shape[2]
     if not points.size:
         return []
-    alike = ~np.eye(count, dtype=bool)
-    for values in coordinates:
-        alike &= np.abs(values[:, None] - values[None, :]) <= tolerances.TOLD_APART
     size = float(np.max(np.ptp(points, axis=(0, 2))))
-    apart = [
-        np.max(np.abs(each[:, :, None] - each[:, None, :]), axis=0) > tolerances.TOLD_APART * size
-        for each in points
-    ]
+    groups = np.zeros(count, dtype=np.intp)
+    for values in coordinates:
+        groups = _split(groups, values, tolerances.TOLD_APART)
     found: list[int] = []
-    while alike.any():
-        gains = [int(np.count_nonzero(alike & each)) for each in apart]
-        best = gains.index(max(gains))
-        if gains[best] == 0:
+    while (told := int(groups.max()) + 1) < count:
+        splits = []
+        for place in points:
+            split = groups
+            for values in place:
+                split = _split(split, values, tolerances.TOLD_APART * size)
+            splits.append(split)
+        counts = [int(split.max()) for split in splits]
+        best = counts.index(max(counts))
+        if counts[best] + 1 == told:
             break
         found.append(best)
-        alike &= ~apart[best]
+        groups = splits[best]
     return found
+
+
+def _split(groups: NDArray[np.intp], values: Floats, tolerance: float) -> NDArray[np.intp]:
+    """Groups (assemblies,), numbered from 0, split where values (assemblies,) have gaps."""
+    order = np.argsort(values, kind="stable")
+    steps = np.concatenate([[0], np.cumsum(np.diff(values[order]) > tolerance)])
+    places = np.empty_like(groups)
+    places[order] = steps
+    split: NDArray[np.intp] = np.unique(groups * groups.size + places, return_inverse=True)[1]
+    return split
 
 
 @remembered
