@@ -85,7 +85,7 @@ class Status(IntEnum):
     singular_inertia = (
         8,
         "ends",
-        "the response ended before this row: a freedom has no inertia that could be moved.",
+        "the response ended before this row: a freedom has no inertia.",
     )
     step_limit = (
         9,
@@ -173,8 +173,8 @@ def by_condition(condition: Floats) -> NDArray[np.int8]:
 
 
 def rates_are_clear(condition: Floats | float) -> Bools:
-    """Whether rates are more than rounding whatever the row, by its condition alone; where they may
-    not be, the row is looked at again in double-double."""
+    """Whether the condition alone guarantees significant rates; where it does not, the row is
+    looked at again in double-double."""
     import numpy as np
 
     return np.asarray(condition) <= CONDITION_RATES_UNCLEAR

@@ -22,10 +22,10 @@ from mechkin_cli.building import is_tiny_length, used_quantities
 from mechkin_cli.diagnostics import LONGEST_NAME, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, constant_in_file_units, lookup
 from mechkin_cli.kernel.functions import check_threads, check_width
-from mechkin_cli.mechanism import Problem, dimension_of, read_by
+from mechkin_cli.mechanism import DrivenInput, Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import replace
-from mechkin_cli.session import Packing, Session
+from mechkin_cli.session import Packing, Session, turn_of
 from mechkin_cli.structure import UnsolvableGraph
 from mechkin_cli.sweep import analyze, refuse_loaded_spin
 from mechkin_cli.tables import TableLayout, chosen, row_texts
@@ -110,26 +110,28 @@ def input_values(problem: Problem, at: Setting | Mapping[str, Setting]) -> dict[
             raise UsageError(
                 f"{name[:LONGEST_NAME]} is no input; inputs are {', '.join(inputs) or 'none'}"
             )
-        places[name] = _input_value(problem, name, value)
+        places[name] = _input_value(problem, inputs[name], value)
     return places
 
 
-def _input_value(problem: Problem, name: str, value: Setting) -> float:
+def _input_value(problem: Problem, item: DrivenInput, value: Setting) -> float:
     """A value of an input in the file's units."""
     text = value if isinstance(value, str) else repr(value)
-    dimension = dimension_of(name.rpartition(".")[2])
+    dimension = dimension_of(item.coordinate)
     resolve = lookup(problem.parameters)
     try:
         found = constant_in_file_units(text, dimension, problem.units, resolve)
         if is_tiny_length(problem.units.to_si(found, dimension), dimension):
             raise ExpressionError("this length is too small", 0, "check its exponent and unit")
-        if not abs(found) <= tolerances.LARGEST_NUMBER:
-            large = f"this is too large to compute with (limit {tolerances.LARGEST_NUMBER:g})"
+        turn = turn_of(problem, item)
+        largest = tolerances.LARGEST_TURNS * float(turn) if turn else tolerances.LARGEST_NUMBER
+        if not abs(found) <= largest:
+            large = f"this is too large to compute with (limit {largest:.4g})"
             raise ExpressionError(large, 0, "check its exponent and unit")
         return found
     except ExpressionError as error:
         hint = f"; {error.hint}" if error.hint else ""
-        raise UsageError(f"{name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None
+        raise UsageError(f"{item.name} at {text[:LONGEST_NAME]}: {error.message}{hint}") from None
 
 
 def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[TableLayout, ...]:

@@ -15,8 +15,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "fold": "PlacesBefore at_unit_rate condition_at left_for meant_branch unit_rates",
-        "home": "NamedModes is_cyclic is_home_assembled name_modes nearest_to_home probe_of "
-        "wrapped",
+        "home": "NamedModes is_cyclic is_home_assembled is_home_singular name_modes "
+        "nearest_to_home probe_of telling_points wrapped",
         "near": "AssemblyStart NEAR nothing_found",
         "start": "HOME MAY_BE_RIGID choose_start continued_start mode_letter state_at_first_row",
     },

@@ -12,7 +12,7 @@ the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil, pi, sqrt
 from typing import TYPE_CHECKING
 
@@ -21,7 +21,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import GROUND_NAME, Mechanism, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import TrackEnd, home_inputs, home_state
+from mechkin_cli.plan import Demand, TrackEnd, home_inputs, home_state
 from mechkin_cli.record import dataclass
 from mechkin_cli.search import Assemblies, all_assemblies, with_assemblies
 from mechkin_cli.session import Ask, Followed, RowInputs, Session
@@ -42,6 +42,16 @@ def is_home_assembled(session: Session) -> bool:
     return bool(batch.good[0])
 
 
+def is_home_singular(session: Session, limit: float = tolerances.CONDITION_NEAR_SINGULAR) -> bool:
+    """Whether the condition of some block is above a limit in the home drawing, assembled or
+    not."""
+    home = home_inputs(session.layout)[:, None], home_state(session.layout)[:, None]
+    batch = session.run(RowInputs(*home), Ask(Demand.CONDITION, iterations=0))
+    assert batch.condition is not None
+    # no number is below the limit where a block has none
+    return not batch.condition[0] < limit
+
+
 def _from_home(session: Session, path: Floats) -> Floats:
     """How far inputs (inputs, rows) are from those of the drawing."""
     away: Floats = path - home_inputs(session.layout)[:, None]
@@ -60,13 +70,15 @@ def follow_from_home(session: Session, inputs: Floats) -> Followed:
 
 
 class Probe:
-    """Reads coordinates and joint points of assemblies."""
+    """Reads coordinates and joint points of assemblies; `joints` names those of the points."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
         mechanism = session.problem.mechanism
         self.coordinates = list(mechanism.coordinates)
-        self.points = [at for _, at in mechanism.joint_points() if at.link != GROUND_NAME]
+        moving = [(n, at) for n, at in mechanism.joint_points() if at.link != GROUND_NAME]
+        self.joints = [name for name, _ in moving]
+        self.points = [at for _, at in moving]
         self.fixed = [at.vector for _, at in mechanism.joint_points() if at.link == GROUND_NAME]
         self.datum = np.array(mechanism.datum)[:, None]
         self.readout = session.readout(coordinate_quantities(mechanism), self.points)
@@ -90,6 +102,48 @@ class Probe:
         extent = every.max(axis=0) - every.min(axis=0)
         x, y, z = (float(e) for e in extent)
         return sqrt(x * x + y * y + z * z) or 1.0
+
+
+def telling_points(coordinates: Sequence[Floats], points: Floats) -> list[int]:
+    """Numbers of a few points that tell those of some assemblies apart which the coordinates do
+    not.
+
+    Args:
+        coordinates: of all assemblies, (assemblies,) each, in SI.
+        points: (points, 3, assemblies), in m.
+    """
+    count = points.shape[2]
+    if not points.size:
+        return []
+    size = float(np.max(np.ptp(points, axis=(0, 2))))
+    groups = np.zeros(count, dtype=np.intp)
+    for values in coordinates:
+        groups = _split(groups, values, tolerances.TOLD_APART)
+    found: list[int] = []
+    while (told := int(groups.max()) + 1) < count:
+        splits = []
+        for place in points:
+            split = groups
+            for values in place:
+                split = _split(split, values, tolerances.TOLD_APART * size)
+            splits.append(split)
+        counts = [int(split.max()) for split in splits]
+        best = counts.index(max(counts))
+        if counts[best] + 1 == told:
+            break
+        found.append(best)
+        groups = splits[best]
+    return found
+
+
+def _split(groups: NDArray[np.intp], values: Floats, tolerance: float) -> NDArray[np.intp]:
+    """Groups (assemblies,), numbered from 0, split where values (assemblies,) have gaps."""
+    order = np.argsort(values, kind="stable")
+    steps = np.concatenate([[0], np.cumsum(np.diff(values[order]) > tolerance)])
+    places = np.empty_like(groups)
+    places[order] = steps
+    split: NDArray[np.intp] = np.unique(groups * groups.size + places, return_inverse=True)[1]
+    return split
 
 
 @remembered
@@ -193,7 +247,7 @@ def rows_from_home(session: Session) -> Iterator[tuple[int, Followed, bool]]:
     leading[: len(inputs)] = [not item.follows for item in inputs]
     tried = set()
     for path, rows, turned in _paths(session, leading):
-        for row in _two_sides(_from_home(session, path)[leading], rows):
+        for row in two_sides(_from_home(session, path)[leading], rows):
             target = np.ascontiguousarray(path[:, row])
             if (row, target.tobytes()) not in tried:
                 tried.add((row, target.tobytes()))
@@ -215,7 +269,7 @@ def _paths(session: Session, leading: Bools) -> Iterator[tuple[Floats, NDArray[n
     yield _without_turns(session, inputs.reduced), every, True
 
 
-def _two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
+def two_sides(path: Floats, rows: NDArray[np.intp]) -> list[int]:
     """Of some rows (of inputs from the drawing's, rows) the nearest to the drawing, and of all rows
     the nearest on its other side."""
     if not path.size:

@@ -11,7 +11,15 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.fold import judged_off_fold, next_to_fold
-from mechkin_cli.assembly.home import NamedModes, is_home_assembled, name_modes, rows_from_home
+from mechkin_cli.assembly.home import (
+    NamedModes,
+    is_home_assembled,
+    is_home_singular,
+    name_modes,
+    probe_of,
+    rows_from_home,
+    two_sides,
+)
 from mechkin_cli.assembly.near import (
     NEAR,
     AssemblyStart,
@@ -29,8 +37,9 @@ from mechkin_cli.assembly.near import (
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
+from mechkin_cli.mechanism import dimension_of
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Layout, TrackEnd, build_plan
+from mechkin_cli.plan import Layout, TrackEnd, build_plan, home_inputs, home_state
 from mechkin_cli.record import replace
 from mechkin_cli.search import (
     Assemblies,
@@ -61,6 +70,9 @@ HOME = "home"
 
 MOST_LETTERS = 26
 """Modes whose letters a message lists."""
+
+MOST_TOLD = 3
+"""Coordinates that tell motions apart that a message lists."""
 
 MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (write expressions)"
 
@@ -247,14 +259,86 @@ def _nearest_about(
 
 def _from_home(session: Session) -> AssemblyStart:
     """Followed from the drawing to the row whose inputs are nearest to it, or on its other side."""
+    singular = is_home_singular(session, tolerances.CONDITION_RANK_UNCLEAR)
+    beside = _from_beside_home(session) if singular else []
+    # a way that ends in the drawing itself is lost there, unless it is to go straight on
+    off = np.abs(session.inputs.values - home_inputs(session.layout)[:, None])
+    drawn = bool((np.max(off, axis=0, initial=0.0) <= tolerances.PASSED).any())
+    if len(beside) == 1 and (session.problem.assembly.straight or not drawn):
+        return replace(beside[0], diagnostics=[_meeting("the rows go on")])
     first = None
     for row, followed, turned in rows_from_home(session):
         if followed.end == TrackEnd.FINISHED:
             how = "followed from the home drawing" + (", whole turns away" if turned else "")
-            return AssemblyStart(followed.state, HOME, how, row=row)
+            start = AssemblyStart(followed.state, HOME, how, row=row)
+            notes = [_meeting("rows would go on")] if len(beside) == 1 else []
+            return replace(start, diagnostics=notes)
         first = first or followed
     assert first is not None
-    return _ends_before_rows(session, first)
+    return _several_motions(session, beside) if beside else _ends_before_rows(session, first)
+
+
+def _meeting(rows: str) -> Diagnostic:
+    """That a drawing lies where motions meet, and in which of them `rows` go on."""
+    return Diagnostic(
+        "motions-meet",
+        "note",
+        f"several motions meet in the drawing: {rows} in the only one in which the inputs move",
+        hint="assembly: {at_branch_points: straight} goes through the drawing; mobility of the "
+        "file without inputs names the motions",
+    )
+
+
+def _from_beside_home(session: Session) -> list[AssemblyStart]:
+    """Of a drawing where motions meet: followed from the assemblies next to it, a little further on
+    the way to the nearest row away from it, on either side; none where some assembly next to it
+    moves with the inputs held, or is as singular."""
+    home, drawn = home_inputs(session.layout), home_state(session.layout)
+    path = session.inputs.values - home[:, None]
+    away = np.flatnonzero(np.max(np.abs(path), axis=0, initial=0.0) > tolerances.PASSED)
+    left = {session.layout.state(*at) for block in session.graph.blocks for at in block.unknowns}
+    within = box_about(session, (drawn, frozenset(left), True), tolerances.HOME_BOX)
+    for row in two_sides(path, away) if away.size else []:
+        way = path[:, row] * min(1.0, tolerances.HOME_STEP / float(np.max(np.abs(path[:, row]))))
+        found = all_assemblies(session, home + way, within)
+        starts = []
+        for state in found.states.T:
+            if np.any(np.abs(state - drawn) > within[1]) or found.free:
+                continue
+            back = session.follow(np.stack([home + way, home + 0.1 * way], axis=1), state)
+            off = float(np.max(np.abs(back.state - drawn)))
+            if back.end != TrackEnd.FINISHED or off > 0.5 * float(np.max(np.abs(state - drawn))):
+                continue  # no motion from the drawing
+            on = session.follow(np.stack([home + way, home + path[:, row]], axis=1), state)
+            if on.end == TrackEnd.FINISHED:
+                how = "followed from beside the home drawing, where motions meet"
+                starts.append(AssemblyStart(on.state, HOME, how, row=row))
+        if starts:
+            return starts
+    return []
+
+
+def _several_motions(session: Session, starts: Sequence[AssemblyStart]) -> AssemblyStart:
+    """No start, since several motions meet in the drawing in which the inputs move; what tells them
+    apart at the nearest row is named."""
+    states = np.stack([one.state for one in starts if one.state is not None], axis=1)
+    inputs = session.inputs.values[:, starts[0].row]
+    problem = session.problem
+    told = []
+    for name, values in probe_of(session).read(inputs, states)[0].items():
+        dimension = dimension_of(name.rpartition(".")[2])
+        unit = problem.units.label(dimension)
+        if float(np.ptp(values)) > tolerances.SAME_MODE:
+            each = [f"{problem.units.from_si(v, dimension):.6g}" for v in values.tolist()]
+            told.append(f"{name} = {' or '.join(dict.fromkeys(each))} {unit}")
+    diagnostic = Diagnostic(
+        "several-motions",
+        "error",
+        f"in the drawing {len(starts)} motions meet in which the inputs move",
+        measured=f"at row {starts[0].row + 1} {', '.join(told[:MOST_TOLD])}",
+        hint="say which is meant with assembly: {near: ...}",
+    )
+    return AssemblyStart(None, HOME, "", [diagnostic], Status.branch_lost, stuck=False)
 
 
 def _ends_before_rows(session: Session, followed: Followed) -> AssemblyStart:

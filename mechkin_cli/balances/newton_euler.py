@@ -33,7 +33,16 @@ from mechkin_cli.balances.dense import (
     row_motion,
 )
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import GROUND_NAME, ZERO, Attached, Joint, Vector, cross, scale
+from mechkin_cli.mechanism import (
+    GROUND_NAME,
+    ZERO,
+    Attached,
+    Joint,
+    Vector,
+    cross,
+    eliminated,
+    scale,
+)
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables import CoefficientsLayout, Columns, TableColumn, words_of
 from mechkin_cli.tolerances import DENSE_PIVOT, DENSE_ROUNDING
@@ -260,30 +269,9 @@ def _places(names: Sequence[str], wanted: Sequence[str]) -> list[tuple[int, floa
 def solved(system: DenseSystem) -> list[float] | None:
     """The unknowns in SI, by elimination with row pivots; None where they are not as many as the
     equations or not independent of one another."""
-    size = len(system.unknowns)
-    if len(system.equations) != size:
+    if len(system.equations) != len(system.unknowns):
         return None
-    rows = []
-    for coefficients, right in zip(system.coefficients, system.right, strict=True):
-        # the largest coefficient is 1, so that pivots compare
-        largest = max(abs(value) for value in coefficients) or 1.0
-        rows.append([value / largest for value in (*coefficients, right)])
-    for k in range(size):
-        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
-        if abs(rows[pivot][k]) <= DENSE_PIVOT:
-            return None
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        for i in range(k + 1, size):
-            factor = rows[i][k] / rows[k][k]
-            if factor:
-                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
-    values = [0.0] * size
-    for k in reversed(range(size)):
-        rest = rows[k][size]
-        for j in range(k + 1, size):
-            rest -= rows[k][j] * values[j]
-        values[k] = rest / rows[k][k]
-    return values
+    return eliminated(system.coefficients, system.right, DENSE_PIVOT)
 
 
 def coefficient_tables(layout: CoefficientsLayout, result: Result) -> tuple[Columns, Columns]:

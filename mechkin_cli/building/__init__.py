@@ -27,6 +27,6 @@ __getattr__, __dir__ = lazy_names(
         "recording": "precise precise_response record shifting",
         "source": "BadTable open_data open_file open_text table_path table_text",
         "tables": "used_quantities",
-        "view": "Kind ShapeSetting ViewSettings",
+        "view": "DrawnBetween Kind ShapeSetting ViewSettings",
     },
 )

@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
+from mechkin_cli.assembly import is_home_singular
 from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
@@ -56,6 +57,7 @@ from mechkin_cli.mechanism import (
     TIME_OF_ROW,
     ZERO,
     Attached,
+    LockedFreedom,
     Mechanism,
     MotionInputs,
     Problem,
@@ -68,7 +70,7 @@ from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import MechanismFile
-from mechkin_cli.session import solver_graph
+from mechkin_cli.session import Session, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
 from mechkin_cli.tolerances import MOST_EQUATIONS, SMALLEST_SIZE
@@ -109,9 +111,13 @@ class Built(NamedTuple):
 
 
 def build(
-    file: MechanismFile, document: Document, given: Mapping[str, Quantity] = _NOTHING
+    file: MechanismFile,
+    document: Document,
+    given: Mapping[str, Quantity] = _NOTHING,
+    alike: Sequence[LockedFreedom] = (),
 ) -> Built:
     """Builds everything that a file describes; `given` values replace those of some parameters.
+    What holds a design `alike` as drawn, as `Problem.stopped`, is what holds this one if it can.
 
     Raises:
         InvalidFile: with every independent error, each at its line.
@@ -139,8 +145,8 @@ def build(
     if not fields.error_count:
         problem = replace(problem, held=held_of(problem))
     graph = _graph(fields, file, problem)
-    if isinstance(graph, SolverGraph):
-        held = mobility.held_to_family(problem)
+    if isinstance(graph, SolverGraph) and is_home_singular(Session.of(problem, graph)):
+        held = mobility.held_to_family(problem, alike)
         if held != problem.held:
             problem = replace(problem, held=held)
             graph = _graph(fields, file, problem)

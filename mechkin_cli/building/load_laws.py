@@ -339,6 +339,9 @@ def _rows(text: str) -> list[tuple[int, float, float]]:
 
 def _row(line: int, row: str) -> tuple[float, float]:
     cells = row.split(",")
+    if ";" in row:
+        text = "the columns of this table are parted by semicolons"
+        raise BadTable(line, 1, text, "write x,y with a comma between them and a point in decimals")
     if len(cells) != 2:
         text = f"this row has {len(cells)} {'column' if len(cells) == 1 else 'columns'}, not two"
         hint = "write x,y with a comma between them and a point in decimals"

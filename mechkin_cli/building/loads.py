@@ -321,6 +321,8 @@ class LoadBuilder:
             return False
         what = "link" if key == "link" else "point"
         hint = nearest_hint(name, list(known))
+        if what == "point" and name in self.joints:
+            hint = f"{name} is a joint: name its point under points"
         self.fields.error(f"unknown-{what}", (*path, key), f"there is no {what} {name}", hint)
         return False
 
@@ -511,7 +513,7 @@ def _coefficients(
     sliding = _coefficient(fields, (*path, "sliding"), coefficient.sliding)
     if at_rest < sliding:
         text = "the static coefficient is smaller than that of sliding"
-        hint = "surfaces hold at least as well as they drag: exchange the two"
+        hint = "static friction is never below sliding friction: exchange the two values"
         fields.error(_FRICTION, (*path, "static"), text, hint)
     if coefficient.speed is None:
         return at_rest, sliding, None

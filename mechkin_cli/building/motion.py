@@ -17,7 +17,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from math import floor, isfinite, prod
+from math import floor, isfinite, pi, prod
 from typing import Final
 
 import numpy as np
@@ -70,8 +70,8 @@ from mechkin_cli.schema import (
 from mechkin_cli.show import Floats
 from mechkin_cli.tables import default_table
 from mechkin_cli.tape import differ, of_numbers, with_rates, within
-from mechkin_cli.tolerances import LARGEST_NUMBER, MOST_NUMBERS
-from mechkin_cli.units import TIME, Dimension
+from mechkin_cli.tolerances import LARGEST_NUMBER, LARGEST_TURNS, MOST_NUMBERS
+from mechkin_cli.units import ANGLE, TIME, Dimension
 from mechkin_cli.verdict import SWEEP
 
 _ROW_COLUMNS: Final = 6
@@ -252,9 +252,10 @@ def build_inputs(
     if fields.error_count > errors:
         return None
     inputs = tuple(
-        _driven(fields, (*path, name), orders[name], rows, name in following)
-        for name in sections
-        if name in orders
+        _driven(
+            fields, joints, (*path, name), np.broadcast_to(column, (4, rows)), name in following
+        )
+        for name, column in ((name, orders[name]) for name in sections if name in orders)
     )
     if fields.error_count > errors:
         return None
@@ -395,12 +396,14 @@ def _row_count(fields: Fields, grid: Sequence[str], columns: Mapping[str, Floats
     return max(lengths.values(), default=1)
 
 
-def _driven(fields: Fields, path: Path, orders: Floats, rows: int, follows: bool) -> DrivenInput:
+def _driven(
+    fields: Fields, joints: Mapping[str, Joint], path: Path, orders: Floats, follows: bool
+) -> DrivenInput:
     """The input of the key at `path`, in SI and as written; numbers too large to compute with are
-    noted."""
+    noted. `orders` (4, rows)."""
     name = str(path[-1])
     joint, _, coordinate = name.rpartition(".")
-    written = np.broadcast_to(orders, (4, rows)).copy()
+    written = orders.copy()
     in_si = [
         np.asarray(fields.units.to_si(written[k].copy(), dimension_of(coordinate, k)))
         for k in range(4)
@@ -417,8 +420,28 @@ def _driven(fields: Fields, path: Path, orders: Floats, rows: int, follows: bool
                 limit=f"{LARGEST_NUMBER:g}",
             )
             break
+    else:
+        _refuse_lost_turns(fields, path, joints[joint], coordinate, in_si[0], written[0])
     value, rate, acceleration, jerk = in_si
     return DrivenInput(joint, coordinate, value, rate, acceleration, jerk, written, follows)
+
+
+def _refuse_lost_turns(
+    fields: Fields, path: Path, joint: Joint, coordinate: str, in_si: Floats, written: Floats
+) -> None:
+    """Notes an angle of more turns than leave a place within one."""
+    most = 2.0 * pi * LARGEST_TURNS
+    if not joint.type.chain[joint.freedom_number(coordinate)].is_cyclic or within(in_si, most):
+        return
+    unit = fields.units.label(ANGLE)
+    fields.error(
+        "too-large",
+        path,
+        f"{path[-1]} has so many turns that nothing is left of the place within one",
+        "write the angle within a turn",
+        measured=f"{float(np.abs(written).max()):.4g} {unit}",
+        limit=f"{float(fields.units.from_si(most, ANGLE)):.4g} {unit}",
+    )
 
 
 def _unrated(fields: Fields, path: Path, inputs: Sequence[DrivenInput]) -> tuple[str, ...]:

@@ -433,14 +433,19 @@ HINT = "start as many independent coordinates as are free: start: {O1.theta: 20}
 
 
 def with_graphs(fields: Fields, problem: Problem) -> tuple[Problem, Graphs]:
-    """The problem whose responses have their idle freedoms held, and their graphs; links that would
-    spin are noted."""
+    """The problem whose responses have their idle freedoms held, and are held to the family that
+    their coordinates name, and their graphs; links that would spin are noted."""
     responses, graphs = {}, Graphs()
     for name, response in problem.responses.items():
         first = response_problem(problem, response)
         first = replace(first, held=held_of(first))
         response = replace(response, held=first.held)
         graphs[name] = response_graph(fields, problem, response)
+        if isinstance(graphs[name], SolverGraph):
+            held = mobility.held_to_family(first)
+            if held != first.held:
+                first, response = replace(first, held=held), replace(response, held=held)
+                graphs[name] = response_graph(fields, problem, response)
         if isinstance(graphs[name], SolverGraph):
             note_spins(fields, first, free=True)
             response = replace(response, mechanism=settled(first).mechanism)

@@ -2,26 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
-from mechkin_cli.mechanism import GROUND_NAME, Mechanism, Vector, is_written
-from mechkin_cli.record import dataclass, field
+from mechkin_cli.mechanism import GROUND_NAME, Attached, Mechanism, Vector, is_written
+from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.schema import ShapeOfLink, ViewSection
+    from mechkin_cli.schema import PartBetween, ShapeOfLink, ViewSection
     from mechkin_cli.units import Dimension
 
 
-Kind = Literal["rod", "plate", "star", "none"]
+Kind = Literal["rod", "plate", "star", "cylinder", "wheel", "none"]
 
 
-ShapeSetting = tuple[Kind | None, tuple[Vector, ...] | None]
-"""The shape of a link: its kind (None: as its points lie), and the points (m, as drawn) that it
-goes through (None: its joints and named points)."""
+class ShapeSetting(NamedTuple):
+    """The shape of a link: its `kind` (None: as its points lie), the `points` (m, as drawn) that it
+    goes through (None: its joints and named points), `radius` and `width` in m (None: the page's
+    choice), and the `axis` of a wheel, a unit vector as drawn."""
+
+    kind: Kind | None = None
+    points: tuple[Vector, ...] | None = None
+    radius: float | None = None
+    width: float | None = None
+    axis: Vector | None = None
+
+
+class DrawnBetween(NamedTuple):
+    """What is drawn between two points of links: `radius` in m (None: the page's choice)."""
+
+    kind: Literal["spring", "damper", "cylinder"]
+    ends: tuple[Attached, Attached]
+    radius: float | None = None
 
 
 @dataclass(frozen=True)
@@ -32,6 +47,7 @@ class ViewSettings:
         colours: of links by name, `#rrggbb`.
         hidden: links that are not drawn.
         shapes: of links by name.
+        between: what is drawn between points.
         joint_radius: m; None: by the size of the mechanism.
         paths: named points whose paths are drawn; None: all.
         forces: whether arrows are shown at first.
@@ -43,6 +59,7 @@ class ViewSettings:
     colours: Mapping[str, str] = field(default_factory=dict)
     hidden: frozenset[str] = frozenset()
     shapes: Mapping[str, ShapeSetting] = field(default_factory=dict)
+    between: tuple[DrawnBetween, ...] = ()
     joint_radius: float | None = None
     paths: frozenset[str] | None = None
     forces: bool = True
@@ -61,6 +78,7 @@ def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> Vi
         shapes={
             name: view.shape(name, shape) for name, shape in view.of_links("shapes", section.shapes)
         },
+        between=tuple(view.between(section.between)),
         joint_radius=view.positive("joint_radius", section.joint_radius, LENGTH),
         paths=None
         if section.paths is None
@@ -99,19 +117,74 @@ class _View:
 
     def shape(self, link: str, section: ShapeOfLink) -> ShapeSetting:
         """The shape of a link."""
-        if section.points is None:
-            return section.kind, None
-        points = [self._point(link, at, point) for at, point in enumerate(section.points)]
-        return section.kind, tuple(point for point in points if point is not None)
+        path: Path = ("view", "shapes", link)
+        before = self.fields.error_count
+        given = None
+        if section.points is not None:
+            found = [self._point(link, at, point) for at, point in enumerate(section.points)]
+            given = tuple(point for point in found if point is not None)
+        radius = self.positive("radius", section.radius, LENGTH, path)
+        width = self.positive("width", section.width, LENGTH, path)
+        axis = None
+        if section.axis is not None:
+            axis = self.fields.direction((*path, "axis"), section.axis)
+        if section.kind == "wheel" and self.fields.error_count == before:
+            given, axis = self._wheel(link, section, given, axis)
+        return ShapeSetting(section.kind, given, radius, width, axis)
 
-    def positive(self, key: str, text: str | None, dimension: Dimension) -> float | None:
-        """A number above zero; None where the section has none."""
+    def _wheel(
+        self,
+        link: str,
+        section: ShapeOfLink,
+        points: tuple[Vector, ...] | None,
+        axis: Vector | None,
+    ) -> tuple[tuple[Vector, ...], Vector | None]:
+        """The centre of a wheel and its axis, which is that of the joint at its centre where it has
+        none."""
+        path: Path = ("view", "shapes", link)
+        joints = {name: at for name, at in self.mechanism.joint_points() if at.link == link}
+        name = next(iter(joints), None) if section.points is None else section.points[0]
+        if points is None:
+            if name is None:
+                text = f"the wheel {link} has no joint that would be its centre"
+                self.fields.error("missing-key", path, text, "add `points:` with the centre")
+                return (), axis
+            points = (joints[str(name)].vector,)
+        if axis is None and self.mechanism.plane:
+            axis = (0.0, 0.0, 1.0)
+        joint = self.mechanism.joints.get(name) if isinstance(name, str) else None
+        if axis is None and joint is not None and joint.type.axis is not None:
+            axis = joint.axis.vector
+        if axis is None:
+            where = f"{name}" if isinstance(name, str) else "its centre"
+            text = f"the wheel {link} has no axis: {where} is no joint that has one"
+            self.fields.error("missing-key", path, text, "add `axis: [x, y, z]`")
+        return points[:1], axis
+
+    def between(self, parts: Sequence[PartBetween]) -> Iterator[DrawnBetween]:
+        """What is drawn between points that exist."""
+        known = list(self.mechanism.points)
+        for at, part in enumerate(parts):
+            path: Path = ("view", "between", at)
+            radius = self.positive("radius", part.radius, LENGTH, path)
+            found = [
+                self._exists((*path, "points", k), name, known, "point")
+                for k, name in enumerate(part.points)
+            ]
+            if all(found):
+                first, second = (self.mechanism.points[name] for name in part.points)
+                yield DrawnBetween(part.kind, (first, second), radius)
+
+    def positive(
+        self, key: str, text: str | None, dimension: Dimension, path: Path = ("view",)
+    ) -> float | None:
+        """A number above zero; None where the section at the path has none."""
         if text is None:
             return None
         before = self.fields.error_count
-        value = self.fields.number(("view", key), text, dimension)
+        value = self.fields.number((*path, key), text, dimension)
         if value <= 0.0 and self.fields.error_count == before:
-            self.fields.error("not-positive", ("view", key), f"{key} is above zero")
+            self.fields.error("not-positive", (*path, key), f"{key} is above zero")
         return value
 
     def _point(self, link: str, at: int, point: str | tuple[str, ...]) -> Vector | None:

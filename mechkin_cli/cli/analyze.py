@@ -143,7 +143,7 @@ class AnalyzeCommand(NamedTuple):
 
     @property
     def decimal_comma(self) -> bool:
-        """Whether numbers of CSV are written with a comma.
+        """Whether numbers of CSV, Markdown and LaTeX are written with a comma.
 
         Raises:
             UsageError: the mark is not known.

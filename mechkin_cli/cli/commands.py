@@ -170,7 +170,7 @@ ANALYZE = Command(
         Word("units", "Write units into CSV headers: theta [deg].", ("--units",)),
         Word(
             "decimal",
-            "Mark of numbers in CSV: point or comma, which has semicolons between cells.",
+            "Mark of numbers in CSV, Markdown, LaTeX: point, or comma; CSV then has semicolons.",
             ("--decimal",),
             "text",
             "MARK",

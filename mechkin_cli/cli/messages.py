@@ -309,17 +309,22 @@ def _data(text: str) -> str:
 
 
 def parameters(settings: list[str] | None) -> dict[str, str]:
-    """NAME=VALUE texts as a mapping.
+    """The texts of `--set` as a mapping; errors are those of `values_by_name`."""
+    return values_by_name("--set", settings or (), "NAME=VALUE, for example --set P1=0.6in")
+
+
+def values_by_name(option: str, texts: Iterable[str], expected: str) -> dict[str, str]:
+    """The texts of an option, each a name and its value with `=` between them, as a mapping.
 
     Raises:
-        UsageError: a text without `=`, or a name given twice.
+        UsageError: a text without `=`, name or value, or a name given twice.
     """
     values = {}
-    for text in settings or ():
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip() or not value.strip():
-            raise UsageError(f"--set {text}: expected NAME=VALUE, for example --set P1=0.6in")
-        if name.strip() in values:
-            raise UsageError(f"--set gives {name.strip()} twice; leave one of them out")
-        values[name.strip()] = value.strip()
+    for text in texts:
+        name, _, value = (part.strip() for part in text.partition("="))
+        if not name or not value:
+            raise UsageError(f"{option} {text}: expected {expected}")
+        if name in values:
+            raise UsageError(f"{option} gives {name} twice; leave one of them out")
+        values[name] = value
     return values

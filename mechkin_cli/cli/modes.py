@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from mechkin_cli import tables
 from mechkin_cli.cli.answer import answer
-from mechkin_cli.cli.messages import ExitCode, Record, put, say
-from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.cli.messages import ExitCode, Record, put, say, values_by_name
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,15 +43,7 @@ def _place(texts: list[str] | None) -> str | dict[str, str] | None:
         return None
     if len(texts) == 1 and "=" not in texts[0]:
         return texts[0]
-    place = {}
-    for text in texts:
-        name, equals, value = text.partition("=")
-        if not equals or not value.strip():
-            raise UsageError(f"--at {text}: expected INPUT=VALUE, for example O1.theta=50")
-        if name.strip() in place:
-            raise UsageError(f"--at gives {name.strip()} twice; leave one of them out")
-        place[name.strip()] = value.strip()
-    return place
+    return values_by_name("--at", texts, "INPUT=VALUE, for example O1.theta=50")
 
 
 def _record(model: Model, found: Modes) -> Record:
@@ -108,16 +100,21 @@ def _table(model: Model, found: Modes) -> Columns:
     import numpy as np
 
     from mechkin_cli.mechanism import dimension_of
-    from mechkin_cli.tables import Columns, TableColumn, Words
+    from mechkin_cli.units import LENGTH
 
     modes, units = found.modes, model.problem.units
     names = tuple(mode.name + ("*" if mode.name == found.picked else " ") for mode in modes)
-    columns = [TableColumn("mode", "", Words(np.arange(len(modes), dtype=np.int32), names))]
-    for name in modes[0].coordinates:
-        unit = units.label(dimension_of(name.rpartition(".")[2]))
+    columns = [
+        tables.TableColumn("mode", "", tables.Words(np.arange(len(modes), dtype=np.int32), names))
+    ]
+    for name in modes[0].numbers:
+        is_place = name in modes[0].places
+        unit = units.label(LENGTH if is_place else dimension_of(name.rpartition(".")[2]))
         columns.append(
-            TableColumn(name, unit, np.array([mode.coordinates[name] for mode in modes]))
+            tables.TableColumn(name, unit, np.array([mode.numbers[name] for mode in modes]))
         )
-    columns.append(TableColumn("residual", "", np.array([mode.residual for mode in modes])))
-    columns.append(TableColumn("condition", "", np.array([mode.condition for mode in modes])))
-    return Columns("modes", "assembly modes", tuple(columns))
+    columns.append(tables.TableColumn("residual", "", np.array([mode.residual for mode in modes])))
+    columns.append(
+        tables.TableColumn("condition", "", np.array([mode.condition for mode in modes]))
+    )
+    return tables.Columns("modes", "assembly modes", tuple(columns))

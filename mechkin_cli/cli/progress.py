@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 AFTER = 1.0
 """Seconds of work before anything is shown."""
 
-BAR = 20
+BAR = 10
 """Characters of the bar of counted work."""
 
 RESTORED = b"\r\x1b[2K\x1b[?25h"
@@ -57,7 +57,7 @@ def working(words: str, quiet: bool = False) -> Iterator[Tell]:
 @contextmanager
 def counting(words: str, what: str, quiet: bool = False) -> Iterator[Callable[[int, int], None]]:
     """As `working`, for work that is counted: yields a function of how many are done, and of how
-    many; shows a bar, the rate and the remaining time."""
+    many, first before any; shows a bar, the rate and the remaining time."""
     begun: list[tuple[float, int]] = []
 
     with working(words, quiet) as tell:
@@ -65,14 +65,14 @@ def counting(words: str, what: str, quiet: bool = False) -> Iterator[Callable[[i
         def count(done: int, whole: int) -> None:
             if not begun:
                 begun.append((monotonic(), done))
-                return
             since, before = begun[0]
             seconds = monotonic() - since
             rate = (done - before) / seconds if seconds > 0.0 else 0.0
-            left = f", {clock((whole - done) / rate)} left" if rate > 0.0 else ""
+            speed = f"{rate:.0f}" if rate >= 100.0 else f"{rate:.2g}"
+            left = f", {speed}/s, {clock((whole - done) / rate)} left" if rate > 0.0 else ""
             filled = BAR * done // whole
             bar = "#" * filled + "-" * (BAR - filled)
-            tell(f"{words} |{bar}| {done} of {whole} {what}, {rate:.3g}/s{left}")
+            tell(f"{words} |{bar}| {done}/{whole} {what}{left}")
 
         yield count
 
@@ -130,7 +130,7 @@ class _Display:
         with self._lock:
             if self._timer is None:  # the work has ended meanwhile
                 return
-            bar.add_task(_plain(self._words), total=None)
+            bar.add_task(_plain(self._words, bar.console.width), total=None)
             bar.tasks[0].start_time = bar.get_time() - AFTER
             self._bar = bar
             shown.add(self)
@@ -141,7 +141,8 @@ class _Display:
         with self._lock:
             self._words = words
             if self._bar is not None:
-                self._bar.update(self._bar.tasks[0].id, description=_plain(words))
+                said = _plain(words, self._bar.console.width)
+                self._bar.update(self._bar.tasks[0].id, description=said)
 
     def clear(self) -> None:
         """Clears the line, or cancels it."""
@@ -155,7 +156,9 @@ class _Display:
             shown.discard(self)
 
 
-def _plain(words: str) -> str:
+def _plain(words: str, width: int) -> str:
+    """The words without markup, cut so that the mark before them and the time behind have room."""
     from rich.markup import escape
 
-    return escape(legible(words, also=""))
+    text, room = legible(words, also=""), max(width - len("- ") - len(" 0:00:00"), 1)
+    return escape(text if len(text) <= room else f"{text[: room - 1]}\u2026")

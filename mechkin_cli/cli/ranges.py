@@ -21,6 +21,7 @@ RANGE_DECIMALS = 6
 LIMIT_WORDS = {
     "dead-centre": "dead centre",
     "branch-point": "branch point",
+    "hold-ends": "hold of an idle freedom",
     "unbounded": "a slide grows out of bounds",
     "branch-lost": "could not be followed further",
     "far": "no end found so far",

@@ -159,7 +159,8 @@ def _fresh_files(
                 below = room.summary_table(table.name, table.title, table.summary)
                 fresh[f"{below.name}.csv"] = room.csv_bytes(below, room.COMMITTED_DIGITS)
             fresh[f"{table.name}.md"] = room.markdown_bytes(table, analysis.result)
-    fresh[view.PICTURE_NAME] = view.mechanism_picture(analyses[0].result).encode()
+    picture = view.mechanism_picture(analyses[0].result, model.view_settings)
+    fresh[view.PICTURE_NAME] = picture.encode()
     if printed:
         fresh[room.PAGE] = room.errata_page(model.name, model.source, printed).encode()
         if listed := room.disagreements_csv(printed):

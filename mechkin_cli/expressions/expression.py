@@ -250,8 +250,13 @@ def _look_up(node: Name, resolve: Resolve) -> Quantity:
         vector = _resolved(prefix, resolve)
     except KeyError as error:
         hint = error.hint if isinstance(error, UnknownName) else None
+        if hint and axis in _AXES:
+            # a component was asked for, not the size
+            hint = re.sub(r"norm\(([\w.]+)\)", rf"\1.{axis}", hint)
         if node.text in UNITS:
             hint = f"a unit stands right behind a number: 1 {node.text}, 10 N*m"
+            if node.text == "t" and _exists("time", resolve):
+                hint = f"write time, if that is meant; {hint}"
         message = f"there is nothing named {node.text[:MAX_QUOTED]}"
         raise ExpressionError(message, node.offset, hint or _NAMES_ARE) from None
     except ExpressionError as error:

@@ -382,6 +382,8 @@ class _Parser:
         hint = hints.get(token.text)
         if token.kind in ("number", "name") or token.text in ("(", "["):
             hint = "multiplication is written with *"
+        if token.kind == "number":
+            hint = "multiplication is written with *, and a comma separates entries of a list"
         quoted = token.text[:MAX_QUOTED]
         return ExpressionError(f"'{quoted}' stands where {expected}", token.start, hint)
 

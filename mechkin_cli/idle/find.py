@@ -120,6 +120,8 @@ def common_motions(
         still: freedoms that do not move.
         general: the place.
     """
+    if _advance_apart(border):
+        return []
     pose = {links[0]: GROUND}
     for here, there, joint in zip(links, links[1:], inner, strict=False):
         pose[there] = pose[here].carry(general.seen_from(joint, here)[0])
@@ -156,6 +158,15 @@ def common_motions(
         miss = max((abs(entry) for entry in mapped), default=0.0)
         motions.append(LinkMotion(rates, twists, miss))
     return motions
+
+
+def _advance_apart(joints: Sequence[Joint]) -> bool:
+    """Whether joints that turn about one line advance on it by different leads, so that they turn
+    there together nowhere: a lead is written as it is meant, whatever the size of the drawing. A
+    joint without a thread or a slide has none."""
+    pitches = [j.pitch for j in joints if not any(own.is_slide for own in j.type.chain)]
+    most = max(map(abs, pitches), default=0.0)
+    return bool(pitches) and max(pitches) - min(pitches) > tolerances.SAME_LEAD * most
 
 
 class General:

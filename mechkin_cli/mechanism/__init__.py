@@ -65,8 +65,8 @@ __getattr__, __dir__ = lazy_names(
         "response_quantities",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem StartValue Stop TurnsEnd",
-        "vectors": "Frame GROUND Line Vector ZERO add cross dot frame_about norm perpendicular "
-        "scale subtract turned_shortest turned_tensor unit upright",
+        "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "
+        "perpendicular scale subtract turned_shortest turned_tensor unit upright",
         "wanted": "Wanted",
     },
 )

@@ -238,6 +238,10 @@ def ledger_catalogue() -> dict[str, Wanted]:
     }
 
 
+MOST_NAMED = 4
+"""Quantities of a joint, point or link that a message names."""
+
+
 def hint_of(name: str, known: Mapping[str, Wanted]) -> str | None:
     """Which owners have the derived quantity that an unknown name asks for, or which of the `known`
     quantities is meant by a word of everyday speech; None for others.
@@ -246,6 +250,8 @@ def hint_of(name: str, known: Mapping[str, Wanted]) -> str | None:
     'joints of type S, Sp, Sg have an orientation'
     """
     words = name.split(".")[1:]
+    if name == "time":
+        return "a sweep has time where its motion has: motion: {time: {from: 0, to: 2, step: 0.1}}"
     if words and (words[-1] == "jerk" or words[-1].endswith(ORDERS[3])):
         return "a jerk is known where a motion is prescribed; a response has none"
     told = next((_HINTS[word] for word in reversed(words) if word in _HINTS), None)
@@ -255,11 +261,11 @@ def hint_of(name: str, known: Mapping[str, Wanted]) -> str | None:
 # Everyday words for quantities of joints, points and links.
 
 _TURNING = {
-    **dict.fromkeys(("angle", "rotation", "phi"), 0),
+    **dict.fromkeys(("angle", "rotation", "phi", "theta"), 0),
     **dict.fromkeys(("omega", "w", "rpm", "angular_velocity", "angular_speed", "angular_rate"), 1),
     **dict.fromkeys(("alpha", "angular_acceleration"), 2),
 }
-_SLIDING = dict.fromkeys(("displacement", "stroke", "travel", "extension", "slide", *"xyz"), 0)
+_SLIDING = dict.fromkeys(("displacement", "stroke", "travel", "extension", "slide", *"sxyz"), 0)
 _ORDER_OF = {
     **_TURNING,
     **_SLIDING,
@@ -299,8 +305,12 @@ def _meant_by(name: str, known: Mapping[str, Wanted]) -> str | None:
     if "energy" in (name, word):
         return "energies are row.kinetic_energy and row.potential_energy"
     own = {one.name: one for one in known.values() if one.owner == owner}
-    if not own or not word:
-        return None
+    if not own:
+        alike = {one.owner for one in known.values() if one.owner.casefold() == owner.casefold()}
+        return f"did you mean {min(alike)}.{rest}?" if alike and word else None
+    if not word:
+        few = sorted(own, key=lambda each: (len(each), each))[:MOST_NAMED]
+        return f"write what of {owner}: {', '.join(few)}, ..."
     if word == "power":
         return f"a power is a product, such as {_power(owner, known)}"
     vector, _, axis = _COMPONENTS.get(word, f"{word}.x" if part else "").partition(".")
@@ -321,7 +331,8 @@ def _meant_by(name: str, known: Mapping[str, Wanted]) -> str | None:
     elif word in _REACTIONS:
         meant = [one for one in own.values() if one.kind in ("force", "moment")]
     else:
-        meant = _in_order(own.values(), word) if word in _ORDER_OF else []
+        is_known = word in _ORDER_OF and not (part and word in ("s", "theta"))
+        meant = _in_order(own.values(), word) if is_known else []
     if meant:
         texts = [f"norm({one.name})" if len(one.places) > 1 else one.name for one in meant]
         return f"did you mean {' or '.join(texts)}?"

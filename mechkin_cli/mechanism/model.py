@@ -139,7 +139,7 @@ class RigidLink(NamedTuple):
 
 
 class Varying(NamedTuple):
-    """A load's value that is another in every row: law `number` of those that the problem holds.
+    """A load's value that changes from row to row: law `number` of those that the problem holds.
 
     `moving` says that the law reads rates.
     """
@@ -177,7 +177,7 @@ class _Load:
 
     @property
     def dissipates(self) -> bool:
-        """Whether its work is taken away for good."""
+        """Whether its work is dissipated."""
         return False
 
     @property

@@ -1,4 +1,4 @@
-"""The joint table: everything that is known of a pair stands in its one entry.
+"""The joint table: all that defines a pair is in its one entry.
 
 Its closing equations, with their derivatives, the wrenches they transmit and the side condition
 that tells an assembly from a false root of them, are composed in the kernel's entry of the letter

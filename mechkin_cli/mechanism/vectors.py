@@ -4,10 +4,15 @@ everywhere.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from mechkin_cli import tolerances
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tape import by_rounding, either, largest, nonzero, square_root
 from mechkin_cli.tolerances import UNIT_SQUARE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 Vector = tuple[float, float, float]
 
@@ -165,6 +170,34 @@ def turned_tensor(tensor: tuple[float, ...], frame: Frame) -> tuple[float, ...]:
 
     x, y, z = (frame.components(times(axis)) for axis in (frame.x, frame.y, frame.z))
     return (x[0], y[1], z[2], y[0], z[0], z[1])
+
+
+def eliminated(
+    matrix: Sequence[Sequence[float]], right: Sequence[float], least_pivot: float
+) -> list[float] | None:
+    """The solution of a square system by elimination with row pivots; None where a pivot of the
+    equations, scaled to a largest coefficient of 1, is not above `least_pivot`."""
+    size = len(right)
+    rows = []
+    for coefficients, number in zip(matrix, right, strict=True):
+        most = max((abs(value) for value in coefficients), default=0.0) or 1.0
+        rows.append([value / most for value in (*coefficients, number)])
+    for k in range(size):
+        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        if not abs(rows[pivot][k]) > least_pivot:
+            return None
+        rows[k], rows[pivot] = rows[pivot], rows[k]
+        for i in range(k + 1, size):
+            factor = rows[i][k] / rows[k][k]
+            if factor:
+                rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    values = [0.0] * size
+    for k in reversed(range(size)):
+        rest = rows[k][size]
+        for j in range(k + 1, size):
+            rest -= rows[k][j] * values[j]
+        values[k] = rest / rows[k][k]
+    return values
 
 
 class Line(NamedTuple):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "configurations": "lost_holds",
+        "configurations": "hold_ends lost_holds",
         "families": "held_to_family",
         "idle": "held_along",
         "mobility": "Mobility drawn_faults find_mobility meeting undriven_notes",

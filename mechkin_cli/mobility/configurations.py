@@ -301,8 +301,13 @@ class Configuration:
 
     @property
     def assembled(self) -> bool:
-        """Whether all loops close."""
-        return self.miss < tolerances.MOBILITY_CLOSED
+        """Whether all loops close, in parts of how far the links are."""
+        return self.miss < tolerances.MOBILITY_CLOSED * self.reach
+
+    @cached_property
+    def reach(self) -> float:
+        """How far the links are from the drawing's centre, in parts of its size; at least 1."""
+        return max(1.0, *(float(np.abs(at).max()) for _, at in self.poses.values()))
 
     def point(self, joint: Joint) -> Floats:
         """Where the joint's point on its first link is."""
@@ -443,9 +448,9 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     if place is None:
         return ()
     # lengths in parts of how far the links are, where that is more than the size; unit columns
-    far = max(1.0, *(float(np.abs(at).max()) for _, at in place.poses.values()))
+    far = 1.0 / place.reach
     jacobian = place.jacobian
-    parts = np.array([1.0, 1.0, 1.0, 1.0 / far, 1.0 / far, 1.0 / far])
+    parts = np.array([1.0, 1.0, 1.0, far, far, far])
     cuts = body.loops.cut_rows
     weights = np.concatenate([np.tile(parts, cuts // 6), np.ones(len(jacobian) - cuts)])
     matrix = jacobian * weights[:, None]
@@ -456,6 +461,20 @@ def lost_holds(session: Session, inputs: Floats, state: Floats) -> tuple[LockedF
     if motions.shape[1] != len(problem.held) + len(problem.mechanism.spins):
         return ()
     return _dependent(problem.held, body, motions)
+
+
+def hold_ends(held: Iterable[LockedFreedom]) -> tuple[str, str]:
+    """What is locked and cannot keep its value beyond a place, in words, and what to do."""
+    held = tuple(held)
+    words = "; ".join(dict.fromkeys(one.words for one in held))
+    conventions = ", ".join(dict.fromkeys(one.convention for one in held))
+    names = [one.name for one in held if one.cure == f"drive {one.name}"]
+    drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
+    return (
+        f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
+        "itself has no dead centre",
+        f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
+    )
 
 
 def _dependent(

@@ -341,17 +341,36 @@ class _Nearly(Unclear):
 
 
 def freedom_of(
-    part: LoopPart, state: Floats, random: RandomStarts, *, regular: bool = False
+    part: LoopPart,
+    state: Floats,
+    random: RandomStarts,
+    *,
+    regular: bool = False,
+    rests: Sequence[int] = (),
 ) -> LocalFreedom:
     """The freedoms of a part from an assembled place `state` (states,); with `regular`, any other
-    than a regular place is a doubt."""
+    than a regular place is a doubt. A component along which the columns `rests` and no motions of
+    first order but theirs rest is looked at alone, if there is one."""
     _, jacobians = part.closing(state[None])
     first = rank_of(jacobians[0], tolerances.RANK_ZERO)
     if not first.clear:
         return LocalFreedom(first, (), first.doubt)
-    if first.motions.shape[1] == 0:
+    count = first.motions.shape[1]
+    if count == 0:
         return LocalFreedom(first, (AssemblyComponent(0, state, first.motions, 0.0),))
-    component = _regular(part, state, first, random)
+    if rests:
+        along = first.motions @ rank_of(first.motions[list(rests)], tolerances.RANK_ZERO).motions
+        # single links that move, too, only shorten the way of the others
+        beside = _less(along.T, along @ part.alone(state, along))
+        for _ in range(tolerances.MOBILITY_TRIES if len(beside) else 0):
+            heading = _units(random, 1, len(beside)) @ beside
+            component = _component_along(part, state, along, heading, random)
+            if component is not None and component.dimension + component.excess == count:
+                (steps,) = part.steps(component.state[None], state[None])
+                if np.abs(steps[list(rests)]).max() < tolerances.MOBILITY_CHORD_DOUBT:
+                    return LocalFreedom(first, (component,))
+    heading = _units(random, 1, count) @ first.motions.T
+    component = _component_along(part, state, first.motions, heading, random)
     if component is not None:
         return LocalFreedom(first, (component,))
     if regular:
@@ -362,13 +381,13 @@ def freedom_of(
     return _singular(part, state, first, random)
 
 
-def _regular(
-    part: LoopPart, state: Floats, first: Rank, random: RandomStarts
+def _component_along(
+    part: LoopPart, state: Floats, motions: Floats, heading: Floats, random: RandomStarts
 ) -> AssemblyComponent | None:
-    """The component if it has as many dimensions as there are motions of first order, so that there
-    is but one; None else."""
-    motions = first.motions
-    heading = _scaled(_units(random, 1, motions.shape[1]) @ motions.T)
+    """The component to which a heading (1, columns) leads among some motions of first order
+    (columns, count), if it has as many dimensions as they are: where they are all, there is but
+    this one. None else."""
+    heading = _scaled(heading)
     for move in tolerances.MOBILITY_MOVES:
         moves = move[0] * np.concatenate([heading, -heading])
         ends, as_meant = _closed_as_meant(part, state, moves, move)

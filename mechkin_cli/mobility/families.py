@@ -30,6 +30,7 @@ from mechkin_cli.mechanism import (
     cross,
     is_unnamed,
     is_written,
+    perpendicular,
     slide_name,
     turn_name,
     unit,
@@ -70,7 +71,8 @@ class MotionFamily(NamedTuple):
         text = "1 freedom" if self.dimension == 1 else f"{self.dimension} freedoms"
         text += f" (everywhere {self.excess} more to first order)" if self.excess else ""
         if self.rests:
-            verb = "rests" if len(self.rests) == 1 else "rest"
+            one = len(self.rests) == 1 and not self.rests[0].startswith("the turns")
+            verb = "rests" if one else "rest"
             text += f": {', '.join(self.rests)} {verb}"
         return f"{text}; free inputs: {', '.join(self.inputs)}" if self.inputs else text
 
@@ -165,10 +167,15 @@ def _spot(place: Configuration, at: Attached) -> Floats:
 # What holds a problem to the family that its inputs name.
 
 
-def held_to_family(problem: Problem) -> tuple[LockedFreedom, ...]:
+def held_to_family(
+    problem: Problem, alike: Sequence[LockedFreedom] = ()
+) -> tuple[LockedFreedom, ...]:
     """What the problem holds already, and what holds the motions of first order that loops stop
     along the one family in which the inputs are free, where the drawing lies in it; no more where
-    the drawing is not assembled, regular, or in no such family that is told without doubt."""
+    the drawing is not assembled, regular, or in no such family that is told without doubt.
+
+    Where what holds a design `alike` rests along a family here, too, no others are searched for.
+    """
     held, driven, mechanism = problem.held, problem.motion.driven, problem.mechanism
     idle = len(held) + len(mechanism.spins)
     if not driven or mechanism.kutzbach > len(driven) + idle:
@@ -179,12 +186,16 @@ def held_to_family(problem: Problem) -> tuple[LockedFreedom, ...]:
         return held
     random, more, freedoms = RandomStarts(), [], int(body.free.size)
     for part in body.parts:
-        freedom, columns = freedom_of(part, start.state, random), part.driven(body, driven)
-        fitting = []
-        for family in freedom.families:
-            places = general_places(part, family, random)
-            if _rank(part, start.state, places, columns) == len(columns):
-                fitting.append((family, places[0]))
+        columns = part.driven(body, driven)
+        for rests in dict.fromkeys((_resting_in(part, body, alike), ())):
+            freedom = freedom_of(part, start.state, random, rests=rests)
+            fitting = []
+            for family in freedom.families:
+                places = general_places(part, family, random)
+                if _rank(part, start.state, places, columns) == len(columns):
+                    fitting.append((family, places[0]))
+            if fitting:
+                break
         # what is least free is driven by the inputs, if any is
         least = min((place.dimension for _, place in fitting), default=0)
         fitting = [one for one in fitting if one[1].dimension == least]
@@ -193,8 +204,27 @@ def held_to_family(problem: Problem) -> tuple[LockedFreedom, ...]:
         freedoms += least
         family, place = fitting[0]
         if place.excess:
-            more += _holds(problem, body, part, start.state, freedom.first.motions, family)
+            more += _holds(problem, body, part, start.state, freedom.first.motions, family, alike)
     return (*held, *more) if freedoms == len(driven) + idle else held
+
+
+def _resting_in(part: LoopPart, body: Body, held: Iterable[LockedFreedom]) -> tuple[int, ...]:
+    """Columns of a part that rest where some freedoms are held: all three of a ball."""
+    rests: set[int] = set()
+    for one in held:
+        if one.coordinate is None:
+            continue
+        joint = body.mechanism.joints[one.joints[0]]
+        rests.update(
+            body.columns[joint.name][k]
+            for k, freedom in enumerate(joint.type.chain)
+            if (
+                freedom.motion == "ball"
+                if one.told
+                else k == joint.freedom_number(one.coordinate[1])
+            )
+        )
+    return tuple(k for k, column in enumerate(part.columns.tolist()) if column in rests)
 
 
 def _freedom_at_rest(body: Body, place: Configuration, driven: Sequence[tuple[str, str]]) -> int:
@@ -211,22 +241,27 @@ def _holds(
     state: Floats,
     motions: Floats,
     family: Places,
+    alike: Sequence[LockedFreedom],
 ) -> list[LockedFreedom]:
     """Holds of coordinates that rest along a family, as many as there are more `motions` (columns,
     count) of first order at the drawing, so that with the inputs at rest none of these is left;
-    none where too few coordinates are independent."""
+    those of a design `alike` first, so that assemblies go over into each other; none where too few
+    coordinates are independent."""
     rows = motions[part.driven(body, problem.motion.driven)]
     left = motions @ rank_of(rows, tolerances.RANK_ZERO).motions
-    candidates = list(_candidates(problem, body, left, _still(part, state, family)))
+    candidates = list(_candidates(problem, body, left, _still(part, state, family), alike))
     if not candidates or not left.size:
         return []
+    known = {one.coordinate for one in alike}
+    first = np.array([one.coordinate in known for _, one in candidates])
     rates = np.array([row for row, _ in candidates]).reshape(-1, left.shape[1])
     chosen: list[LockedFreedom] = []
     for _ in range(motions.shape[1] - family[0].dimension):
         sizes = np.sqrt(np.sum(rates * rates, axis=1))
         if sizes.max(initial=0.0) < tolerances.HELD_WELL:
             return []
-        best = int(np.argmax(sizes))
+        first &= sizes >= tolerances.HELD_WELL
+        best = int(np.argmax(np.where(first, sizes, 0.0) if first.any() else sizes))
         chosen.append(candidates[best][1])
         rates = rates @ rank_of(rates[[best]], tolerances.RANK_ZERO).motions
     return chosen
@@ -242,12 +277,17 @@ def _still(part: LoopPart, state: Floats, family: Places) -> dict[int, int]:
 
 
 def _candidates(
-    problem: Problem, body: Body, motions: Floats, still: dict[int, int]
+    problem: Problem,
+    body: Body,
+    motions: Floats,
+    still: dict[int, int],
+    alike: Iterable[LockedFreedom],
 ) -> Iterator[tuple[Floats, LockedFreedom]]:
     """What can be held, with its rates in some motions (columns, count): coordinates that are
     `still` and no input, turns of balls of which all three are; no spheres of a rod, which stand
     for a length."""
     mechanism = problem.mechanism
+    told_before = {one.told.name: one.told for one in alike if one.told is not None}
     rods = {name for spin in mechanism.spins for name in spin.joints}
     driven = {name for name, _ in problem.driven}
     for joint in mechanism.joints.values():
@@ -257,7 +297,8 @@ def _candidates(
             continue
         if balls and all(columns[k] in still for k in balls):
             rates = motions[[still[columns[k]] for k in balls]]
-            axes, told = _turns_of(body, joint, columns[balls[0]], rates)
+            before = told_before.get(joint.name)
+            axes, told = _turns_of(body, joint, columns[balls[0]], rates, before)
             for k, axis in zip(balls, axes, strict=True):
                 yield axis @ rates, _hold(joint, k, turn_name(k), told)
         names = {k: name for name, k in joint.type.freedom_of.items()}
@@ -267,23 +308,30 @@ def _candidates(
                 yield motions[still[column]], _hold(joint, k, name, None)
 
 
-def _turns_of(body: Body, joint: Joint, column: int, rates: Floats) -> tuple[Floats, Joint]:
-    """Three axes (3, 3) in which a ball's turns from a `column` on are told, that of the largest of
-    its rates (3, count) first, and the joint told by them."""
-    carrier = next(one for one in body.layout.carriers if one.column == column)
-    ball = next(part for part in joint.parts if part.type.is_ball)
-    axes = np.linalg.svd(rates)[0].T
-    # rounded, so that no plan holds digits that change with the linear algebra of a machine
-    x, y = (_rounded(axis) for axis in axes[:2])
-    x = unit(x)
-    z = unit(cross(x, y))
-    ground = [carrier.part.before.vector(axis) for axis in (x, cross(z, x), z)]
-    a, b, c = (ball.before.components(axis) for axis in ground)
-    return np.array([x, cross(z, x), z]), three_turns(joint, (a, b, c))
+def _turns_of(
+    body: Body, joint: Joint, column: int, rates: Floats, told: Joint | None
+) -> tuple[Floats, Joint]:
+    """Three axes (3, 3) in which a ball's turns from a `column` on are told, and the joint told by
+    them: those by which a design alike has it `told`, else that of the largest of its rates
+    (3, count) first."""
+    before = next(one for one in body.layout.carriers if one.column == column).part.before
+    place = next(k for k, part in enumerate(joint.parts) if part.type.is_ball)
+    if told is not None:
+        ground = [part.before.z for part in told.parts[place : place + 3]]
+    else:
+        # rounded, so that no plan holds digits that change with the linear algebra of a machine
+        x = unit(_rounded(np.linalg.svd(rates)[0][:, 0]))
+        y = perpendicular(x)
+        ground = [before.vector(axis) for axis in (x, y, cross(x, y))]
+    a, b, c = (joint.parts[place].before.components(axis) for axis in ground)
+    axes = np.array([before.components(axis) for axis in ground])
+    return axes, three_turns(joint, (a, b, c))
 
 
 def _rounded(axis: Floats) -> Vector:
-    x, y, z = (round(float(entry), tolerances.IDLE_DECIMALS) for entry in axis)
+    """An axis rounded, its largest component positive."""
+    sign = 1.0 if axis[int(np.argmax(np.abs(axis)))] > 0.0 else -1.0
+    x, y, z = (round(sign * float(entry), tolerances.IDLE_DECIMALS) for entry in axis)
     return (x, y, z)
 
 

@@ -201,6 +201,9 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         return replace(counted, first_order=first_order, diagnostics=(_unclear(doubts[0]),))
     motion = Motions(body, start, freedoms)
     idle = _idle(motion, driven)
+    families = families_of(start, freedoms, driven)
+    # inputs that drive one of several families are neither locked nor too few
+    fits = any(f.inputs == inputs and f.dimension == len(inputs) + len(idle) for f in families)
     return replace(
         counted,
         mobility=motion.mobility,
@@ -210,8 +213,8 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         idle=idle,
         redundant=redundancies(motion.general, motion.stresses, {name for name, _ in driven}),
         fixed=motion.fixed,
-        families=families_of(start, freedoms, driven),
-        diagnostics=tuple(input_notes(problem, motion, len(idle))),
+        families=families,
+        diagnostics=() if inputs and fits else tuple(input_notes(problem, motion, len(idle))),
     )
 
 

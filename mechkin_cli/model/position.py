@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite, pi
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -173,11 +173,13 @@ class Solver:
 
 
 def _plain(inputs: object, known: Mapping[str, float]) -> dict[str, float] | None:
-    """Finite numbers of known inputs; None for what has to be looked at more closely."""
+    """Numbers of known inputs, not too large; None for what has to be looked at more closely."""
     if type(inputs) is not dict:
         return None
     for name, value in inputs.items():
-        if name not in known or type(value) is not float or not isfinite(value):
+        if name not in known or type(value) is not float:
+            return None
+        if not abs(value) <= tolerances.LARGEST_TURNS:
             return None
     return inputs
 

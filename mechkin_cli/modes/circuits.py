@@ -4,36 +4,43 @@ A branch is followed up and down from a place. Where it folds, the motion goes o
 on the other side of the dead centre, with the input turning back; so branch after branch, until the
 first one comes again or something else ends the walk (`Walker`). Modes that share a branch are in
 one circuit (`joined`); where a walk is lost, that two circuits differ is not known (`undecided`).
+Along a branch, `Stationary` finds the dead centres of outputs.
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import isfinite, pi
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.plan import TrackEnd
+from mechkin_cli.mobility import lost_holds
+from mechkin_cli.plan import Demand, TrackEnd
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.search import pose_number
-from mechkin_cli.session import Ending, Runaway, find_limit
+from mechkin_cli.session import Ask, Ending, RowInputs, Runaway, find_limit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from mechkin_cli.mechanism import LockedFreedom, Wanted
     from mechkin_cli.session import Followed, InputPath, Session
     from mechkin_cli.show import Floats
 
-EndKind = Literal["dead-centre", "branch-point", "unbounded", "branch-lost", "full-turn", "far"]
+EndKind = Literal[
+    "dead-centre", "branch-point", "hold-ends", "unbounded", "branch-lost", "full-turn", "far"
+]
 
 
 class End(NamedTuple):
     """Where a branch ends: the input there (kernel units), and what may lie beyond.
 
-    `unbounded`: a slide grew out of bounds before it; `full-turn`: it came to an assembly that was
-    met before, turns ago; `far`: not found within the reach that is looked over.
+    `hold-ends`: a coordinate that holds an idle freedom cannot be kept beyond it, where the
+    mechanism itself is regular; `unbounded`: a slide grew out of bounds before it; `full-turn`: it
+    came to an assembly that was met before, turns ago; `far`: not found within the reach that is
+    looked over.
     """
 
     kind: EndKind
@@ -79,6 +86,7 @@ class Walker:
         layout = session.layout
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
+        self.lost_holds: dict[str, LockedFreedom] = {}
         self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
 
     def circuit(self, state: Floats) -> list[Branch]:
@@ -140,15 +148,7 @@ class Walker:
             followed = self.follow(np.array([value, target]), state)
             if followed.end != TrackEnd.FINISHED:
                 limit = find_limit(self.session, followed)
-                last = float(followed.inputs[self.number])
-                if limit is None:
-                    return End("branch-lost", last), places
-                if isinstance(limit, Runaway):
-                    return End("unbounded", last), places
-                at = float(limit.inputs[self.number])
-                if limit.is_dead_centre:
-                    return End("dead-centre", at, limit), places
-                return End("branch-point", at), places
+                return self._end_at(followed, limit), places
             value, state = target, followed.state
             if self.period is None and target != self.inputs[self.number]:
                 return End("far", target), places
@@ -156,6 +156,20 @@ class Walker:
                 return End("full-turn", target), places
             places.append((value, state))
         return End("far", value), places
+
+    def _end_at(self, followed: Followed, limit: Ending | Runaway | None) -> End:
+        """The end at which following stopped."""
+        at = limit if isinstance(limit, Ending) else followed
+        held = lost_holds(self.session, at.inputs, at.state)
+        self.lost_holds |= {one.name: one for one in held}
+        value = float(at.inputs[self.number])
+        fold = limit if isinstance(limit, Ending) and limit.is_dead_centre else None
+        kind: EndKind = "dead-centre" if fold else "branch-point"
+        if held:
+            kind = "hold-ends"
+        elif not isinstance(limit, Ending):
+            kind = "unbounded" if limit else "branch-lost"
+        return End(kind, value, fold)
 
     def follow(self, values: Floats, state: Floats) -> Followed:
         """The branch through a state along values of the input."""
@@ -225,3 +239,66 @@ def undecided(circuits: Sequence[Circuit], name: str) -> list[Diagnostic]:
     )
     hint = "begin at another value of it"
     return [Diagnostic("circuits-undecided", "warning", text, hint=hint)]
+
+
+class Stationary:
+    """Zeros of an output's rate along a branch: signs at many places, then Newton."""
+
+    def __init__(self, walker: Walker, branch: Branch, wanted: Wanted) -> None:
+        self.walker, self.branch = walker, branch
+        self.session, known = walker.session, walker.session.problem.quantities()
+        orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
+        self.readout = self.session.readout(orders)
+        self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
+
+    def places(self) -> list[tuple[float, float]]:
+        """(input, output) in kernel units and SI."""
+        begin, state = self.branch.places[0]
+        ends = (self.branch.lower.value, self.branch.upper.value)
+        places: list[tuple[float, float]] = []
+        if not all(isfinite(end) for end in ends):
+            return places
+        for first, last in ((begin, ends[0]), (begin, ends[1])):
+            if first == last:
+                continue
+            parts = np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
+            steps = first + (last - first) * parts
+            followed = self.walker.follow(steps, state)
+            count = followed.reached
+            rates = self._derivatives(steps[:count], followed.guess[:, :count])[1]
+            for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
+                place = self._refined(followed.guess[:, k], steps[k], steps[k + 1])
+                if place is not None and not any(place[0] == other[0] for other in places):
+                    places.append(place)
+        return sorted(places)
+
+    def _derivatives(self, values: Floats, guess: Floats) -> Floats:
+        """The output and its first two derivatives by the input, (3, places)."""
+        inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
+        rows = RowInputs(inputs, guess, rates, accelerations)
+        ask = Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout)
+        batch = self.session.run(rows, ask)
+        assert batch.outputs is not None
+        return batch.outputs[self.slots]
+
+    def _refined(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
+        """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
+        low, high = min(first, last), max(first, last)
+        value = 0.5 * (low + high)
+        sign_low: float | None = None
+        for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
+            places = np.array([first, value])
+            state = self.walker.follow(places, guess).state
+            output, rate, bend = self._derivatives(places[1:], state[:, None])[:, 0].tolist()
+            if sign_low is None:
+                ends = self._derivatives(places[:1], guess[:, None])[1, 0]
+                sign_low = float(ends) if first == low else -float(ends)
+            low, high = (value, high) if rate * sign_low > 0.0 else (low, value)
+            step = -rate / bend if bend != 0.0 else np.inf
+            following = value + step
+            if not low < following < high:
+                following = 0.5 * (low + high)
+            if abs(following - value) <= tolerances.DEAD_CENTRE_STEP:
+                return following, output
+            value = following
+        return None

@@ -12,7 +12,6 @@ which modes belong to one circuit.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,18 +27,28 @@ from mechkin_cli.assembly import (
     nothing_found,
     probe_of,
     state_at_first_row,
+    telling_points,
     wrapped,
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
-from mechkin_cli.mechanism import Problem, Wanted, dimension_of
-from mechkin_cli.modes.circuits import Branch, Circuit, End, Walker, is_open, joined, undecided
-from mechkin_cli.plan import Demand, TrackEnd
+from mechkin_cli.mechanism import Problem, dimension_of
+from mechkin_cli.mobility import hold_ends
+from mechkin_cli.modes.circuits import (
+    Branch,
+    Circuit,
+    End,
+    Stationary,
+    Walker,
+    is_open,
+    joined,
+    undecided,
+)
+from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.search import Assemblies, all_assemblies, pose_number, with_assemblies
 from mechkin_cli.session import (
-    Ask,
-    RowInputs,
+    KernelInputs,
     Session,
     followers_of,
     input_number,
@@ -47,8 +56,10 @@ from mechkin_cli.session import (
     input_path,
     input_text,
     kernel_inputs,
+    turn_of,
 )
 from mechkin_cli.show import Floats, Listed, Listing
+from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,12 +71,22 @@ UNNAMED = "-"
 
 class Mode(NamedTuple):
     """One assembly; coordinates in the file's units, angles in (-180, 180] degrees but
-    for threads."""
+    for threads.
+
+    Where coordinates tell not all modes apart, as with ball joints, which have none, `places` has
+    those of joints' points that do: their components in ground axes, `A.point.x`, file's units.
+    """
 
     name: str
     coordinates: dict[str, float]
     residual: float
     condition: float
+    places: dict[str, float]
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What tells it from others: coordinates and places."""
+        return self.coordinates | self.places
 
 
 @dataclass(frozen=True, repr=False)
@@ -104,11 +125,11 @@ class Modes(Listed):
         head = f"Modes{' at ' if place else ''}{place}: {self.sentence}"
         if not self.modes:
             return Listing(head)
-        names = tuple(self.modes[0].coordinates)
+        names = tuple(self.modes[0].numbers)
         rows = tuple(
             (
                 f"{mode.name}{'*' if mode.name == self.picked else ''}",
-                *(f"{mode.coordinates[name]:.6g}" for name in names),
+                *(f"{mode.numbers[name]:.6g}" for name in names),
                 f"{mode.residual:.1e}",
             )
             for mode in self.modes
@@ -151,7 +172,8 @@ def find_modes(
     """The assembly modes at the first row, or with the inputs `at` (by name, in the file's units)
     in place of the values there; with proofs if they are to be certified."""
     layout = session.layout
-    first = session.inputs.values[:, 0]
+    # an assembly is the same whole turns of an input away; a way to it is not
+    first = session.inputs.reduced[:, 0]
     named = name_modes(session, first)
     start = choose_start(session)
     state = state_at_first_row(session, start)
@@ -161,8 +183,10 @@ def find_modes(
         notes = start.diagnostics
         names = [named.letters[i] for i in range(named.number)]
         return _result(session, first, {}, named.found, names, letter, notes, certify)
-    place = _inputs_at(session, at)
-    ends, notes = _follow_all(session, first, place, named)
+    inputs = _inputs_at(session, at)
+    way = np.stack([session.inputs.values[:, 0], inputs.values[:, 0]], axis=1)
+    ends, notes = _follow_all(session, way, named)
+    place = inputs.reduced[:, 0]
     assemblies = all_assemblies(session, place)
     if ends:
         states = np.stack([*ends.values()], axis=1)
@@ -177,27 +201,26 @@ def find_modes(
     return _result(session, place, at, assemblies, names, letter, notes, certify)
 
 
-def _inputs_at(session: Session, at: Mapping[str, float]) -> Floats:
-    """Inputs (inputs,) in kernel units."""
+def _inputs_at(session: Session, at: Mapping[str, float]) -> KernelInputs:
+    """The inputs of the first row with those `at` in their place, in all rows."""
     problem = session.problem
     inputs = []
     for item in problem.motion.inputs:
-        value = float(item.values[0])
-        if item.name in at:
-            value = float(problem.units.to_si(at[item.name], dimension_of(item.coordinate)))
-        inputs.append(item._replace(values=np.full(problem.motion.rows, value)))
+        written = item.written_orders.copy()
+        written[0] = at.get(item.name, item.written[0])
+        values = problem.units.to_si(written[0].copy(), dimension_of(item.coordinate))
+        inputs.append(item._replace(values=np.asarray(values), written_orders=written))
     changed = replace(problem, motion=problem.motion._replace(inputs=tuple(inputs)))
-    return kernel_inputs(changed, session.layout).values[:, 0]
+    return kernel_inputs(changed, session.layout)
 
 
 def _follow_all(
-    session: Session, first: Floats, place: Floats, named: NamedModes
+    session: Session, path: Floats, named: NamedModes
 ) -> tuple[dict[str, Floats], list[Diagnostic]]:
-    """States at `place` by letter, of the branches that arrive there; a note for each that does
-    not."""
+    """States by letter of the branches that arrive at the path's end, from the first row's modes at
+    its beginning; a note for each that does not."""
     ends: dict[str, Floats] = {}
     notes = []
-    path = np.stack([first, place], axis=1)
     for number, letter in named.letters.items():
         followed = session.follow(path, named.found.states[:, number])
         if followed.end == TrackEnd.FINISHED:
@@ -227,11 +250,14 @@ def _result(
     certify: bool,
 ) -> Modes:
     problem = session.problem
-    notes = [*notes, *_search_notes(assemblies)]
+    notes = [*notes, *_search_notes(assemblies), *_family_notes(problem)]
     inputs = {
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
-    coordinates, _ = probe_of(session).read(place, assemblies.states)
+    probe = probe_of(session)
+    coordinates, points = probe.read(place, assemblies.states)
+    telling = telling_points(list(coordinates.values()), points)
+    axes = "xy" if problem.mechanism.plane else "xyz"
     order = sorted(
         range(assemblies.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )
@@ -241,6 +267,11 @@ def _result(
             {n: _shown(problem, inputs, n, float(v[i])) for n, v in coordinates.items()},
             float(assemblies.residual[i]),
             float(assemblies.condition[i]),
+            {
+                f"{probe.joints[k]}.point.{axis}": float(problem.units.from_si(value, LENGTH))
+                for k in telling
+                for axis, value in zip(axes, points[k, :, i].tolist(), strict=False)
+            },
         )
         for i in order
     )
@@ -269,6 +300,14 @@ def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: floa
     if name in inputs and turned == value:
         return inputs[name]
     return float(problem.units.from_si(turned, dimension_of(name.rpartition(".")[2])))
+
+
+def _family_notes(problem: Problem) -> list[Diagnostic]:
+    """Of which motion the modes are, where several motions have assemblies."""
+    words = "; ".join(dict.fromkeys(one.words for one in problem.stopped))
+    text = f"{words}: the modes are those of the motion in which it rests, others are not sought"
+    hint = "mobility tells which motions meet"
+    return [Diagnostic("family-modes", "note", text, hint=hint)] if words else []
 
 
 def _search_notes(assemblies: Assemblies) -> list[Diagnostic]:
@@ -398,12 +437,12 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
                 f"there is no coordinate {output[:LONGEST_NAME]}; coordinates are "
                 f"{', '.join(problem.mechanism.coordinates)}"
             )
-    path, row = session.inputs.values, 0
+    path, row = session.inputs.reduced, 0
     named = name_modes(session, path[:, row])
     if named.number == 0 and is_home_assembled(session):
         row = nearest_to_home(session, path)
         named = name_modes(session, path[:, row])
-    item, first = problem.motion.inputs[number], path[:, row]
+    item = problem.motion.inputs[number]
     leader, moved = _leader(session, number)
     at = {
         i.name: float(i.written[row])
@@ -414,16 +453,29 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     if named.number == 0:
         note = nothing_found(session, named.found)
         return Ranges(item.name, unit, at, (), (), (*problem.diagnostics, note))
-    walker = Walker(session, leader, first, input_path(session, leader, row))
-    ranges, circuits = _Survey(session, named, walker, number, outputs).ranges()
+    way = input_path(session, leader, row)
+    # inputs that follow others do so with their whole turns
+    first = path[:, row] if way is None else session.inputs.values[:, row]
+    walker = Walker(session, leader, first, way)
+    left_out = 0.0 if way else float(session.inputs.whole[number, row])
+    ranges, circuits = _Survey(session, named, walker, number, left_out, outputs).ranges()
     # in the order of the letters: A, B, ..., AA
     shown = tuple(tuple(sorted(modes, key=lambda m: (len(m), m))) for modes, _ in circuits)
     notes = (
         *problem.diagnostics,
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
+        *_hold_notes(walker),
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
+
+
+def _hold_notes(walker: Walker) -> list[Diagnostic]:
+    """That ends of ranges are those of what holds idle freedoms, and not of the mechanism."""
+    if not walker.lost_holds:
+        return []
+    text, hint = hold_ends(walker.lost_holds.values())
+    return [Diagnostic("hold-ends", "warning", text, hint=hint)]
 
 
 def _leader(session: Session, number: int) -> tuple[int, set[str]]:
@@ -464,7 +516,8 @@ def _lost_ends(item: Range) -> int:
 
 
 class _Survey:
-    """The circuits of all modes, one after the other; values are those of the input `shown`."""
+    """The circuits of all modes, one after the other; values are those of the input `shown`, which
+    stands the whole `turns` farther than the walker has it."""
 
     def __init__(
         self,
@@ -472,10 +525,13 @@ class _Survey:
         named: NamedModes,
         walker: Walker,
         shown: int,
+        turns: float,
         outputs: Sequence[str],
     ) -> None:
         self.session, self.problem, self.layout = session, session.problem, session.layout
         self.named, self.walker, self.shown = named, walker, shown
+        turn = turn_of(self.problem, self.problem.motion.inputs[shown])
+        self.farther = turns * float(turn) if turn else 0.0
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
 
@@ -527,7 +583,7 @@ class _Survey:
         """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
         extremes = []
         for wanted in self.outputs if branch.places else ():
-            for at, value in _Stationary(self, branch, wanted).places():
+            for at, value in Stationary(self.walker, branch, wanted).places():
                 output = float(self.problem.units.from_si(value, wanted.dimension))
                 extremes.append(OutputExtreme(wanted.name, output, self._limit_value(at - shift)))
         return tuple(extremes)
@@ -535,67 +591,4 @@ class _Survey:
     def _limit_value(self, value: float) -> float:
         if self.shown != self.walker.number:
             value = float(self.walker.at(np.array([value]))[0, self.shown, 0]) + 0.0
-        return input_number(self.problem, self.layout, self.shown, value).value
-
-
-class _Stationary:
-    """Zeros of an output's rate along a branch: signs at many places, then Newton."""
-
-    def __init__(self, survey: _Survey, branch: Branch, wanted: Wanted) -> None:
-        self.walker, self.branch = survey.walker, branch
-        self.session, known = survey.session, survey.problem.quantities()
-        orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
-        self.readout = self.session.readout(orders)
-        self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
-
-    def places(self) -> list[tuple[float, float]]:
-        """(input, output) in kernel units and SI."""
-        begin, state = self.branch.places[0]
-        ends = (self.branch.lower.value, self.branch.upper.value)
-        places: list[tuple[float, float]] = []
-        if not all(isfinite(end) for end in ends):
-            return places
-        for first, last in ((begin, ends[0]), (begin, ends[1])):
-            if first == last:
-                continue
-            parts = np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)[:-1]
-            steps = first + (last - first) * parts
-            followed = self.walker.follow(steps, state)
-            count = followed.reached
-            rates = self._derivatives(steps[:count], followed.guess[:, :count])[1]
-            for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
-                place = self._refined(followed.guess[:, k], steps[k], steps[k + 1])
-                if place is not None and not any(place[0] == other[0] for other in places):
-                    places.append(place)
-        return sorted(places)
-
-    def _derivatives(self, values: Floats, guess: Floats) -> Floats:
-        """The output and its first two derivatives by the input, (3, places)."""
-        inputs, rates, accelerations = np.ascontiguousarray(self.walker.at(values))
-        rows = RowInputs(inputs, guess, rates, accelerations)
-        ask = Ask(Demand.VELOCITY | Demand.ACCELERATION, self.readout)
-        batch = self.session.run(rows, ask)
-        assert batch.outputs is not None
-        return batch.outputs[self.slots]
-
-    def _refined(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
-        """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
-        low, high = min(first, last), max(first, last)
-        value = 0.5 * (low + high)
-        sign_low: float | None = None
-        for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
-            places = np.array([first, value])
-            state = self.walker.follow(places, guess).state
-            output, rate, bend = self._derivatives(places[1:], state[:, None])[:, 0].tolist()
-            if sign_low is None:
-                ends = self._derivatives(places[:1], guess[:, None])[1, 0]
-                sign_low = float(ends) if first == low else -float(ends)
-            low, high = (value, high) if rate * sign_low > 0.0 else (low, value)
-            step = -rate / bend if bend != 0.0 else np.inf
-            following = value + step
-            if not low < following < high:
-                following = 0.5 * (low + high)
-            if abs(following - value) <= tolerances.DEAD_CENTRE_STEP:
-                return following, output
-            value = following
-        return None
+        return input_number(self.problem, self.layout, self.shown, value).value + self.farther

@@ -12,6 +12,7 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Sequence
+from itertools import cycle
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -268,7 +269,7 @@ _ALONG = 8
 
 _GAP, _GAP_ALPHA = "#eac54f", 0.25
 _MARKS = ("#a40e26", "#57606a")
-_DOUBTFUL = ("o", "s", "D")
+_DOUBTFUL = ("o", "s", "D", "^", "v")
 
 
 def format_of(path: PurePath) -> str:
@@ -392,7 +393,7 @@ def _single_rows(axes: Axes, picture: Picture, x: Floats, y: Floats, colour: Col
     alone = known & ~before & ~behind
     if alone.any():
         axes.plot(x[alone], y[alone], ".", color=colour)
-    for (_, rows), shape in zip(picture.doubtful, _DOUBTFUL, strict=False):
+    for (_, rows), shape in zip(picture.doubtful, cycle(_DOUBTFUL), strict=False):
         axes.plot(x[rows], y[rows], shape, markersize=5, markerfacecolor="none", color=colour)
 
 
@@ -427,7 +428,7 @@ def _legend(axes: Axes, picture: Picture, over_parameter: bool, *, with_marks: b
 
     lines = axes.get_legend_handles_labels()[0]
     entries: list[Any] = list(lines) if len(lines) > 1 or picture.is_plane else []
-    for (words, _), shape in zip(picture.doubtful, _DOUBTFUL, strict=False):
+    for (words, _), shape in zip(picture.doubtful, cycle(_DOUBTFUL), strict=False):
         entries.append(_entry(words, color=_MARKS[1], marker=shape, markerfacecolor="none"))
     if with_marks:
         style = {"linestyle": "--"} if over_parameter else {"marker": "X"}

@@ -371,8 +371,11 @@ def explain(errors: Iterable[dict[str, Any]], document: Document) -> list[Diagno
     for error in errors:
         if error["type"] == "extra_forbidden":
             *mapping, key = error["loc"]
-            close = nearest(str(key), (error.get("ctx") or {}).get("known") or [])
-            misspelt.add((*mapping, close or ""))
+            context = error.get("ctx") or {}
+            known = context.get("known") or []
+            misspelt.add((*mapping, nearest(str(key), known) or ""))
+            advice = str(context.get("advice"))
+            misspelt |= {(*mapping, each) for each in known if f"{each}:" in advice.split()}
     diagnostics = (
         _diagnostic(error, document)
         for error in errors
@@ -501,6 +504,11 @@ def _wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
         return _wrong_length(context, node)
     if name in _KINDS:
         expected, hint = _KINDS[name]
+        if _KINDS[name] is _LIST and isinstance(node, ScalarNode) and 2 < len(node.text) < 40:
+            # a shorter one is an axis by its letter
+            hint = f"write it in brackets: [{node.text}]"
+        elif _KINDS[name] is _LIST and isinstance(node, Mapping):
+            hint = "write it in brackets, [{key: value}], or behind a dash"
         return "wrong-kind", f"expected {expected}, found {_kind(node)}", hint
     if name == "string_pattern_mismatch":
         expected = context.get("expected") or f"of the form {context.get('pattern')}"

@@ -298,11 +298,16 @@ class TreeBuilder:
 
     def _report_empty(self, key: ScalarNode) -> None:
         name, colon, rest = key.text.partition(":")
+        message = f"the key '{shortened(key.text)}' has no value"
+        line, column = key.mark
+        before, after = self._lines[line - 1][: column - 1], self._lines[line - 1][column - 1 :]
         if key.style is Style.PLAIN and colon and rest:
             hint = f"write a blank after the colon: {name}: {rest}"
+        elif before.rstrip().endswith(",") and not after[len(key.text) :].lstrip().startswith(":"):
+            message = f"the comma before '{shortened(key.text)}' ends the value, and a key follows"
+            hint = "write a list in brackets, [1, 2], and a decimal with a dot, 0.5"
         else:
             hint = "write a value, {} for an empty mapping, or remove the key"
-        message = f"the key '{shortened(key.text)}' has no value"
         self._report("empty-value", message, key.mark, hint)
 
     def _check_properties(

@@ -521,7 +521,8 @@ def _touched(stop: Stop, times: Sequence[str]) -> Diagnostic:
     more = f" and {len(times) - 1} more times" if len(times) > 1 else ""
     text = f"{stop.words} is touched at {times[0]}{more}, but not passed"
     hint = "the response goes on; move the value of at: if it is to end there"
-    return Diagnostic("stop-touched", "note", text, stop.place, hint=hint)
+    rounding = "up to 1e-12 of its values beside is rounding"
+    return Diagnostic("stop-touched", "note", text, stop.place, rounding, hint=hint)
 
 
 def place_numbers(session: Session, state: Floats) -> tuple[Number, ...]:

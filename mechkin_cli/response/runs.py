@@ -22,6 +22,7 @@ from mechkin_cli.mechanism import (
     Moments,
     MotionInputs,
     dimension_of,
+    eliminated,
     read_for,
     response_problem,
 )
@@ -108,8 +109,9 @@ def _rates(
         return rates
     # at its dead centre a coordinate has no rate: any other than zero means infinite ones of others
     lost = lost_rates(session, np.zeros(1, dtype=np.intp), state[:, None])[:, 0]
+    # behind the inputs is what is held, at rest
     inputs = session.problem.motion.inputs
-    named = [one.name for one, wrong in zip(inputs, lost & (rates != 0.0), strict=True) if wrong]
+    named = [one.name for k, one in enumerate(inputs) if lost[k] and rates[k] != 0.0]
     if not named:
         return rates
     return Diagnostic(
@@ -144,7 +146,7 @@ def solve_rates(
     right = np.array([one.rate or 0.0 for one in with_rate])
     for number in range(free, count):
         right = right - by_rate[:, number] * rates[number]
-    solved = _solved(by_rate[:, :free], right)
+    solved = eliminated(by_rate[:, :free].tolist(), right.tolist(), tolerances.RANK_ZERO)
     if solved is None:
         names = ", ".join(f"{one.name}_dot" for one in with_rate)
         return Diagnostic(
@@ -156,33 +158,6 @@ def solve_rates(
             "with each of them",
         )
     return np.array([*solved, *rates[free:]])
-
-
-def _solved(matrix: Floats, right: Floats) -> list[float] | None:
-    """Gauss's elimination with rows scaled and the largest pivot; None where the rows depend on one
-    another."""
-    size = len(right)
-    rows = [[float(x) for x in row] + [float(b)] for row, b in zip(matrix, right, strict=True)]
-    for row in rows:
-        scale = max((abs(x) for x in row[:-1]), default=0.0)
-        if not scale > 0.0:
-            return None
-        row[:] = [x / scale for x in row]
-    for k in range(size):
-        pivot = max(range(k, size), key=lambda i: abs(rows[i][k]))
-        rows[k], rows[pivot] = rows[pivot], rows[k]
-        if not abs(rows[k][k]) > tolerances.RANK_ZERO:
-            return None
-        for i in range(k + 1, size):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    values = [0.0] * size
-    for k in reversed(range(size)):
-        rest = rows[k][size]
-        for j in range(k + 1, size):
-            rest -= rows[k][j] * values[j]
-        values[k] = rest / rows[k][k]
-    return values
 
 
 _DIRECTIONS = {"up": 1, "down": -1, "any": 0}

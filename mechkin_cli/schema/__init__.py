@@ -48,6 +48,6 @@ __getattr__, __dir__ = lazy_names(
         "study": "StudyFile validate_study",
         "tables": "Coefficients",
         "validation": "InvalidDataError validate",
-        "view": "ShapeOfLink ViewSection",
+        "view": "PartBetween ShapeOfLink ViewSection",
     },
 )

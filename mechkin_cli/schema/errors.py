@@ -59,7 +59,9 @@ def _completed(error: dict[str, Any], data: object, form: type[Section]) -> dict
     section, descriptions = known
     context = {
         "known": list(descriptions),
-        "advice": section.advice.get(str(key)) or advice_for_key(section.__name__, str(key)),
+        "advice": None
+        if str(key).casefold() in descriptions
+        else section.advice.get(str(key)) or advice_for_key(section.__name__, str(key)),
         "purpose": descriptions.get(str(key)),
     }
     return error | {"ctx": context}
@@ -466,10 +468,14 @@ JOINT_KEYS: Final = {
         "the two links stand in links: [first, second]; coordinates are of the second against the "
         "first",
     ),
-    **dict.fromkeys(("at", "position", "location", "origin"), "the place is point:, a vector"),
+    **dict.fromkeys(
+        ("at", "position", "location", "origin"), "write point: and its place, a vector"
+    ),
+    "direction": "write axis: [0, 0, 1]",
+    "axis": "this pair has no axis; leave it out",
     **dict.fromkeys(
         ("initial", "initial_value", "value", "theta0", "angle"),
-        "every coordinate is zero as drawn; which assembly is meant says assembly: {near: ...}",
+        "every coordinate is zero as drawn; assembly: {near: ...} selects the assembly",
     ),
 }
 """Keys of every joint."""

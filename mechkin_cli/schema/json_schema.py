@@ -305,6 +305,9 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("RackCoupling", "joints"): ["P", "S"],
     ("RackCoupling", "pressure_angle"): "20 deg",
     ("ShapeOfLink", "points"): ["O1", [0, 10, 0]],
+    ("PartBetween", "kind"): "spring",
+    ("PartBetween", "points"): ["P", "Q"],
+    ("ViewSection", "between"): [{"kind": "spring", "points": ["P", "Q"]}],
 }
 
 INSTEAD_OF_ANY: Final[dict[str, Any]] = {

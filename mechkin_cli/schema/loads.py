@@ -3,7 +3,7 @@
 A value may be an expression of coordinates, their rates and `time`, or `{table: file.csv}`.
 """
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
 from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, by_word, refuse
 from mechkin_cli.schema.scalars import (
@@ -97,6 +97,20 @@ def check_free_fall(g: Any, direction: Any) -> None:
         raise refuse("two-choices", text, "write g: standard, or no direction", "direction")
 
 
+ELEMENT: Final = {
+    **dict.fromkeys(("k", "spring_constant", "rate"), "write stiffness: 2 N/mm"),
+    **dict.fromkeys(("c", "d", "damping_constant", "coefficient"), "write damping: 2 N*s/mm"),
+    **dict.fromkeys(("free_length", "length", "rest", "rest_length", "l0"), "write free: 80 mm"),
+    **dict.fromkeys(("force", "pretension", "initial_force"), "write preload: 5 N"),
+}
+"""What to write for other words of springs and dampers."""
+
+BETWEEN: Final = ELEMENT | dict.fromkeys(
+    ("from", "to", "points", "ends", "links", "a", "b", "point1", "point2"),
+    "write between: [P, Q] with two names from points:",
+)
+
+
 class ForceOnLink(InRuns):
     """A force at a point of a link."""
 
@@ -126,6 +140,8 @@ class TorqueOnLink(InRuns):
 class ForceOnJoint(InRuns):
     """A force on the coordinate s of a joint: it acts on the second link, against the first."""
 
+    advice: ClassVar[dict[str, str]] = {"force": "write value: 5 N"}
+
     tag = "(force at joint)"
 
     type: Literal["force"]
@@ -138,6 +154,8 @@ class ForceOnJoint(InRuns):
 class TorqueOnJoint(InRuns):
     """A torque on the coordinate theta of a joint: on the second link, against the first."""
 
+    advice: ClassVar[dict[str, str]] = {"torque": "write value: 5 N*m"}
+
     tag = "(torque at joint)"
 
     type: Literal["torque"]
@@ -149,6 +167,8 @@ class TorqueOnJoint(InRuns):
 
 class SpringBetweenPoints(InRuns):
     """A straight spring; its pull is preload + stiffness * (distance - free)."""
+
+    advice: ClassVar[dict[str, str]] = BETWEEN
 
     type: Literal["spring"]
     between: Between
@@ -163,6 +183,8 @@ class SpringBetweenPoints(InRuns):
 
 class SpringAtJoint(InRuns):
     """A spring on a coordinate; it resists with preload + stiffness * (coordinate - free)."""
+
+    advice: ClassVar[dict[str, str]] = ELEMENT
 
     tag = "(spring at joint)"
 
@@ -182,6 +204,8 @@ class SpringAtJoint(InRuns):
 class DamperBetweenPoints(InRuns):
     """A straight damper; it resists the rate of the distance."""
 
+    advice: ClassVar[dict[str, str]] = BETWEEN
+
     type: Literal["damper"]
     between: Between
     """Two named points."""
@@ -191,6 +215,8 @@ class DamperBetweenPoints(InRuns):
 
 class DamperAtJoint(InRuns):
     """A damper on a coordinate; it resists the rate of the coordinate."""
+
+    advice: ClassVar[dict[str, str]] = ELEMENT
 
     tag = "(damper at joint)"
 

@@ -127,8 +127,23 @@ def law_tag(mapping: dict[str, Any]) -> str | None:
     return f"({word})" if isinstance(word, str) and word in LAWS else None
 
 
+ROWS: Final = {
+    **dict.fromkeys(("start", "begin", "min", "first"), "write from: 0"),
+    **dict.fromkeys(("end", "stop", "max", "last", "until"), "write to: 90"),
+    **dict.fromkeys(("steps", "n", "rows", "number"), "write count: 37, or step: 5"),
+    **dict.fromkeys(("dt", "increment", "by", "timestep", "time_step"), "write step: 0.1"),
+}
+"""What to write for other words of rows."""
+
+
 class WithRates(Section):
     """The rates of inputs that have values for rows."""
+
+    advice: ClassVar[dict[str, str]] = {
+        **ROWS,
+        **dict.fromkeys(("speed", "velocity", "omega", "rpm"), "write rate: 10 rad/s"),
+        "alpha": "write acceleration: 1 rad/s^2",
+    }
 
     rate: CoordinateRate = "0"
     """Rate of the input, the same in every row."""
@@ -186,6 +201,8 @@ class FollowingInput(Section):
 
 class TimeSection(Spaced):
     """The moments of the rows, where the inputs are given by laws."""
+
+    advice: ClassVar[dict[str, str]] = ROWS
 
     tag = "(spaced)"
 

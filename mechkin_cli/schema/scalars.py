@@ -64,7 +64,12 @@ def expression_text(value: Any) -> str:
     text = value if isinstance(value, str) else _number_text(value)
     if text is None:
         is_list = isinstance(value, (list, tuple))
-        hint = 'a vector is written in quotes: "[x, y, z]"' if is_list else "for example 0.5 in"
+        hint = "for example 0.5 in"
+        if is_list:
+            hint = (
+                "write one number without brackets; where an expression may be a vector, it is "
+                'written in quotes: "[x, y, z]"'
+            )
         raise refuse("not-a-number", "expected a number or an expression", hint)
     text = text.strip()
     if not text:

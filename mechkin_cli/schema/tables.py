@@ -4,7 +4,7 @@ Also `coefficients:`, the dense system of all reactions at one row, and `balance
 sweep over a cycle.
 """
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeVar
 
 from mechkin_cli.schema.base import (
     NOTHING,
@@ -51,6 +51,13 @@ TAKEN_FOR_EDITORS = (
 
 class Column(Section):
     """One column. A plain text stands for a column whose label and value are that text."""
+
+    advice: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("unit", "units"), "a column is in the units of the file, units:"),
+        **dict.fromkeys(("name", "title", "header"), "write label: torque"),
+        **dict.fromkeys(("digits", "precision", "places", "format"), "write decimals: 3"),
+        **dict.fromkeys(("expression", "formula", "quantity", "of"), "write value: O.theta"),
+    }
 
     label: Text
     """Heading of the column."""

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import UnionType
 from typing import Any, Final, Literal, Union
 
+from mechkin_cli.diagnostics import nearest
 from mechkin_cli.schema.base import (
     AnySection,
     FormChoice,
@@ -120,11 +121,16 @@ def validate(data: object) -> AnyFile:
     """The mechanism file that plain data describes, with `plane:` one in a plane; raises
     `InvalidDataError`."""
     form: type[AnyFile] = MechanismFile
-    if isinstance(data, dict) and "plane" in data:
+    if isinstance(data, dict) and any(_is_plane(*entry) for entry in data.items()):
         from mechkin_cli.schema.plane import PlaneFile
 
         form = PlaneFile
     return validated(form, data, name_errors(data))
+
+
+def _is_plane(key: object, value: object) -> bool:
+    """Whether an entry of the file is `plane: xy`, or this misspelt."""
+    return key == "plane" or (value == "xy" and nearest(str(key), ["plane"]) is not None)
 
 
 def validated(

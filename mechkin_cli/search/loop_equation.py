@@ -16,7 +16,8 @@ Equations, each of their roots one assembly:
   (s, s^2). Solved for those of x1, cos^2 + sin^2 = 1, or s^2 = s s, is of fourth degree in x3.
 - A distance and one motion: the distance of two points, of second degree.
 - Two motions in a plane and a turn square to it at the cut joint: the first keeps the distance of
-  that joint's point from its axis, or line; of second degree.
+  that joint's point from its axis, or line; of second degree. One slide square to the plane, as in
+  RRCR, takes up the heights, and has one place.
 - Two parallel turns and a slide square to them at the cut joint: the sum of the turns is known, so
   that the offset from the slide's line is of first degree in (cos, sin) of one of them.
 - A turn through the centre of two crossed axes at the cut joint (Hooke): their angle.
@@ -270,8 +271,10 @@ def _equation_of(chain: Chain) -> Equation | None:
         axes = {0: (), 1: (frame.z,), 2: (frame.x, frame.y)}[len(motions) - 3]
         slides = (ChainMotion(True, axis, frame.o) for axis in axes)
         return _with_sphere((*chain.motions, *slides), chain)
-    if motions == ["turn"] and len(chain.motions) == 2 and _is_planar(chain):
-        return _in_plane(chain)
+    if motions in (["turn"], ["turn", "slide"]):
+        flat = _flattened(chain)
+        if flat is not None:
+            return _in_plane(flat)
     if motions == ["turn"] and len(chain.motions) == 2 and _is_spherical(chain):
         return _directed(chain)
     if motions == ["turn", "slide"] and len(chain.motions) == 4:
@@ -283,17 +286,24 @@ def _equation_of(chain: Chain) -> Equation | None:
     return None
 
 
-def _is_planar(chain: Chain) -> bool:
-    """Whether all turns are about, and all slides square to, the cut joint's axis, and its two
-    halves lie in one plane."""
+def _flattened(chain: Chain) -> Chain | None:
+    """The chain in the plane square to the cut joint's axis, without the one slide along that axis
+    that it may have; None where turns are not about it, other slides not square to it, or its
+    halves in different planes and no slide joins them."""
     normal, limit = chain.first.z, tolerances.PARALLEL
     if dot(normal, chain.second.z) < 0.0 or not are_parallel(normal, chain.second.z):
-        return False
-    if abs(dot(normal, subtract(chain.first.o, chain.second.o))) > limit:
-        return False
-    if any(x.slide and abs(dot(x.axis, normal)) > limit for x in chain.motions):
-        return False
-    return all(x.slide or are_parallel(x.axis, normal) for x in chain.motions)
+        return None
+    flat = tuple(x for x in chain.motions if not (x.slide and are_parallel(x.axis, normal)))
+    square = len(chain.motions) - len(flat) + len(chain.joint.type.chain) - 1
+    height = dot(normal, subtract(chain.second.o, chain.first.o))
+    if len(flat) != 2 or square > 1 or (square == 0 and abs(height) > limit):
+        return None
+    if any(x.slide and abs(dot(x.axis, normal)) > limit for x in flat):
+        return None
+    if not all(x.slide or are_parallel(x.axis, normal) for x in flat):
+        return None
+    second = chain.second._replace(o=subtract(chain.second.o, scale(height, normal)))
+    return chain._replace(motions=flat, second=second)
 
 
 def _is_spherical(chain: Chain) -> bool:

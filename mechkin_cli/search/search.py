@@ -32,7 +32,7 @@ from mechkin_cli.search.clusters import (
     upstream_states,
 )
 from mechkin_cli.search.loop_equation import count_assemblies
-from mechkin_cli.session import Ask, RowInputs, Session, Structure, run
+from mechkin_cli.session import Ask, RowInputs, Session, Structure, lies_in_family, run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -484,13 +484,21 @@ def all_assemblies(
     session: Session, inputs: Floats, within: Within | None = None, *, thorough: bool = True
 ) -> Assemblies:
     """All assemblies at some inputs (inputs,) that random starts find, or those `within` a box;
-    not `thorough`: most of them, where one is wanted."""
+    not `thorough`: most of them, where one is wanted. Of a mechanism that is held in a family those
+    of the family."""
     turns, about = session.problem.assembly.turns, _named_turns(session)
     if within is not None:
-        return assemblies(session.layout, session.plan, inputs, turns, within, about, thorough)
-    quick = _everywhere(session.structure, inputs, turns, about, False)
-    final = quick.complete or quick.cut or not thorough
-    return quick if final else _everywhere(session.structure, inputs, turns, about, True)
+        found = assemblies(session.layout, session.plan, inputs, turns, within, about, thorough)
+    else:
+        found = _everywhere(session.structure, inputs, turns, about, False)
+        if thorough and not (found.complete or found.cut):
+            found = _everywhere(session.structure, inputs, turns, about, True)
+    if not session.problem.stopped:
+        return found
+    own = lies_in_family(session, inputs, found.states)
+    return found._replace(
+        states=found.states[:, own], residual=found.residual[own], condition=found.condition[own]
+    )
 
 
 @remembered

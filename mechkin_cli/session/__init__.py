@@ -36,6 +36,7 @@ __getattr__, __dir__ = lazy_names(
         "assembly_size run",
         "path": "places_at places_of",
         "redundancy": "equations_that_follow",
-        "session": "Between Continued Exchanged Packing Session exchange find_limit moves_freely",
+        "session": "Between Continued Exchanged Packing Session exchange find_limit lies_in_family "
+        "moves_freely",
     },
 )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Number
 from mechkin_cli.exact import PI
 from mechkin_cli.kernel import _kernel, functions
@@ -37,9 +38,6 @@ if TYPE_CHECKING:
 # (rad), it is subtracted in three parts with their rounding errors (W. J. Cody, W. Waite, Software
 # Manual for the Elementary Functions, 1980; D. E. Knuth, The Art of Computer Programming 2, 4.2.2).
 
-MOST_TURNS = float(1 << 52)
-"""Whole turns beyond which an angle says nothing of the place within a turn."""
-
 _PART_BITS = 26
 """Bits of the first parts of a turn: their products with as many bits of turns are exact."""
 
@@ -61,7 +59,7 @@ def without_turns(values: Floats, turn: Fraction) -> tuple[Floats, Floats]:
     """
     size = float(turn)
     most = float(np.max(np.abs(values), initial=0.0))
-    if not 0.5 * size < most <= MOST_TURNS * size:
+    if not 0.5 * size < most <= tolerances.LARGEST_TURNS * size:
         return values, np.zeros_like(values)
     if Fraction(size) == turn:
         rest = np.fmod(values, size)  # exact by IEEE 754

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,9 +45,11 @@ from mechkin_cli.session.kernel_run import (
     run as run_kernel,
 )
 from mechkin_cli.structure import SolverGraph, exchanged, is_redundant
-from mechkin_cli.tolerances import FREE_INPUT_MISS, FREE_INPUT_STEP
+from mechkin_cli.tolerances import FREE_INPUT_MISS, FREE_INPUT_STEP, STOPPED_MISS
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.mechanism import Assembly, Attached, Problem, Wanted
     from mechkin_cli.session.double_double import Precise
@@ -397,29 +400,60 @@ def find_limit(session: Session, followed: Followed) -> Ending | Runaway | None:
 
 def moves_freely(session: Session, inputs: Floats, state: Floats) -> bool:
     """Whether the loops still close, to third order, a little further on each input in turn, with
-    the others held; False also where the rates are not known, as next to a dead centre.
+    the others held; False also where the rates are not known, as next to a dead centre. What is
+    held because the loops stop it is no input.
 
     Args:
         session: the mechanism as it is driven.
         inputs: (inputs,) in kernel units.
         state: (states,) closed there.
     """
-    limits = step_limits()
-    for number in range(inputs.size):
-        direction = np.zeros(inputs.size)
-        direction[number] = 1.0
-        stepper = _kernel.Stepper.straight(
-            session.plan, inputs.tolist(), direction.tolist(), limits
-        )
-        node = stepper.close(0.0, state.tolist())
-        if node is None:
-            return False
-        guess = np.asarray(stepper.predict(node, FREE_INPUT_STEP))[:, None]
-        moved = (inputs + FREE_INPUT_STEP * direction)[:, None]
-        batch = session.run(RowInputs(moved, guess), Ask(iterations=0))
-        if not batch.residual[0] <= FREE_INPUT_MISS:
-            return False
-    return True
+    stopped = _stopped(session)
+    return all(
+        _open_beside(session, inputs, state, number) <= FREE_INPUT_MISS
+        for number in range(inputs.size)
+        if number not in stopped
+    )
+
+
+def lies_in_family(session: Session, inputs: Floats, states: Floats) -> NDArray[np.bool_]:
+    """Assemblies (assemblies,) at which the loops do not stop what is held to keep the mechanism in
+    its family, to first order: elsewhere they stop it themselves. Also those at which rates are not
+    known.
+
+    Args:
+        session: the mechanism as it is driven.
+        inputs: (inputs,) in kernel units.
+        states: (states, assemblies) closed there.
+    """
+    stopped = _stopped(session)
+    lies = [
+        not any(_open_beside(session, inputs, state, k) > STOPPED_MISS for k in stopped)
+        for state in states.T
+    ]
+    return np.array(lies, dtype=np.bool_)
+
+
+def _stopped(session: Session) -> list[int]:
+    """Numbers of the inputs that are held since the loops stop them, but not to first order."""
+    held = {one.coordinate for one in session.problem.stopped}
+    return [number for number, coordinate in enumerate(session.driven) if coordinate in held]
+
+
+def _open_beside(session: Session, inputs: Floats, state: Floats, number: int) -> float:
+    """How far the loops are open a little further on one input, where its first and second
+    derivatives lead; nan where these are not known."""
+    direction = np.zeros(inputs.size)
+    direction[number] = 1.0
+    stepper = _kernel.Stepper.straight(
+        session.plan, inputs.tolist(), direction.tolist(), step_limits()
+    )
+    node = stepper.close(0.0, state.tolist())
+    if node is None:
+        return nan
+    guess = np.asarray(stepper.predict(node, FREE_INPUT_STEP))[:, None]
+    moved = (inputs + FREE_INPUT_STEP * direction)[:, None]
+    return float(session.run(RowInputs(moved, guess), Ask(iterations=0)).residual[0])
 
 
 # Beyond a dead centre: a joint coordinate is driven in place of one input, which is found instead.

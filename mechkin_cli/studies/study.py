@@ -92,14 +92,17 @@ PIECE_NUMBERS = 2_000_000
 
 MOST_IN_PIECE = 4096
 RESPONSES_IN_PIECE = 512
-"""Variants of a piece: enough to fill the kernel's packs and threads, few enough to lose little."""
+LEAST_IN_PIECE = 64
+PIECES = 20
+"""Variants of a piece: enough to fill the kernel's packs and threads, few enough to lose little;
+and of a small study so few that its progress is seen in so many steps."""
 
 TRIAL = 16
 TRIAL_SECONDS = 0.25
 """Variants of the first trial; a trial that takes less than this is made again with more."""
 
 Progress = Callable[[int, int], None]
-"""Called with how many variants are done, and of how many."""
+"""Called with how many variants are done, and of how many: at first, and after each piece."""
 
 
 class Workers(NamedTuple):
@@ -146,10 +149,12 @@ class Study:
     def piece(self) -> int:
         """Variants of a piece."""
         question = self.question
+        wished = max(LEAST_IN_PIECE, self.variants // PIECES)
         if question.run != SWEEP:
-            return RESPONSES_IN_PIECE
+            return min(RESPONSES_IN_PIECE, wished)
         wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
-        return max(1, min(MOST_IN_PIECE, PIECE_NUMBERS // (self.model.problem.motion.rows * wide)))
+        most = PIECE_NUMBERS // (self.model.problem.motion.rows * wide)
+        return max(1, min(MOST_IN_PIECE, wished, most))
 
     def _sources(self) -> dict[str, str]:
         """Digests of what the results of this study follow from."""
@@ -283,6 +288,8 @@ class Study:
         """Pieces, of which a worker that died may have left several parts."""
         whole = {task.piece: task for task in tasks}
         parts: dict[int, list[tuple[Task, dict[str, Records]]]] = {}
+        if progress is not None and tasks:
+            progress(done, self.variants)
         for part, tables in self.computed(tasks, workers):
             task = whole[part.piece]
             own = parts.setdefault(part.piece, [])

@@ -334,19 +334,8 @@ def _lost_hold_note(
     if not held:
         return None
     places = _place(session, followed, at.inputs)
-    words = "; ".join(dict.fromkeys(one.words for one in held))
-    conventions = ", ".join(dict.fromkeys(one.convention for one in held))
-    names = [one.name for one in held if one.cure == f"drive {one.name}"]
-    drive = f"drive it (inputs: {{{names[0]}: ...}}) so that it can go on, or " if names else ""
-    return _error(
-        "hold-ends",
-        rows,
-        places,
-        f"{words}; {conventions}, and cannot be kept there beyond this place, where the mechanism "
-        "itself has no dead centre",
-        _words(places),
-        f"{drive}put the idle links elsewhere, by the drawing or by assembly: {{near: ...}}",
-    )
+    text, hint = mobility.hold_ends(held)
+    return _error("hold-ends", rows, places, text, _words(places), hint)
 
 
 def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Diagnostic:

@@ -49,7 +49,7 @@ from mechkin_cli.tolerances import (
     REACTION_ROUNDING,
     RESTS,
 )
-from mechkin_cli.verdict import Status, rates_are_clear
+from mechkin_cli.verdict import CONDITION_LIMITS, Status, has_rates, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -166,7 +166,7 @@ def _as_written(session: Session, rows: NDArray[np.intp]) -> tuple[Floats | None
 def judge_dead_centres(session: Session, rows: SweepRows, condition: Floats) -> None:
     """Finds the rows that stand at a dead centre as nearly as a double can say, among those whose
     condition (rows,) leaves it open, and says so."""
-    judged = np.isin(rows.status, (Status.ok, Status.near_singular, Status.rank_unclear))
+    judged = np.isin(rows.status, (Status.ok, *CONDITION_LIMITS))
     near = rows.reached & judged & ~rates_are_clear(condition)
     if not near.any() or not session.driven:
         return
@@ -269,7 +269,7 @@ def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) 
     """
     assert batch.condition is not None
     bad = ~(batch.condition <= CONDITION_FEW_DIGITS)
-    numbers = np.flatnonzero(rows.reached & bad & np.isin(rows.status, _WITH_RATES))
+    numbers = np.flatnonzero(rows.reached & bad & has_rates(rows.status))
     if not numbers.size:
         return []
     try:
@@ -290,9 +290,6 @@ def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) 
     if not few.any():
         return []
     return [_few_digits_note(numbers, few, digits, batch.condition)]
-
-
-_WITH_RATES = (Status.ok, Status.near_singular)
 
 
 def _in_double_double(

@@ -116,7 +116,7 @@ def unsupported(result: RunRows) -> FrictionVerdict:
                     "hold it; forces stay empty",
                     measured=f"{most:.6g} {problem.units.label(dimension)}",
                     limit=f"{tolerances.UNIQUE_CELL:g} of the largest reaction",
-                    hint="support it by a constraint more, or take the load's part away",
+                    hint="add a constraint along that motion, or remove that component of the load",
                 )
             )
         lost |= where
@@ -294,7 +294,7 @@ def _rows(where: Bools) -> str:
 
 
 def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
-    """What forces are judged by beside reactions, to be read in the run of `wanted`."""
+    """Quantities beside reactions by which forces are judged, read in the same run as `wanted`."""
     if not (demand & Demand.FORCES and is_judged(problem)):
         return []
     known = {quantity.name for quantity in wanted}

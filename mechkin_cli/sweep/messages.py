@@ -229,8 +229,8 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     )
 
 
-_WITHOUT_RATES = {"per_acceleration", "dynamic_transmission_angle", "actuation"}
-"""Kinds of forces that depend on no rate."""
+_WITHOUT_RATES = {"per_acceleration", "dynamic_transmission_angle", "actuation", "power_error"}
+"""Kinds of forces that depend on no rate, and the balance of powers, which says nothing at rest."""
 
 
 def unrated_notes(
@@ -243,7 +243,16 @@ def unrated_notes(
         return []
     by_rates = Demand.VELOCITY | Demand.FORCES
     shown = [q for q in asked if q.name not in unasked]
-    rates = [q.name for q in shown if demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY]
+    powers = bool(mechanism.loads) or any(link.has_mass for link in mechanism.links.values())
+    rates = [
+        q.name
+        for q in shown
+        if (
+            powers
+            if q.kind == "power_error"
+            else demand_of(mechanism, [q]) & by_rates == Demand.VELOCITY
+        )
+    ]
     needs = [f"{listed(rates)} {'is' if len(rates) == 1 else 'are'} as at rest"] if rates else []
     forces = [q for q in asked if q.kind not in _WITHOUT_RATES]
     if any(demand_of(mechanism, [q]) & by_rates == by_rates for q in forces):

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from mechkin_cli import tolerances
+from mechkin_cli import proofs, tolerances
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism import REACTION_LEVEL, Problem, coordinate_quantities, is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.proofs import position_bounds
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
 from mechkin_cli.structure import SolverGraph
@@ -314,7 +313,9 @@ def error_bound(result: RunRows) -> Floats:
     result.read(wanted)
     values = {q: np.asarray(result.quantity(q.name).value) for q in wanted}
     with np.errstate(all="ignore"):
-        bound, beyond = position_bounds(result.session, rows.states, there, values, rows.turns)
+        bound, beyond = proofs.position_bounds(
+            result.session, rows.states, there, values, rows.turns
+        )
         open_ = beyond > 0.0
         if (open_ & there).any():
             condition = np.asarray(result.quantity("row.condition").value)

@@ -121,8 +121,7 @@ def analyze(
         session: the problem in the kernel.
         quantities: names out of `problem.quantities()`.
         verdicts: compute each row's condition, and its power error where forces are computed.
-        unasked: those of the quantities that a run shows of its own accord: no rate of theirs is
-            missed.
+        unasked: quantities that a run adds by default; their missing rates are not reported.
 
     Raises:
         KeyError: an unknown quantity.
@@ -188,8 +187,7 @@ def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
 
 
 def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
-    """The same by one way of following; rows that do not close lose their place among the
-    reached."""
+    """The same by one way of following; rows that do not close are no longer marked as reached."""
     rows = follow_rows(session, start, every_row=every_row)
     result = Result(session, start, rows, motion_between)
     if not rows.reached.any():

@@ -41,7 +41,7 @@ from mechkin_cli.verdict import SWEEP, Status, has_rates
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.csv import WordColumn
-    from mechkin_cli.tables.summary import Summary
+    from mechkin_cli.tables.summary import Summary, SummaryColumn
 
 
 LISTED_RANGES = 6
@@ -95,37 +95,52 @@ def _range_text(first: int, last: int, swept: RunParameter | None) -> str:
     return f"{rows} ({f'{swept.name} {ends} {swept.unit}'.rstrip()})"
 
 
-def markdown_bytes(columns: Columns, source: TableSource, threads: int = 0) -> bytes:
+def markdown_bytes(
+    columns: Columns, source: TableSource, threads: int = 0, decimal_comma: bool = False
+) -> bytes:
     """The whole file as UTF-8, with a newline at its end and no trailing spaces; threads 0: as many
-    as the table is worth."""
+    as the table is worth; with a comma in the numbers of its cells where that is asked for."""
     headers = [_header(column) for column in columns.columns]
     cells: list[DecimalColumn | WordColumn] = []
+    as_texts: set[int] = set()
     for number, column in enumerate(columns.columns):
         if isinstance(column.values, Words):
             cells.append(word_column(column.values, markdown_text))
-        elif column.unbounded is None:
+        elif column.unbounded is None and not decimal_comma:
             cells.append(decimal_column(column.values, column.decimals, column.rounding))
         else:  # the kernel takes texts, and sets them to the left
-            texts = column.texts(column_texts(column.values, column.decimals, column.rounding))
+            texts = _texts(column, decimal_comma)
+            as_texts.add(number)
             width = max(map(len, (headers[number], *texts)))
             headers[number] = headers[number].rjust(width)
             cells.append(word_column(words_of([text.rjust(width) for text in texts])))
     title = f"# {markdown_text(columns.title or columns.name)}\n\n"
     text: bytes = _kernel.markdown_text(headers, cells, threads_for(columns, threads))
-    if any(column.unbounded is not None for column in columns.columns):
-        text = _to_the_right(text, columns)
-    below = "" if columns.summary is None else _below(columns.summary)
+    if as_texts:
+        text = _to_the_right(text, as_texts)
+    below = "" if columns.summary is None else _below(columns.summary, decimal_comma)
     notes = "".join(f"- {note}\n" for note in footnotes(columns, source, markdown_text))
     notes = below + (f"\n{notes}" if notes else "")
     return b"".join((title.encode(), text, notes.encode()))
 
 
-def _below(summary: Summary) -> str:
+def _texts(column: TableColumn, decimal_comma: bool) -> list[str]:
+    """The cells of a column of numbers as they are written."""
+    assert not isinstance(column.values, Words)
+    texts = column.texts(column_texts(column.values, column.decimals, column.rounding))
+    return [text.replace(".", ",") for text in texts] if decimal_comma else list(texts)
 
+
+def _summary_texts(summary: Summary, column: SummaryColumn, decimal_comma: bool) -> list[str]:
+    texts = summary.texts(column)
+    return [text.replace(".", ",") for text in texts] if decimal_comma else list(texts)
+
+
+def _below(summary: Summary, decimal_comma: bool) -> str:
     columns = [["summary", *summary.lines]]
     for each in summary.columns:
         header = _header(TableColumn(each.label, each.unit, np.empty(0)))
-        columns.append([header, *summary.texts(each)])
+        columns.append([header, *_summary_texts(summary, each, decimal_comma)])
     widths = [max(map(len, cells)) for cells in columns]
     pads = [str.ljust, *(str.rjust for _ in summary.columns)]
     head, *lines = (
@@ -137,13 +152,13 @@ def _below(summary: Summary) -> str:
     return "".join(("\n", head, f"| {' | '.join(rule)} |\n", *lines, f"\n{said}" if said else ""))
 
 
-def _to_the_right(table: bytes, columns: Columns) -> bytes:
-    """The table with columns of numbers that the kernel took as texts set to the right."""
+def _to_the_right(table: bytes, as_texts: Iterable[int]) -> bytes:
+    """The table with columns of numbers, counted from 0, that the kernel took as texts set to the
+    right."""
     head, rule, rest = table.split(b"\n", 2)
     marks = rule.split(b"|")
-    for number, column in enumerate(columns.columns, 1):
-        if column.unbounded is not None:
-            marks[number] = b" " + marks[number].strip()[1:] + b": "
+    for number in as_texts:
+        marks[number + 1] = b" " + marks[number + 1].strip()[1:] + b": "
     return b"\n".join((head, b"|".join(marks), rest))
 
 
@@ -205,7 +220,7 @@ _WRITTEN: Final = {
 }
 _SPECIAL: Final = re.compile("|".join(map(re.escape, _WRITTEN)))
 _POWER: Final = re.compile(r"\^\(?(-?[\d/.]+)\)?")
-_NUMBER: Final = re.compile(r"(-?)([\d.]+)(?:e([+-]?\d+))?")
+_NUMBER: Final = re.compile(r"(-?)([\d.,]+)(?:e([+-]?\d+))?")
 
 
 def latex_text(text: str) -> str:
@@ -246,16 +261,17 @@ def latex_number(text: str) -> str:
     return f"{'$-$' if sign else ''}{digits}{power}"
 
 
-def latex_bytes(columns: Columns, source: TableSource) -> bytes:
-    """The whole file as UTF-8, with a newline at its end."""
+def latex_bytes(columns: Columns, source: TableSource, decimal_comma: bool = False) -> bytes:
+    """The whole file as UTF-8, with a newline at its end; with a comma in the numbers of its cells
+    where that is asked for."""
     caption = (
         rf"\caption{{{latex_text(columns.title or columns.name)}}}\label{{tab:{columns.name}}}"
     )
     heads = [_head(column.label, column.unit) for column in columns.columns]
-    rows = list(zip(*map(_cells, columns.columns), strict=True))
+    rows = list(zip(*(_cells(column, decimal_comma) for column in columns.columns), strict=True))
     aligned = "".join("l" if isinstance(c.values, Words) else "r" for c in columns.columns)
     notes = footnotes(columns, source)
-    below = [] if columns.summary is None else _latex_below(columns.summary)
+    below = [] if columns.summary is None else _latex_below(columns.summary, decimal_comma)
     if columns.summary is not None:
         notes = [*columns.summary.written_notes(), *notes]
     if len(rows) > PAGE_ROWS:
@@ -299,9 +315,10 @@ def _tabular(aligned: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) 
     ]
 
 
-def _latex_below(summary: Summary) -> list[str]:
+def _latex_below(summary: Summary, decimal_comma: bool) -> list[str]:
     columns = [list(map(latex_text, summary.lines))]
-    columns += [list(map(latex_number, summary.texts(each))) for each in summary.columns]
+    texts = (_summary_texts(summary, each, decimal_comma) for each in summary.columns)
+    columns += [list(map(latex_number, each)) for each in texts]
     heads = ["", *(_head(each.label, each.unit) for each in summary.columns)]
     aligned = "l" + "r" * len(summary.columns)
     rows = zip(*columns, strict=True)
@@ -315,14 +332,11 @@ def _notes(notes: Sequence[str]) -> list[str]:
     return [r"\begin{flushleft}\footnotesize", *lines, r"\end{flushleft}"]
 
 
-def _cells(column: TableColumn) -> list[str]:
+def _cells(column: TableColumn, decimal_comma: bool) -> list[str]:
     if isinstance(column.values, Words):
         texts = [latex_text(word) for word in column.values.words]
         return [texts[code] for code in column.values.codes]
-    return [
-        latex_number(text)
-        for text in column.texts(column_texts(column.values, column.decimals, column.rounding))
-    ]
+    return list(map(latex_number, _texts(column, decimal_comma)))
 
 
 def _head(label: str, unit: str) -> str:

@@ -18,7 +18,8 @@ class Results(NamedTuple):
         threads: that write; 0: as many as a table is worth.
         errors: of all columns; None where they were not asked for.
         units: whether headers of CSV have them.
-        decimal_comma: whether numbers of CSV have a comma, and semicolons part the cells.
+        decimal_comma: whether numbers of CSV, Markdown and LaTeX have a comma, and semicolons part
+            the cells of CSV.
     """
 
     name: str

@@ -9,10 +9,11 @@ spreadsheet takes for a formula. The bytes depend on the tables alone: all dates
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import escape
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 import numpy as np
@@ -30,10 +31,14 @@ LONGEST_NAME = 31
 LONGEST_TEXT = 32_767
 """Limits of Excel: rows and columns of a sheet, characters of its name and of a cell."""
 
+ROWS_AT_ONCE = 10_000
+"""Rows that are made into text together."""
+
 WRITTEN = datetime(1980, 1, 1)
 """The date of every workbook and of the files in it: the first that an archive can have."""
 
 _NOT_IN_NAMES = re.compile(r"[\[\]:*?/\\]|^'|'$")
+_NO_ROWS = re.compile(rb"<sheetData\s*/>|<sheetData></sheetData>")
 _MODIFIED = re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
 
 
@@ -41,24 +46,25 @@ def workbook_bytes(runs: Sequence[Results]) -> bytes:
     """The workbook of all tables of all runs, each with its summary behind it.
 
     Raises:
-        UsageError: openpyxl is not installed, or a table is larger than a sheet may be.
+        UsageError: openpyxl is not installed, or a table is larger than a sheet may be, or one of
+            its texts longer than a cell.
     """
     book = _openpyxl().Workbook(write_only=True)
     book.properties.creator = "mechkin"
     book.properties.created = WRITTEN
     taken: set[str] = set()
+    sheets: dict[str, tuple[Columns, bool]] = {}
     for results in runs:
         for table in _with_summaries(results.tables):
             _refuse_large(table)
             sheet = book.create_sheet(sheet_name(table.name, taken))
             sheet.freeze_panes = "A2"
-            for row in _rows(table, results.units, sheet):
-                sheet.append(row)
+            sheets[f"xl/worksheets/sheet{len(taken)}.xml"] = table, results.units
     if not taken:
         book.create_sheet("no tables")
     stream = BytesIO()
     book.save(stream)
-    return _undated(stream.getvalue())
+    return _filled(stream.getvalue(), sheets)
 
 
 def sheet_name(name: str, taken: set[str]) -> str:
@@ -104,47 +110,73 @@ def _refuse_large(table: Columns) -> None:
                 f"table {table.name} has {count} {what}, and a sheet of a workbook at most {most}; "
                 "write it as --format csv"
             )
+    for column in table.columns:
+        words = column.values.words if isinstance(column.values, Words) else ()
+        longest = max(map(len, map(legible, (f"{column.label} [{column.unit}]", *words))))
+        if longest > LONGEST_TEXT:
+            raise UsageError(
+                f"table {table.name} has a text of {longest} characters, and a cell of a workbook "
+                f"holds at most {LONGEST_TEXT}; write it as --format csv"
+            )
 
 
-def _rows(table: Columns, units: bool, sheet: Any) -> Iterator[list[Any]]:
-    from openpyxl.cell import WriteOnlyCell
-
-    def cell_of(value: str, kind: str) -> Any:
-        cell = WriteOnlyCell(sheet)
-        cell.value = value
-        cell.data_type = kind
-        return cell
-
-    def text(value: str) -> Any:
-        return cell_of(legible(value)[:LONGEST_TEXT], "s")  # never a formula
-
-    def number(value: float) -> Any:
-        # as a text of all digits: of floats openpyxl writes 16
-        return cell_of(repr(value), "n")
-
+def _rows(table: Columns, units: bool) -> Iterator[str]:
+    """The rows of a sheet with its header, some at a time, as the elements that hold them."""
     columns = table.columns
-    yield [text(f"{c.label} [{c.unit}]" if units and c.unit else c.label) for c in columns]
-    every = [_cells(column) for column in columns]
-    for row in zip(*every, strict=True):
-        yield [
-            each if each is None else text(each) if isinstance(each, str) else number(each)
-            for each in row
-        ]
+    heads = [f"{c.label} [{c.unit}]" if units and c.unit else c.label for c in columns]
+    yield _elements(1, [[head] for head in heads])
+    for first in range(0, max((column.rows for column in columns), default=0), ROWS_AT_ONCE):
+        rows = slice(first, first + ROWS_AT_ONCE)
+        yield _elements(first + 2, [_cells(column, rows) for column in columns])
 
 
-def _cells(column: TableColumn) -> list[str | float | None]:
-    """Numbers, None for what is missing, and words."""
+def _elements(first: int, columns: Sequence[Sequence[str | float | None]]) -> str:
+    """Rows from number `first` on. Of floats openpyxl writes 16 digits, and is slow; here a number
+    is the shortest text of all its digits."""
+    written = []
+    for number, column in enumerate(columns):
+        letters = _letters(number)
+        written.append([_cell(f"{letters}{row}", each) for row, each in enumerate(column, first)])
+    rows = map("".join, zip(*written, strict=True))
+    return "".join(f'<row r="{row}">{cells}</row>' for row, cells in enumerate(rows, first))
+
+
+def _cell(place: str, value: str | float | None) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, str):  # never a formula
+        text = escape(legible(value))
+        return f'<c r="{place}" t="inlineStr"><is><t xml:space="preserve">{text}</t></is></c>'
+    return f'<c r="{place}"><v>{value!r}</v></c>'
+
+
+def _letters(number: int) -> str:
+    """The letters of a column, counted from 0.
+
+    Example:
+        >>> _letters(0), _letters(25), _letters(26), _letters(16383)
+        ('A', 'Z', 'AA', 'XFD')
+    """
+    found = ""
+    while number >= 0:
+        number, letter = divmod(number, 26)
+        found, number = chr(ord("A") + letter) + found, number - 1
+    return found
+
+
+def _cells(column: TableColumn, rows: slice) -> list[str | float | None]:
+    """Numbers of some rows, None for what is missing, and words."""
     if isinstance(column.values, Words):
-        return [word or None for word in column.values.texts(range(column.rows))]
-    numbers = column.numbers
+        return [word or None for word in column.values.texts(range(column.rows)[rows])]
+    numbers = column.numbers[rows]
     return [
         number if finite else None if number != number else "inf" if number > 0.0 else "-inf"
         for number, finite in zip(numbers.tolist(), np.isfinite(numbers).tolist(), strict=True)
     ]
 
 
-def _undated(content: bytes) -> bytes:
-    """The archive with one date for all of its files."""
+def _filled(content: bytes, sheets: Mapping[str, tuple[Columns, bool]]) -> bytes:
+    """The archive with the rows of its sheets, and one date for all of its files."""
     stream = BytesIO()
     date = WRITTEN.timetuple()[:6]
     with ZipFile(BytesIO(content)) as made, ZipFile(stream, "w") as archive:
@@ -152,5 +184,15 @@ def _undated(content: bytes) -> bytes:
             part = made.read(name)
             if name == "docProps/core.xml":
                 part = _MODIFIED.sub(rb"\g<1>" + f"{WRITTEN.isoformat()}Z".encode(), part)
-            archive.writestr(ZipInfo(name, date), part, ZIP_DEFLATED)
+            info = ZipInfo(name, date)
+            if name not in sheets:
+                archive.writestr(info, part, ZIP_DEFLATED)
+                continue
+            info.compress_type = ZIP_DEFLATED
+            before, after = _NO_ROWS.split(part)
+            with archive.open(info, "w", force_zip64=True) as sheet:
+                sheet.write(before + b"<sheetData>")
+                for rows in _rows(*sheets[name]):
+                    sheet.write(rows.encode())
+                sheet.write(b"</sheetData>" + after)
     return stream.getvalue()

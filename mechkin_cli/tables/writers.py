@@ -48,7 +48,7 @@ def _markdown(runs: Sequence[Results]) -> Iterator[File]:
         if results.errors is not None:
             written.append(worst_table(results.errors, results.run))
         for table in written:
-            content = markdown_bytes(table, results.source, results.threads)
+            content = markdown_bytes(table, results.source, results.threads, results.decimal_comma)
             yield f"{table.name}.md", content
 
 
@@ -64,7 +64,7 @@ def _latex(runs: Sequence[Results]) -> Iterator[File]:
 
     for results in runs:
         for table in results.tables:
-            yield f"{table.name}.tex", latex_bytes(table, results.source)
+            yield f"{table.name}.tex", latex_bytes(table, results.source, results.decimal_comma)
 
 
 def _workbook(runs: Sequence[Results]) -> Iterator[File]:
@@ -221,11 +221,16 @@ def _make(folder: Path, made: list[Path]) -> None:
 #
 # `settle` is this last part, in both directions: it also takes back what was interrupted before the
 # moment, and clears what a run left that was killed.
+#
+# A file that holds the new content already stays, with a new date: where a run is repeated, writing
+# and replacing its files takes longer than computing them.
 
 replacing: set[Path] = set()
 """The attempts of this process that are under way: an interrupt must let them be taken back."""
 
 _ATTEMPT = re.compile(r"\.mechkin-[0-9a-f]{16}(\.tmp)?")
+_PART = 1 << 16
+"""As many bytes of a file are compared at once."""
 _UP = f"..{os.sep}..{os.sep}"
 """From `old/` to the folder in which the set stands."""
 
@@ -239,7 +244,10 @@ def replace_files(folder: Path, files: Mapping[str, bytes], removed: Sequence[st
     Raises:
         UsageError: a file cannot be written.
     """
+    files = {name: content for name, content in files.items() if not _stays(folder / name, content)}
     names = [*files, *removed]
+    if not names:
+        return
     attempt = folder / f".mechkin-{os.urandom(8).hex()}"
     try:
         replacing.add(attempt)
@@ -300,13 +308,28 @@ def _each(folder: Path, names: Iterable[str], work: Callable[[str], object]) -> 
 
 def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str]) -> None:
     """The attempt's folder with both sides."""
-    if names:
-        with _refusal(folder / names[0]):
-            for path in (attempt, attempt / "new", attempt / "old"):
-                os.mkdir(path)
+    with _refusal(folder / names[0]):
+        for path in (attempt, attempt / "new", attempt / "old"):
+            os.mkdir(path)
     new, old = (f"{attempt}{os.sep}{side}{os.sep}" for side in ("new", "old"))
     _each(folder, files, lambda name: _write(new + name, files[name]))
     _each(folder, names, lambda name: _keep(f"{folder}{os.sep}{name}", old + name))
+
+
+def _stays(path: Path, content: bytes) -> bool:
+    """Whether it is a regular file that holds this content already; then it gets a new date."""
+    try:
+        state = os.lstat(path)
+        if not stat.S_ISREG(state.st_mode) or state.st_size != len(content):
+            return False
+        with open(path, "rb") as stream:
+            for start in range(0, len(content), _PART):
+                if stream.read(_PART) != content[start : start + _PART]:
+                    return False
+        os.utime(path)
+    except OSError:
+        return False
+    return True
 
 
 def _write(path: str, content: bytes) -> None:

@@ -357,6 +357,20 @@ FREE_INPUT_MISS: Final = 3e-9
 """Closing equation after that step above which an input may be locked, and the mobility is asked: a
 locked one misses by a part of the step or of its square, 9e-8."""
 
+STOPPED_MISS: Final = 1e-6
+"""Closing equation after that step above which the loops stop the input to first order: below, to
+second order at most, 9e-8 times curvatures."""
+
+# --- a drawing where motions meet ---------------------------------------------------------------
+
+HOME_STEP: Final = 0.05
+"""Step of the inputs (rad, length units) from a drawing that is singular as driven to the place
+where an assembly next to it is looked for: regular there, and known to many digits."""
+
+HOME_BOX: Final = 0.25
+"""How far (rad, parts of the size) an assembly there may be from the drawing: five times as fast as
+the inputs."""
+
 # --- whole turns ---------------------------------------------------------------------------------
 
 HALF_TURN_SIDE: Final = 1e-9

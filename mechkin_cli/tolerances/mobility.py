@@ -173,6 +173,10 @@ COMMON_MOTION: Final = 1e-7
 that is off by this, as numbers of nine digits may leave it, is off the motion held in its place by
 no more than was written."""
 
+SAME_LEAD: Final = 2e-9
+"""Parts of a lead up to which another is the same: nine written digits of both are off by half a
+unit of their last each."""
+
 COMMON_MOTION_ROUNDING: Final = 1e-12
 """What two joints of a link may miss a common motion by (rad, parts of the size) and only round:
 some thousand roundings of frames, displacements and the elimination. What misses it by more is

@@ -357,3 +357,7 @@ large as a two-hundredth of its size."""
 
 LINEAR: Final = 0.1
 """A second-order term beyond this part of the first-order one makes a slope misleading."""
+
+TOLD_APART: Final = 1e-5
+"""Coordinates of assemblies (rad, m), and places of their joints in parts of the mechanism's size,
+that are nearer than this look alike in a list of six digits."""

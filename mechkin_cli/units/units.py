@@ -211,8 +211,19 @@ MISTAKES = {
     "seconds": "write s",
     "rps": "write rev/s or rad/s",
     "hr": "write h",
-    "Nm": "write N*m",
-    "Nmm": "write N*mm",
+    "mile": "write mi",
+    "newton": "write N",
+    "minute": "write min",
+    "hour": "write h",
+    "tonne": "write t",
+    "watt": "write W",
+    "joule": "write J",
+    **{
+        f"{prefix}{stem}": f"write {letter}{unit}"
+        for stem, unit in (("meter", "m"), ("metre", "m"), ("gram", "g"), ("newton", "N"))
+        for prefix, letter in (("kilo", "k"), ("centi", "c"), ("milli", "m"), ("micro", "u"))
+        if f"{letter}{unit}" in UNITS
+    },
 }
 """What to write instead of words that look like a unit but are not."""
 
@@ -301,14 +312,34 @@ def named_unit(symbol: str, offset: int = 0) -> Unit:
     """
     if symbol in UNITS:
         return UNITS[symbol]
-    hint = MISTAKES.get(symbol)
+    word = symbol.casefold()
+    hint = MISTAKES.get(symbol) or MISTAKES.get(word) or MISTAKES.get(word.removesuffix("s"))
     if hint is None:
         from difflib import get_close_matches
 
-        same_letters = [name for name in UNITS if name.lower() == symbol.lower()]
+        same_letters = [name for name in UNITS if name.lower() == word]
+        product = None if same_letters else _joined(symbol)
         nearest = same_letters or get_close_matches(symbol, UNITS, 3, 0.6)
-        hint = f"did you mean {' or '.join(nearest)}?" if nearest else None
+        if product:
+            hint = f"write {product}"
+        elif nearest:
+            hint = f"did you mean {' or '.join(nearest)}?"
     raise UnitError(f"{symbol[:MAX_QUOTED]!r} is not a unit", offset, hint)
+
+
+_FORCE_OR_MASS = re.compile(r"(k?N|kg|lbf|lbm)([A-Za-z]+)([2-4]?)")
+
+
+def _joined(symbol: str) -> str | None:
+    """The product that units written without signs mean.
+
+    >>> _joined("Nmm"), _joined("kgm2"), _joined("Nx")
+    ('N*mm', 'kg*m^2', None)
+    """
+    found = _FORCE_OR_MASS.fullmatch(symbol[:MAX_QUOTED])
+    if found is None or found[2] not in UNITS:
+        return None
+    return f"{found[1]}*{found[2]}^{found[3]}" if found[3] else f"{found[1]}*{found[2]}"
 
 
 def bounded_exponent(digits: str, offset: int = 0) -> int:

@@ -198,7 +198,7 @@ class Base:
         known = self.design.problem.parameters
         given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
         built = self.design.built
-        return build(built.file, built.document, given)
+        return build(built.file, built.document, given, built.problem.stopped)
 
 
 def base_of(design: Design) -> Base:

@@ -135,7 +135,7 @@ class _SweepRun:
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
             or (session.is_redundant and any(q.kind in REACTION_KINDS for q in self.wanted))
-            or self._friction_takes_more(session)
+            or self._forces_are_judged(session)
             or self._led_by_rates()
             or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
         ):
@@ -146,12 +146,15 @@ class _SweepRun:
             demand |= Demand.CONDITION
         return reading, reading.runs(demand)
 
-    def _friction_takes_more(self, session: Session) -> bool:
-        """Whether friction may go by reactions that are arbitrary, or drive an idle freedom."""
-        mechanism = self.problem.mechanism
-        if not (mechanism.frictions and demand_of(mechanism, self.wanted) & Demand.FORCES):
+    def _forces_are_judged(self, session: Session) -> bool:
+        """Whether forces rest on more than the kernel's run tells: constraints that may not hold
+        the loads, or friction that goes by arbitrary reactions or drives an idle freedom."""
+        if not demand_of(self.problem.mechanism, self.wanted) & Demand.FORCES:
             return False
-        return bool(session.is_redundant or self.problem.has_idle)
+        frictions = self.problem.mechanism.frictions
+        return bool(
+            self.problem.stopped or (frictions and (session.is_redundant or self.problem.has_idle))
+        )
 
     def _led_by_rates(self) -> bool:
         """Whether forces go by the rates of inputs that others drive, which differ by rows."""
@@ -303,7 +306,7 @@ class _Resolver:
             dimension = self.run.problem.parameters[name].dimension
             return Quantity(np.repeat(self.parameters[name], self.rows), dimension)
         if name not in self.known:
-            raise UnknownName(name, list(self.known))
+            raise UnknownName(name, list(self.known), self.run.problem.why_not(name))
         wanted = self.known[name]
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self)

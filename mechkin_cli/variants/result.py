@@ -193,7 +193,7 @@ def sample_of(problem: Problem) -> Any:
             return Quantity(one, problem.parameters[name].dimension)
         known = problem.quantities()
         if name not in known:
-            raise UnknownName(name, [*problem.parameters, *known])
+            raise UnknownName(name, [*problem.parameters, *known], problem.why_not(name))
         wanted = known[name]
         return Quantity(wanted.value([one] * 3), wanted.dimension)
 

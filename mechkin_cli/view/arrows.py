@@ -28,7 +28,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.tables import effort_names
 from mechkin_cli.units import FORCE, MOMENT
-from mechkin_cli.view.joints import drawn_joints, link_poses
+from mechkin_cli.view.joints import carried, drawn_joints, link_poses
 from mechkin_cli.view.page import packed
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from mechkin_cli.building import DrawnBetween
     from mechkin_cli.mechanism import Amount, Mechanism, Problem
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Readable
@@ -52,18 +53,42 @@ Arrow = tuple[str, Kind, Attached, "Floats"]
 """Name, kind, place on a link, and vectors over the rows (rows, 3) in the file's units."""
 
 
-def tie_records(mechanism: Mechanism, links: Sequence[str], lengths: Lengths) -> list[Plain]:
-    """Springs and dampers between points for the page."""
-    return [
+def tie_records(
+    mechanism: Mechanism, drawn: Sequence[DrawnBetween], links: Sequence[str], lengths: Lengths
+) -> list[Plain]:
+    """Springs, dampers and cylinders for the page: those of loads between points and on joints that
+    slide or turn about one axis, and those that are only `drawn`."""
+    loads = [load for load in mechanism.loads if isinstance(load, Spring | Damper)]
+    kinds = {Spring: "spring", Damper: "damper"}
+    ends = [(kinds[type(load)], load.between, None) for load in loads if load.between is not None]
+    found: list[Plain] = [
         {
-            "kind": "spring" if isinstance(load, Spring) else "damper",
-            "links": [links.index(end.link) for end in load.between],
-            "places": [lengths.vector(end.vector) for end in load.between],
+            "kind": kind,
+            "joint": None,
+            "turns": False,
+            "links": [links.index(end.link) for end in between],
+            "places": [lengths.vector(end.vector) for end in between],
+            "radius": None if radius is None else lengths.one(radius),
         }
-        for load in mechanism.loads
-        if isinstance(load, Spring | Damper) and load.between is not None
-        if all(end.link in links for end in load.between)
+        for kind, between, radius in (*ends, *drawn)
+        if all(end.link in links for end in between)
     ]
+    joints = drawn_joints(mechanism)
+    for load in loads:
+        joint = mechanism.joints.get(load.joint or "")
+        if joint is None or joint not in joints or len(joint.type.steps) > 1:
+            continue  # of several displacements each has its own axis
+        found.append(
+            {
+                "kind": kinds[type(load)],
+                "joint": joints.index(joint),
+                "turns": is_angle(load.coordinate or ""),
+                "links": [links.index(joint.first), links.index(joint.second)],
+                "places": [],
+                "radius": None,
+            }
+        )
+    return found
 
 
 def has_forces(mechanism: Mechanism) -> bool:
@@ -150,7 +175,8 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
         if isinstance(load, LinkLoad) and load.link in links:
             vector = np.stack([_amount(analysis, each) for each in load.value], axis=1)
             if load.axes == "link":
-                vector = _turned(poses[:, links.index(load.link)], vector)
+                pose = poses[:, links.index(load.link)]
+                vector = carried(pose, vector) - pose[:, :3]
             kind = KINDS[0] if load.kind == "force" else KINDS[1]
             place = Attached(load.link, load.point)
             if load.kind == "torque":
@@ -165,7 +191,9 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
         elif isinstance(load, Spring) and load.between is not None:
             if not all(end.link in links for end in load.between):
                 continue
-            first, second = (_place(poses[:, links.index(e.link)], e) for e in load.between)
+            first, second = (
+                carried(poses[:, links.index(end.link)], end.vector) for end in load.between
+            )
             apart = second - first
             length = np.sqrt((apart * apart).sum(axis=1))
             pull = load.preload + load.stiffness * (length - load.free)
@@ -182,18 +210,6 @@ def _amount(analysis: Readable, amount: Amount) -> Floats:
         return np.full(analysis.rows, amount)
     law = result.problem.load_laws[amount.number]
     return np.asarray(law_value(law, result.quantity, analysis.rows), dtype=np.float64)
-
-
-def _turned(poses: Floats, vectors: Floats) -> Floats:
-    """Vectors (rows, 3) turned by poses (rows, 7)."""
-    scalar, axis = poses[:, 3:4], poses[:, 4:]
-    twice = 2.0 * np.cross(axis, vectors)
-    return np.asarray(vectors + scalar * twice + np.cross(axis, twice), dtype=np.float64)
-
-
-def _place(poses: Floats, point: Attached) -> Floats:
-    """Where a point of a link is (rows, 3), in m."""
-    return poses[:, :3] + _turned(poses, np.broadcast_to(point.vector, (len(poses), 3)))
 
 
 def _drawable(values: Floats) -> Floats:

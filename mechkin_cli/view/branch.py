@@ -169,13 +169,16 @@ class BranchScene:
         codes = self.analysis.result.status[self.rows]
         posed = self.rows[self.posed]
         arrows = arrow_records(self.analysis, posed, self.links, lengths) if self.forces else []
+        # 0: ok, 1: a position with a reservation, 2: no position
+        doubts = [0 if one is Status.ok else 1 if one.has_solution else 2 for one in Status]
+        words = [one.label for one in Status]
         return {
             "name": self.name,
             "own": own,
             "rows": int(self.rows.size),
             "x": packed("f64", self.axis.values[self.rows]),
             "poses": {"rows": packed("i32", self.posed), "values": packed("f32", poses)},
-            "status": {"words": [one.label for one in Status], "codes": packed("u8", codes)},
+            "status": {"words": words, "doubts": doubts, "codes": packed("u8", codes)},
             "marks": run_marks(self.analysis, self.axis.name, self.axis.values),
             "columns": list(self.curves),
             "arrows": arrows,

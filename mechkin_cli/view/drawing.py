@@ -1,8 +1,9 @@
 """The small picture of a mechanism: its first position with a solution, and its points' paths.
 
-Links are lines, areas or stars in their colours, as `view.shapes` has them; joints are symbols; a
-joint on ground stands on a hatched foot. Feet and paths are drawn first, then links, then joints,
-each from far to near, what is as near in the order of the file. Numbers have one decimal.
+Links are lines, areas, stars, bars or discs in their colours, as `view.shapes` has them; joints are
+symbols; a joint on ground stands on a hatched foot. Feet and paths are drawn first, then links,
+then joints, each from far to near, what is as near in the order of the file. Numbers have one
+decimal.
 
 In reading order: the projection, elements of SVG, symbols of joints, the picture. The projection is
 isometric: all three axes are shortened alike, seen from the corner (1, 1, 1). With x', y', z' the
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.building import ViewSettings
 from mechkin_cli.mechanism import (
     FIRST,
     GROUND_NAME,
@@ -325,9 +327,10 @@ Item = tuple[float, list[Mark]]
 """How near it is, and what is drawn."""
 
 
-def mechanism_picture(result: Result) -> str:
-    """The picture of a run as one SVG file with a newline at its end."""
-    marks = _Scene(result).marks()
+def mechanism_picture(result: Result, settings: ViewSettings | None = None) -> str:
+    """The picture of a run as one SVG file with a newline at its end; `settings`: the shapes of its
+    links, and which are hidden."""
+    marks = _Scene(result, settings or ViewSettings()).marks()
     size = f'width="{WIDTH:.0f}" height="{HEIGHT:.0f}" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size}>'
     return "\n".join([head, f"<style>{STYLE}</style>", *(m.svg for m in marks), "</svg>", ""])
@@ -336,8 +339,9 @@ def mechanism_picture(result: Result) -> str:
 class _Scene:
     """A run's first position on the picture."""
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: Result, settings: ViewSettings) -> None:
         self.result = result
+        self.settings = settings
         self.mechanism = result.problem.mechanism
         moving = (name for name in self.mechanism.links if name != GROUND_NAME)
         self.links = [GROUND_NAME, *filter(is_written, moving)]
@@ -373,7 +377,7 @@ class _Scene:
 
     def _fit(self) -> None:
         """Where the middle of all that is drawn is, and points per length."""
-        parts = [self._placed(link, shape.points) for link, shape in self._link_shapes()]
+        parts = [self._placed(link, shape.outline) for link, shape in self._link_shapes()]
         for joint in self.joints:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
                 parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
@@ -391,19 +395,26 @@ class _Scene:
         return WIDTH / 2.0 + float(x), HEIGHT / 2.0 - 4.0 - float(y)
 
     def _link_shapes(self) -> Iterator[tuple[str, Shape]]:
-        return ((link, link_shape(self.mechanism, link, self.size)) for link in self.links[1:])
+        shapes = self.settings.shapes
+        # ground is seen by its feet, unless it has a shape of its own
+        shown = [link for link in self.links if link != GROUND_NAME or link in shapes]
+        return (
+            (link, link_shape(self.mechanism, link, self.size, shapes.get(link)))
+            for link in shown
+            if link not in self.settings.hidden
+        )
 
     def _moving_points(self) -> Iterator[Attached]:
         return (at for at in self.mechanism.points.values() if at.link in self.links[1:])
 
     def _ink(self, link: str) -> str:
-        return f"l{(self.links.index(link) - 1) % len(COLOURS)}"
+        return "k" if link == GROUND_NAME else f"l{(self.links.index(link) - 1) % len(COLOURS)}"
 
     def _shapes(self) -> Iterator[Item]:
         for link, shape in self._link_shapes():
             if shape.kind == "none":
                 continue
-            seen, ink = self._placed(link, shape.points), self._ink(link)
+            seen, ink = self._placed(link, shape.outline), self._ink(link)
             places = sorted(self._on_picture(one) for one in seen)
             near = round(float(seen[:, 2].sum()) / len(seen) / self.size, NEAR_DECIMALS)
             if shape.centre is not None:
@@ -411,10 +422,18 @@ class _Scene:
                 marks: list[Mark] = [
                     Stroke((centre, place), ink, ROD, round_ends=True) for place in places
                 ]
-            elif shape.kind == "plate":
+            elif shape.kind in ("plate", "wheel"):
                 marks = [Stroke(_hull(places), ink, 2.4, closed=True, filled=True)]
+            elif shape.kind == "cylinder" and places[0] != places[-1]:
+                thick = 10.0 if shape.radius is None else 2.0 * self.scale * shape.radius
+                marks = [
+                    Stroke(
+                        _oblong(places[0], places[-1], thick), ink, 1.6, closed=True, filled=True
+                    )
+                ]
             else:
-                marks = [Stroke(tuple(places), ink, ROD, round_ends=True)]
+                thick = ROD if shape.radius is None else 2.0 * self.scale * shape.radius
+                marks = [Stroke(tuple(places), ink, thick, round_ends=True)]
             yield near, marks
 
     def _symbols(self) -> Iterator[Item]:
@@ -445,6 +464,14 @@ class _Scene:
             if len(path) > 1:
                 yield Stroke(path, f"{self._ink(at.link)} t", 1.0)
             yield Disc(path[0], 1.8, is_ink=True)
+
+
+def _oblong(a: Place, b: Place, width: float) -> tuple[Place, ...]:
+    """The corners of what is as wide on both sides of a line."""
+    length = ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5
+    across = ((a[1] - b[1]) / length, (b[0] - a[0]) / length)
+    by = width / 2.0
+    return moved(a, across, -by), moved(b, across, -by), moved(b, across, by), moved(a, across, by)
 
 
 def _hull(places: list[Place]) -> tuple[Place, ...]:

@@ -1,10 +1,11 @@
 """Joints, links and poses for the page: halves of joints, shapes of links, poses, the plane.
 
 A link goes through its joints and its named points. Two of them, or more in a line, make a rod;
-three or more in a plane a plate; others rods to their centroid (a star). Ground is shown by its
-joints. The columns of a link's rotation are the ground axes as drawn on it, its shift is that of
-one of its joint points: x = R x0 + t with t = p - R p0. Where a mechanism moves in a plane square
-to a ground axis, and is drawn in it, the page looks along that axis first.
+three or more in a plane a plate; others rods to their centroid (a star); cylinders and wheels are
+asked for. Ground is shown by its joints. The columns of a link's rotation are the ground axes as
+drawn on it, its shift is that of one of its joint points: x = R x0 + t with t = p - R p0. Where a
+mechanism moves in a plane square to a ground axis, and is drawn in it, the page looks along that
+axis first.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.building import ShapeSetting
 from mechkin_cli.derived import displacement, quaternion, rotation_of, vector_of
 from mechkin_cli.mechanism import (
     FIRST,
@@ -31,7 +33,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.page import FLATNESS, POINTS_APART
 
 if TYPE_CHECKING:
-    from mechkin_cli.building import Kind, ShapeSetting
+    from mechkin_cli.building import Kind
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
     from mechkin_cli.view.page import Lengths, Plain
@@ -109,23 +111,45 @@ def _half(joint: Joint, side: int, lengths: Lengths) -> Plain:
 
 class Shape(NamedTuple):
     """A link as it is drawn (m, in the drawing): the `points` it goes through (n, 3), of a plate
-    the `normal`, of a star the `centre`."""
+    the `normal`, of a star the `centre`; of a wheel its centre alone, its axis as `normal` and its
+    `width`; the `radius` of a rod, cylinder or wheel, None: the page's choice."""
 
     kind: Kind
     points: Floats
     normal: Floats | None = None
     centre: Floats | None = None
+    radius: float | None = None
+    width: float = 0.0
+
+    @property
+    def outline(self) -> Floats:
+        """Points (n, 3) whose hull is the shape, without the thickness of what is thin."""
+        if self.kind != "wheel" or self.normal is None or self.radius is None:
+            return self.points
+        _, _, (along, x, y) = np.linalg.svd(self.normal[None])
+        turns = np.linspace(0.0, 2.0 * np.pi, RIM_POINTS, endpoint=False)[:, None]
+        rim = self.points[0] + self.radius * (np.cos(turns) * x + np.sin(turns) * y)
+        return np.concatenate([rim - 0.5 * self.width * along, rim + 0.5 * self.width * along])
 
 
 def link_shape(
     mechanism: Mechanism, link: str, size: float, setting: ShapeSetting | None = None
 ) -> Shape:
     """The shape of a link of a mechanism of some `size` (m); what `setting` says goes first."""
-    kind, chosen = setting or (None, None)
-    if kind is None and link == GROUND_NAME and chosen is None:
+    chosen = setting or ShapeSetting()
+    kind = chosen.kind
+    if kind is None and link == GROUND_NAME and chosen.points is None:
         kind = "none"
-    points = drawn_points(mechanism, link) if chosen is None else chosen
-    return shape_through(distinct(points, size), kind)
+    if kind == "wheel" and chosen.radius is not None:
+        width = chosen.radius / 4.0 if chosen.width is None else chosen.width
+        normal = np.array(chosen.axis)
+        return Shape(kind, np.array(chosen.points), normal, radius=chosen.radius, width=width)
+    points = drawn_points(mechanism, link) if chosen.points is None else chosen.points
+    apart = distinct(points, size)
+    if kind == "cylinder" and len(apart) > 1:
+        return Shape(kind, apart[[0, -1]], radius=chosen.radius)
+    shape = shape_through(apart, None if kind == "cylinder" else kind)
+    return shape._replace(radius=chosen.radius)
 
 
 def drawn_points(mechanism: Mechanism, link: str) -> list[Vector]:
@@ -171,6 +195,9 @@ def shape_through(points: Floats, kind: Kind | None = None) -> Shape:
     return Shape(kind, points, centre=centre if kind == "star" else None)
 
 
+RIM_POINTS = 32
+"""Of each face of a wheel."""
+
 HOME = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 """The pose of what is where it was drawn."""
 
@@ -213,8 +240,8 @@ def continuous(poses: Floats) -> Floats:
     return found
 
 
-def carried(poses: Floats, point: Vector) -> Floats:
-    """Where a point as drawn on a link is in its poses (..., 7), shape (..., 3): t + R x0 with
+def carried(poses: Floats, point: Vector | Floats) -> Floats:
+    """Where a point as drawn on a link, or one for each pose, is in poses (..., 7): t + R x0 with
     R x0 = x0 + 2 q0 (v x x0) + 2 v x (v x x0), v the vector part."""
     start = np.asarray(point, dtype=np.float64)
     v = poses[..., 4:]

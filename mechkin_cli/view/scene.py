@@ -201,6 +201,10 @@ class Scene:
             drawn["normal"] = [float(x) for x in shape.normal]
         if shape.centre is not None:
             drawn["centre"] = lengths.vector(shape.centre)
+        if shape.kind in ("rod", "cylinder", "wheel"):
+            drawn["radius"] = None if shape.radius is None else lengths.one(shape.radius)
+        if shape.kind == "wheel":
+            drawn["width"] = lengths.one(shape.width)
         return {
             "name": name,
             "colour": settings.colours.get(name),
@@ -243,7 +247,9 @@ class Scene:
             "kind": "sweep" if run.name == "sweep" else "response",
             "title": run.title,
             "x": {"label": axis.name, "unit": axis.unit},
-            "ties": tie_records(run.own.result.problem.mechanism, self.links, self._lengths),
+            "ties": tie_records(
+                run.own.result.problem.mechanism, self.settings.between, self.links, self._lengths
+            ),
             "branches": [
                 branch.record(number == 0, self._lengths) for number, branch in enumerate(branches)
             ],

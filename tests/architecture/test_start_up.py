@@ -31,7 +31,7 @@ print(json.dumps(sorted(sys.modules)))
 
 COMMAND = """
 import json, sys
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 sys.argv = ["mechkin", "analyze", sys.argv[1], "--quiet", "--out", sys.argv[2]]
 try:
     main()
@@ -43,7 +43,7 @@ print(json.dumps(sorted(sys.modules)))
 
 LINE = """
 import io, json, sys
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 place = {"FILE": sys.argv[1], "DIR": sys.argv[2]}
 sys.argv = ["mechkin", *(place.get(word, word) for word in sys.argv[3:])]
 stdout, sys.stdout = sys.stdout, io.StringIO()
@@ -104,6 +104,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         ("response.runs", "responses"),
         ("balances.runs", "balances"),
+        ("mobility.families", "drawings that are singular as driven"),
+        ("mobility.configurations", "mobility"),
+        ("proofs.rows", "proofs"),
         ("tables.json", "JSON"),
         ("tables.summary", "summaries"),
         ("fit.result", "fits"),

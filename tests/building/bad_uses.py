@@ -1,6 +1,6 @@
 """Mistakes in what uses the parts: motion, assembly, loads and columns."""
 
-from building.sound import added, changed, column, inputs, load
+from building.sound import added, between, changed, column, inputs, joint, load
 
 MOTION = [
     inputs(
@@ -14,6 +14,7 @@ MOTION = [
     inputs("{O.theta: {from: 0, to: 9, step: »0}}", "zero-step", "step is zero"),
     inputs("{O.theta: {from: 0, to: 9, step: »1e-7}}", "too-many-numbers", "rows", "2666666"),
     inputs("{O.theta: {at: »1e308}}", "too-large", "1e+308 (limit 1e+100)"),
+    inputs("{O.theta: »{at: 1e99}}", "too-large", "1e+99 deg (limit 1.621e+18 deg)"),
     inputs("{O.theta: {from: 0, to: 9, count: »99999999}}", "too-many-numbers", "rows", "2666666"),
     inputs("{O.theta: {from: 0, to: »9 mm, step: 1}}", "expression", "expected an angle", "length"),
     inputs(
@@ -262,4 +263,55 @@ ACTUATORS = [
     ),
 ]
 
-BAD_USES = [*MOTION, *ASSEMBLY, *LOADS, *COLUMNS, *ACTUATORS]
+FIRST_TRIES = [
+    joint("{type: R, LINKS, »at: [0, 0, 0], axis: [0, 0, 1]}", "unknown-key", "write point:"),
+    joint(
+        "{type: R, LINKS, point: [0, 0, 0], »direction: [0, 0, 1]}", "unknown-key", "write axis:"
+    ),
+    joint(
+        "{type: R, LINKS, point: 0, »0, axis: [0, 0, 1]}",
+        "empty-value",
+        "the comma before '0' ends the value",
+        "[1, 2]",
+    ),
+    joint("{type: R, LINKS, point: [0, 0, 0], axis: »z}", "wrong-kind", "brackets: [x, y, z]"),
+    joint(
+        "{type: R, LINKS, point: [»[0, 0, 0], 1, 2], axis: [0, 0, 1]}",
+        "not-a-number",
+        "without brackets",
+    ),
+    joint(
+        "{type: R, LINKS, point: [0 »0, 0, 0], axis: [0, 0, 1]}",
+        "expression",
+        "a comma separates entries",
+    ),
+    between("{type: S, LINKS, point: [0, r, 10], »axis: [1, 0, 0]}", "unknown-key", "no axis"),
+    changed("mass: 1,", "mass: 1 »kilogram,", "expression", "write kg"),
+    changed("mass: 1,", "mass: 0, »5,", "empty-value", "0.5"),
+    changed("r: 40 mm", "r: 40 »millimeters", "expression", "write mm"),
+    changed("xx: 1,", "xx: 1 »kgmm2,", "expression", "write kg*mm^2"),
+    changed("xx: 1,", "xx: 1 »Nmms2,", "expression", "is not a unit"),
+    inputs("{O.theta: {at: 0, »speed: 5}}", "unknown-key", "write rate:"),
+    inputs("{O.theta: {from: 0, »end: 9, step: 1}}", "unknown-key", "write to:"),
+    load("{type: torque, joint: O, »torque: 3}", "unknown-key", "write value:"),
+    load(
+        "{type: spring, »from: p, stiffness: 2 N/mm, free: 3}", "unknown-key", "write between: [P"
+    ),
+    load(
+        "{type: spring, between: [p, »O], stiffness: 2 N/mm, free: 3}",
+        "unknown-point",
+        "O is a joint: name its point under points",
+    ),
+    changed("columns: [O.theta]", "columns: »O.theta", "wrong-kind", "brackets: [O.theta]"),
+    column("{label: a, value: O.theta, »unit: rad}", "unknown-key", "units of the file"),
+    column("»p", "expression", "write what of p: ", "p.position"),
+    column("»P.position.x", "expression", "did you mean p.position"),
+    column("»p.pos.x", "expression", "did you mean p.position.x?"),
+    column("»D.theta1", "expression", "D.theta"),
+    column("»A.theta", "expression", "there is nothing named A.theta"),
+    column("»B.s", "expression", "did you mean B.theta?"),
+    column("»time", "expression", "a sweep has time where its motion has"),
+]
+"""What people who are new to the program write."""
+
+BAD_USES = [*MOTION, *ASSEMBLY, *LOADS, *COLUMNS, *ACTUATORS, *FIRST_TRIES]

@@ -36,6 +36,19 @@ def test_one_error_at_the_place_of_the_mistake(bad: BadMechanism) -> None:
     assert not missing, str(error)
 
 
+def test_a_misspelt_plane_is_the_only_error() -> None:
+    text = """format: 1
+Plane: xy
+links: {crank: {mass: 1, center_of_mass: [20, 0], inertia: 10 kg*mm^2}}
+joints: {O: {type: R, links: [ground, crank], point: [0, 0]}}
+motion: {inputs: {O.theta: {from: 0, to: 90, step: 10}}}
+"""
+    for word in ("Plane", "plan", "in_plane"):
+        (error,) = errors(text.replace("Plane", word))
+        assert str(error).startswith("bad.yaml:2:1: error: there is no key")
+        assert "plane" in str(error)
+
+
 def test_independent_errors_are_reported_together_in_the_order_of_the_file() -> None:
     text = (
         SOUND.replace("mass: 1,", "mass: -1,")

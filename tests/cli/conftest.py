@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ class Interrupting:
 
 sys.meta_path.insert(0, Interrupting(sys.argv[1]))
 sys.argv = ["mechkin", *sys.argv[2:]]
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 main()
 """
 LOADED = [

@@ -337,7 +337,7 @@ def test_modes_json(mechkin) -> None:
     run = mechkin("modes", RCSR, "--at", "170", "--json")
     assert (run.code, run.err) == (0, "")
     assert [set(mode) for mode in run.json["modes"]] == [
-        {"name", "coordinates", "residual", "condition"}
+        {"name", "coordinates", "residual", "condition", "places"}
     ] * 2
     assert run.json["modes"][1]["coordinates"]["O1.theta"] == 170
     assert run.json["assembly"] == "B"

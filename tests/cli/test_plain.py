@@ -136,7 +136,7 @@ def test_all_else_is_left_to_typer(words: list[str]) -> None:
 def test_a_plain_line_loads_no_typer(tmp_path: Path) -> None:
     script = (
         "import atexit, sys\n"
-        "from mechkin_cli.cli.main import main\n"
+        "from mechkin_cli.__main__ import main\n"
         "heavy = ('typer', 'click', 'rich', 'pydantic_core', 'scipy')\n"
         "atexit.register(lambda: print([m for m in heavy if m in sys.modules], file=sys.stderr))\n"
         f"sys.argv[1:] = ['analyze', {str(RCSR)!r}, '--out', {str(tmp_path)!r}, '--quiet']\n"

@@ -64,7 +64,7 @@ def test_a_plot_of_no_column_is_told_at_its_place(mechkin, write) -> None:
 def test_without_matplotlib_it_says_what_to_install(write, folder) -> None:
     script = (
         "import sys\nsys.modules['matplotlib'] = None\n"
-        "from mechkin_cli.cli.main import main\nmain()\n"
+        "from mechkin_cli.__main__ import main\nmain()\n"
     )
     file = write("crank.yaml", PLOTTED)
     run = subprocess.run(

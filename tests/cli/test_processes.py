@@ -173,7 +173,7 @@ def test_what_earlier_analyses_left_is_collected(tmp_path: Path) -> None:
     program = tmp_path / "again.py"
     program.write_text(
         "import sys\n"
-        "from mechkin_cli.cli.main import main\n"
+        "from mechkin_cli.__main__ import main\n"
         f"sys.argv = ['mechkin', 'analyze', {str(RCSR)!r}]\n"
         "for _ in range(3):\n"
         "    try:\n"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ from cli import files
 HIDE, SHOW = b"\x1b[?25l", b"\x1b[?25h"
 WORK = """
 import sys, time
-from mechkin_cli.cli.main import end_quietly
+from mechkin_cli.__main__ import end_quietly
 from mechkin_cli.cli.messages import say
 from mechkin_cli.cli.progress import working
 end_quietly()
@@ -62,6 +63,28 @@ def test_after_a_second_on_a_terminal() -> None:
     assert b"a message\r\n" in text
     assert text.count(HIDE) == text.count(SHOW) == 2
     assert text.rindex(SHOW) > text.rindex(HIDE)
+
+
+COUNTED = """
+import time
+from mechkin_cli.cli.progress import counting
+with counting("coupler_lengths", "variants") as count:
+    count(40000, 60000)
+    time.sleep(1.3)
+    count(56000, 60000)
+    time.sleep(0.4)
+"""
+
+
+def test_a_bar_is_there_before_the_first_piece_and_fits_80_columns() -> None:
+    """16000 in 1.3 s, whatever was done before this run: 12 thousand a second at most."""
+    code, text = on_terminal(work=COUNTED)
+    assert code == 0
+    lines = [re.sub(rb"\x1b\[[0-9;?]*[a-zA-Z]", b"", each).decode() for each in text.split(b"\r")]
+    assert any("|######----| 40000/60000 variants 0:00:01" in line for line in lines)
+    late = next(line for line in lines if "56000/60000" in line)
+    assert re.search(r"56000/60000 variants, (9|1[0-2])\d{3}/s, 0:00 left 0:00:0[12]", late)
+    assert all(len(line.strip()) < 80 and "\u2026" not in line for line in lines)
 
 
 @pytest.mark.parametrize("words", [("0.2",), ("1.6", "quiet")])

@@ -288,6 +288,26 @@ def test_a_decimal_comma_changes_marks_and_separators_alone(mechkin, write, fold
     assert (folder / "comma" / "tip.csv").read_text().splitlines()[:2] == ["O.theta;x", "0;2"]
 
 
+def test_a_decimal_comma_stands_in_all_cells_of_markdown_and_latex(mechkin, write, folder) -> None:
+    """The same lines as with a point, but for the marks in numbers of cells."""
+    text = CRANK.replace("title: The tip", "title: Tip at 1.5, summary: [max, rms]")
+    path = write("crank.yaml", text)
+    for mark in ("point", "comma"):
+        mechkin("analyze", path, "--format", "md,tex", "--decimal", mark, "--out", mark)
+    number = re.compile(r"(\d)\.(\d)")
+    for name, is_cells in (("tip.md", "| "), ("tip.tex", "")):
+        lines = (folder / "point" / name).read_text(encoding="utf-8").splitlines()
+        found = (folder / "comma" / name).read_text(encoding="utf-8").splitlines()
+        expected = [
+            number.sub(r"\1,\2", line)
+            if line.startswith(is_cells) and "Tip at" not in line
+            else line
+            for line in lines
+        ]
+        assert found == expected
+        assert found != lines
+
+
 def test_an_unknown_decimal_mark_is_refused(mechkin, write) -> None:
     run = mechkin("analyze", write("crank.yaml", CRANK), "--decimal", "dot")
     assert run.code == 2

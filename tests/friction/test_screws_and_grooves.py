@@ -91,6 +91,61 @@ def test_a_nut_that_does_not_lock_runs_down_its_screw() -> None:
     assert np.abs(have - want).max() < 1e-10 * np.abs(want).max()
 
 
+LIGHT = """name: light nut
+links: {{nut: {{mass: 1, center_of_mass: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: {inertia!r}}}}}}}
+joints: {{H: {{type: H, links: [ground, nut], point: [0, 0, 0], axis: [0, 0, 1], lead: {lead!r}}}}}
+loads:
+  - {{type: gravity, g: [0, 0, -9.81]}}
+  - {{type: friction, joint: H, coefficient: {mu!r}, radius: 0.01}}
+  - {{type: torque, joint: H, value: {torque!r} N*m}}
+responses:
+  r: {{start: {{H.theta: 0, H.theta_dot: 0}}, time: {{from: 0, to: 0.01, count: 3}}}}
+"""
+
+
+def answers(p: float, mu: float, inertia: float, torque: float) -> tuple[bool, list[float]]:
+    """Whether the nut of 1 kg may rest, and the turn'' with which it may start: with friction z
+    along the thread (inertia + p^2) turn'' = torque - G p -+ z r/cos(lead angle), the normal load
+    is N = N0 +- g z, and z = mu |N|."""
+    angle = atan(p / RADIUS)
+    arm, whole = RADIUS / cos(angle), inertia + p * p
+    push = torque - G * p
+    sense = np.sign(push)
+    normal = (p * push / whole + G) / cos(angle)
+    gain = sense * (sin(angle) - p * arm / whole) / cos(angle)
+    held = abs(push) / arm
+    roots = [mu * normal / (1 - mu * gain), -mu * normal / (1 + mu * gain)]
+    slips = [z for z in roots if 0 <= z < held and z <= mu * abs(normal + gain * z) * (1 + 1e-9)]
+    starts = [sense * (abs(push) - z * arm) / whole for z in slips]
+    return held <= mu * abs(normal + gain * held), starts
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_a_nut_of_any_inertia_at_rest(seed: int) -> None:
+    """It rests where nothing else is possible, however much friction makes of itself; it slides
+    where one friction force alone loads the thread so; else several answers are true."""
+    rng = np.random.default_rng(seed)
+    p, mu = RADIUS * tan(rng.uniform(0.02, 0.8)), float(rng.uniform(0.05, 0.9))
+    inertia = float(10 ** rng.uniform(-7, -3))
+    torque = float(G * p + rng.uniform(-2, 2) * G * RADIUS * mu)
+    may_rest, starts = answers(p, mu, inertia, torque)
+    text = LIGHT.format(inertia=inertia, lead=2 * pi * p, mu=mu, torque=torque)
+    found = mk.loads(HEAD + text).respond("r", ["H.theta", "time"])
+    status, turn = str(found["row.status"][-1]), float(found["H.theta"][-1])
+    if may_rest and not starts:
+        assert (status, turn) == ("ok", 0.0)
+    elif may_rest or len(starts) > 1:
+        assert status == "friction-undecided"
+    elif status == "ok":
+        assert turn == pytest.approx(starts[0] * 0.01**2 / 2, rel=1e-9)
+    else:
+        # it goes with one friction force, but once it moves another is as good
+        angle = atan(p / RADIUS)
+        gain = (sin(angle) - p * RADIUS / cos(angle) / (inertia + p * p)) / cos(angle)
+        assert status == "friction-undecided"
+        assert mu * abs(gain) > 1
+
+
 GROOVE = """name: groove
 links: {{x: {{}}, y: {{}}, ball: {{mass: 2, center_of_mass: [0, 0, 0]}}}}
 joints:

@@ -3,7 +3,7 @@ the message blames what is held, at a place that closed forms know, and only the
 
 from __future__ import annotations
 
-from math import acos, degrees, sqrt
+from math import acos, asin, degrees, sqrt
 
 import numpy as np
 import pytest
@@ -110,12 +110,16 @@ def test_a_plane_held_at_its_ball_ends_at_a_branch_point_of_its_own() -> None:
     assert abs(found.numbers[0].value - degrees(acos(1.0 / 3.0))) < LIMIT
 
 
-def test_a_held_slide_between_two_planes_runs_away() -> None:
+@pytest.mark.parametrize(("to", "half_turns"), [(360, 0), (-360, -1)])
+def test_a_held_slide_between_two_planes_runs_away(to: int, half_turns: int) -> None:
     """The line of both planes comes to stand across the slide that is held: its direction is that
-    of n1 x n3, and x of the fixed plane is along [1, 0, 0]."""
-    found, _ = ended(TWO_PLANES)
+    of n1 x n3, and x of the fixed plane is along [1, 0, 0], so that sin(theta) = 0.5 0.3. The slide
+    is thousands of times as long as the drawing before it, where following stops."""
+    found, _ = ended(TWO_PLANES.replace("to: 360", f"to: {to}"))
     assert found.code == "hold-ends"
     assert "E2.x" in found.message
+    place = 180 * half_turns + (-1) ** half_turns * degrees(asin(0.15))
+    assert abs(found.numbers[0].value - place) < 1e-2
 
 
 def test_the_dead_centre_of_another_loop_is_that_of_the_mechanism() -> None:
@@ -129,3 +133,27 @@ def test_the_dead_centre_of_another_loop_is_that_of_the_mechanism() -> None:
     )
     found, _ = ended(text)
     assert found.code == "dead-centre"
+
+
+def test_ranges_end_where_the_hold_does() -> None:
+    """They say so; the ends of the pad that is held are where the rod stands across its slide."""
+    found = mk.loads(ROD_AND_PAD.format(way=[0, 1, 0], height=0.5, x=0.6, y=0.3)).ranges()
+    reach = sqrt(0.6**2 + 0.3**2)
+    for item in found.ranges:
+        assert (item.lower.kind, item.upper.kind) == ("hold-ends", "hold-ends")
+        assert abs(item.lower.value - (0.3 - reach)) < LIMIT
+        assert abs(item.upper.value - (0.3 + reach)) < LIMIT
+    (note,) = [d for d in found.diagnostics if d.code == "hold-ends"]
+    assert "E.y" in note.message
+    assert "drive it" in (note.hint or "")
+
+
+def test_ranges_of_the_mechanism_itself_end_at_its_dead_centres() -> None:
+    """The upper end rises from 0.5 to the rod's length, and falls as far below the plane."""
+    found = mk.loads(ROD_AND_PAD.format(way=[0, 0, 1], height=0.5, x=0.6, y=0)).ranges()
+    reach = sqrt(0.6**2 + 0.5**2)
+    for item in found.ranges:
+        assert (item.lower.kind, item.upper.kind) == ("dead-centre", "dead-centre")
+        assert abs(item.lower.value - (-0.5 - reach)) < LIMIT
+        assert abs(item.upper.value - (-0.5 + reach)) < LIMIT
+    assert "hold-ends" not in {d.code for d in found.diagnostics}

@@ -21,8 +21,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kernel.added_pair import ADDITIONS, GENERATED, LETTER, MECHANISM
 from kernel.compiler import COMPILER, NARROW
-from kernel.pin_in_slot import ADDITIONS, GENERATED, LETTER, MECHANISM
 from kernel.test_power_balance import MECHANISM as LOADED
 
 ROOT = Path(__file__).parents[2]
@@ -107,7 +107,7 @@ def test_the_new_pair_passes_the_identity_tests(copy: Path) -> None:
 
 
 def test_the_json_schema_is_generated_with_it(copy: Path) -> None:
-    run = "from mechkin_cli.cli.main import main; sys.argv[:] = ['mechkin', 'schema']; main()"
+    run = "from mechkin_cli.__main__ import main; sys.argv[:] = ['mechkin', 'schema']; main()"
     text = python(copy, run)
     json.loads(text)
     assert f'"const": "{LETTER}"' in text

@@ -12,12 +12,15 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.mobility import dimension
 
 SQUARE = ((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0))
 REGULAR = {
@@ -82,6 +85,15 @@ def table(
     return "\n".join(lines)
 
 
+def on_rods_of_a_length(feet: tuple[tuple[float, float], ...], drawn: tuple[float, float]) -> str:
+    """A table drawn at x, y on rods of the length L, a parameter (1 m)."""
+    text = table(feet, drawn).replace("format: 1", "format: 1\nparameters: {L: 1 m}")
+    x, y = drawn
+    z = -math.sqrt(1.0 - x * x - y * y)
+    assert f"{z!r}]" in text
+    return text.replace(f"{z!r}]", f"'-sqrt(L^2 - ({x!r} m)^2 - ({y!r} m)^2)']")
+
+
 def middles(places: tuple[tuple[float, float], ...], size: float, seed: int) -> np.ndarray:
     """Where the table's middle is at some places (places, 3)."""
     flat = np.array([(a, b, -math.sqrt(1.0 - a * a - b * b)) for a, b in places])
@@ -126,6 +138,60 @@ def test_the_hold_is_as_regular_as_the_rods_lie() -> None:
         check(table(drawn=places[0], places=places, names=names, seed=seed), places, 1.0, seed)
 
 
+@pytest.fixture
+def searches(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """A number for each search for the families of a drawing."""
+    found: list[int] = []
+    directions = dimension.directions
+
+    def counted(*args: Any) -> Any:
+        found.append(len(found))
+        return directions(*args)
+
+    monkeypatch.setattr(dimension, "directions", counted)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("feet", "drawn", "variants"), [(SQUARE, (0.0, 0.0), 20), (REGULAR[5], (0.3, 0.2), 5)]
+)
+def test_variants_go_on_in_the_family_of_the_file(
+    feet: tuple[tuple[float, float], ...],
+    drawn: tuple[float, float],
+    variants: int,
+    searches: list[int],
+) -> None:
+    text = on_rods_of_a_length(feet, drawn)
+    model = mk.loads(text)
+    x, y = np.array(PLACES).T
+    model.analyze()
+    assert len(searches) == 1
+    lengths = np.linspace(0.8, 1.5, variants)
+    varied = model.vary({"L": lengths}, ["c.position.z", "c.position.x.effort"])
+    z = -np.sqrt(lengths[:, None] ** 2 - x * x - y * y)
+    assert np.abs(varied["c.position.z"] - z).max() < 1e-12
+    assert np.abs(varied["c.position.x.effort"] + 100.0 * x / z).max() < 1e-9
+    found = model.sensitivities(["c.position.z"])
+    slope = -1.0 / np.sqrt(1.0 - x * x - y * y)
+    assert np.abs(found["c.position.z", "L"] - slope).max() < 1e-9
+    one = model.with_parameters({"L": 1.2}).analyze(["c.position.z"])["c.position.z"]
+    assert len(searches) == 1
+    fresh = mk.loads(text, parameters={"L": 1.2}).analyze(["c.position.z"])["c.position.z"]
+    assert np.abs(one - fresh).max() < 1e-12
+
+
+def test_a_variant_without_the_family_is_searched_anew(searches: list[int]) -> None:
+    """Two of the rods are shorter: where they swing the table tilts, and nothing of it rests."""
+    text = on_rods_of_a_length(SQUARE, (0.0, 0.0)).replace("L: 1 m", "L: 1 m, e: 0 m")
+    text = re.sub(r"(A[01]: .*), 0\.0\]", r"\1, -e]", text)
+    model = mk.loads(text)
+    assert model.problem.stopped
+    assert len(searches) == 1
+    fresh, varied = mk.loads(text, parameters={"e": 0.1}), model.with_parameters({"e": 0.1})
+    assert len(searches) == 3
+    assert varied.problem.stopped == fresh.problem.stopped == ()
+
+
 def test_efforts_are_those_of_the_sphere() -> None:
     names = "c.position.x.effort, c.position.y.effort, B0.force.z"
     analysis = mk.loads(table(columns=names)).analyze()
@@ -134,6 +200,25 @@ def test_efforts_are_those_of_the_sphere() -> None:
     assert analysis["c.position.x.effort"] == pytest.approx(100.0 * x / z, rel=1e-12)
     assert analysis["c.position.y.effort"] == pytest.approx(100.0 * y / z, rel=1e-12)
     assert np.isnan(analysis["B0.force.z"]).all()  # four rods, three of which would do
+
+
+@pytest.mark.parametrize("drawn", [(0.0, 0.0), (0.3, 0.2)], ids=str)
+def test_modes_are_those_of_the_sphere(drawn: tuple[float, float]) -> None:
+    """A table that tilts has assemblies at the same inputs that the rods hold without a turn more:
+    none of its own family."""
+    model = mk.loads(table(drawn=drawn, columns="c.position.z, c.position.x.effort"))
+    found = model.modes()
+    assert [mode.name for mode in found.modes] == ["A", "B"]
+    assert [d.code for d in found.diagnostics if "turns to first order" in d.message] == [
+        "family-modes"
+    ]
+    x, y = np.array(PLACES).T
+    for mode, side in (("A", -1.0), ("B", 1.0)):
+        analysis = model.analyze(mode=mode)
+        z = side * np.sqrt(1.0 - x * x - y * y)
+        assert analysis["row.status"].tolist() == ["ok"] * len(PLACES)
+        assert np.abs(analysis["c.position.z"] - z).max() < 1e-12
+        assert np.abs(analysis["c.position.x.effort"] + 100.0 * x / z).max() < 1e-9
 
 
 def test_rates_are_those_of_the_sphere() -> None:
@@ -160,6 +245,16 @@ def test_a_load_about_the_rods_has_no_finite_reactions() -> None:
     rods = middles(PLACES, 1.0, 0)
     most = np.max(np.abs(5.0 * rods[:, 2] / (rods @ rods[0])))
     assert said.measured == f"{most:.6g} N*m"
+
+
+def test_variants_say_that_no_finite_reactions_hold_them() -> None:
+    """Also where no reaction is asked for, whose being arbitrary would have them run alone."""
+    loads = "[{type: torque, link: top, torque: [0, 0, turning]}]"
+    text = "parameters: {turning: 5 N*m}\n" + table(loads=loads, columns="c.position.z")
+    found = mk.loads(text).vary({"turning": [0.0, 5.0]}, ["c.position.x.effort", "c.position.z"])
+    assert found.status.tolist() == [["ok"] * 3, ["unsupported"] * 3]
+    assert np.abs(found["c.position.x.effort"][0]).max() < 1e-12
+    assert np.isnan(found["c.position.x.effort"][1]).all()
 
 
 def test_a_load_square_to_the_rods_is_carried() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 import numpy as np
@@ -19,6 +20,7 @@ from modes.random_loops import (
 from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
+from mechkin_cli.templates import template_text
 
 
 def text(*joints: str) -> str:
@@ -127,6 +129,20 @@ def test_letters_follow_branches_and_not_the_order_elsewhere() -> None:
             ) % 360 == pytest.approx(360, abs=1e-9)
 
 
+def test_places_tell_modes_apart_where_coordinates_do_not() -> None:
+    """The Delta robot's rods hang in balls, which have no coordinate: sixteen lines were alike."""
+    model = mk.loads(template_text("delta"))
+    found = model.modes()
+    told = [tuple(round(value, 3) for value in mode.places.values()) for mode in found.modes]
+    assert len(set(told)) == len(found.modes) == 16
+    for mode in found.modes[::5]:
+        first = model.analyze(tables=[], mode=mode.name)
+        for name, value in mode.places.items():
+            assert first[name][0] == pytest.approx(value, abs=1e-9)
+    assert all(next(iter(mode.places)) in str(found) for mode in found.modes)
+    assert all(mode.places == {} for mode in mk.load(RCSR).modes().modes)
+
+
 def test_modes_that_no_branch_reaches_have_no_letter() -> None:
     """Of more modes than at the first row the surplus has no letter; a branch that ended lends its
     own to none."""
@@ -212,3 +228,41 @@ def test_a_weld_alone_is_one_mode() -> None:
     text = "format: 1\nlinks: {one: {}}\njoints: {A: {type: W, links: [ground, one]}}\n"
     (mode,) = mk.loads(text).modes().modes
     assert (mode.name, mode.coordinates) == ("A", {})
+
+
+@pytest.mark.parametrize("at", ["A", "B", "C", "D"])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_plane_four_bar_with_one_cylinder_has_two_modes_and_no_more(at: str, seed: int) -> None:
+    """R-R-C-R and its like, pins at any heights: the slide stands still, and the rocker has the two
+    directions of a triangle's side."""
+    rng = np.random.default_rng(seed)
+    crank, rocker, ground = 1.0, rng.uniform(2.0, 3.0), rng.uniform(2.5, 3.5)
+    drawn, lifted = rng.uniform(1.0, 2.0, 2)
+    pins = {
+        "A": (0.0, 0.0),
+        "B": (crank * math.cos(drawn), crank * math.sin(drawn)),
+        "C": (ground + rocker * math.cos(lifted), rocker * math.sin(lifted)),
+        "D": (ground, 0.0),
+    }
+    links = {"A": "ground, crank", "B": "crank, rod", "C": "rod, rocker", "D": "ground, rocker"}
+    joints = "".join(
+        f"  {name}: {{type: {'C' if name == at else 'R'}, links: [{links[name]}], "
+        f"point: [{float(x)!r}, {float(y)!r}, {rng.uniform(-1, 1)!r}], axis: [0, 0, 1]}}\n"
+        for name, (x, y) in pins.items()
+    )
+    held = ", A.s: {at: 0}" if at == "A" else ""
+    found = mk.loads(
+        "format: 1\nname: four-bar\nunits: {angle: rad}\n"
+        f"links: {{crank: {{}}, rod: {{}}, rocker: {{}}}}\njoints:\n{joints}"
+        f"motion: {{inputs: {{A.theta: {{at: 0.3}}{held}}}}}\n"
+    ).modes()
+    (bx, by), (cx, cy) = pins["B"], pins["C"]
+    rod = math.hypot(cx - bx, cy - by)
+    x, y = crank * math.cos(drawn + 0.3) - ground, crank * math.sin(drawn + 0.3)
+    side = math.hypot(x, y)
+    half = math.acos((side**2 + rocker**2 - rod**2) / (2 * side * rocker))
+    want = sorted(math.remainder(math.atan2(y, x) + s * half - lifted, math.tau) for s in (-1, 1))
+    assert found.complete
+    assert found.bound == 2
+    have = sorted(mode.coordinates["D.theta"] for mode in found.modes)
+    assert np.abs(np.array(have) - want).max() < 1e-9

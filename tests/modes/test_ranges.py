@@ -60,6 +60,31 @@ def test_a_driven_rocker_swings_between_its_dead_centres() -> None:
     assert len({item.circuit for item in swings}) == 1
 
 
+@pytest.mark.parametrize("turns", [10, 10**10])
+def test_whole_turns_change_nothing(turns: int) -> None:
+    """A rocker driven from so many turns away swings between the same dead centres, farther on, and
+    stands in the same modes."""
+    here, far = (four_bar(2, 5, 4, 6, "D", at=at) for at in (7, 7 + 360 * turns))
+    for one, other in zip(here.ranges().ranges, far.ranges().ranges, strict=True):
+        assert (one.mode, one.turns, one.circuit) == (other.mode, other.turns, other.circuit)
+        rounding = 360 * turns * 2.0**-52
+        for end, moved in ((one.lower, other.lower), (one.upper, other.upper)):
+            assert end.kind == moved.kind
+            assert abs(moved.value - (end.value + 360 * turns)) <= 2 * rounding
+    for found in (far.modes(), here.modes(at={"D.theta": 7 + 360 * turns})):
+        modes = {round(mode.coordinates["A.theta"], 6): mode for mode in found.modes}
+        for mode in here.modes().modes:
+            other = modes[round(mode.coordinates["A.theta"], 6)]
+            assert abs(other.coordinates["A.theta"] - mode.coordinates["A.theta"]) < 1e-11
+
+
+def test_so_many_turns_are_refused() -> None:
+    with pytest.raises(mk.InvalidFile, match="nothing is left of the place within one"):
+        four_bar(2, 5, 4, 6, "A", at=1e99)
+    with pytest.raises(mk.UsageError, match="too large"):
+        four_bar(2, 5, 4, 6, "A").modes(at={"A.theta": 1e99})
+
+
 def x_of(crank: float, coupler: float, rocker: float, ground: float) -> float:
     base = ground - crank
     return crank + (coupler**2 - rocker**2 + base**2) / (2 * base)

@@ -146,6 +146,18 @@ def test_rows_that_are_near_singular_are_marked():
     assert hollow.get_xdata().tolist() == [40.0]
 
 
+def test_every_doubtful_status_has_a_mark_of_its_own():
+    result = mk.loads(FOUR_BAR).analyze(tables=[])
+    doubtful = [
+        s for s in mk.Status if s.has_solution and s not in {mk.Status.ok, mk.Status.dead_centre}
+    ]
+    result.result.row_states.status[: len(doubtful)] = doubtful
+    (axes,) = drawn(result.picture(["D.theta"])).axes
+    legend = axes.get_legend()
+    assert [text.get_text() for text in legend.get_texts()] == [s.label for s in doubtful]
+    assert len({line.get_marker() for line in axes.lines[1:]}) == len(doubtful)
+
+
 def test_a_row_between_two_gaps_is_seen(analysis):
     (axes,) = drawn(analysis.picture(["sqrt(sin(3*A.theta) - 0.99)"])).axes
     # only 30, 150 and 270 degrees have a value

@@ -274,7 +274,8 @@ WITHOUT = {
     ("CylinderPlaneJoint", "axis"),
     ("CylinderPlaneJoint", "normal"),
     ("Column", "value"),
-    ("ShapeOfLink", "points"),
+    *(("ShapeOfLink", key) for key in ("axis", "points", "radius", "width")),
+    ("PartBetween", "radius"),
     *(("ViewSection", key) for key in ("arrow_length", "camera", "joint_radius", "speed")),
 }
 """Directions, whose unit does not matter (those of R, C and of `directions:` are in lengths);

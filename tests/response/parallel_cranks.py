@@ -11,8 +11,11 @@ import mpmath as mp
 GRAVITY = 9.81
 
 
-def parallel_cranks(loops: int, *lines: str, straight: bool = True, more: str = "") -> str:
-    """The mechanism with a response `run` of the `lines`; uniform rods of 1 kg."""
+def parallel_cranks(
+    loops: int, *lines: str, straight: bool = True, more: str = "", flat: bool = False
+) -> str:
+    """The mechanism with a response `run` of the `lines`; uniform rods of 1 kg. `flat`: in a plane,
+    where each loop has two equations."""
     rod = f"inertia: {{zz: {1 / 12!r}, xx: {1 / 24!r}, yy: {1 / 24!r}}}"
     links, joints = "", ""
     for i in range(loops + 1):
@@ -25,9 +28,15 @@ def parallel_cranks(loops: int, *lines: str, straight: bool = True, more: str = 
             f"  C{i}: {{type: R, links: [bar{i}, crank{i + 1}], point: [{i + 1}, 1, 0], {AXIS}}}\n"
         )
     asked = "assembly: {at_branch_points: straight}\n" if straight else ""
+    plane = "plane: xy\n" if flat else ""
+    if flat:
+        links = links.replace(rod, f"inertia: {1 / 12!r}").replace(", 0]", "]")
+        joints = joints.replace(f", 0], {AXIS}", "]")
+    down = f"[0, -{GRAVITY}]" if flat else f"[0, -{GRAVITY}, 0]"
     return (
-        f"format: 1\nname: parallel cranks\nunits: {{angle: rad}}\nlinks:\n{links}joints:\n{joints}"
-        f"loads: [{{type: gravity, g: [0, -{GRAVITY}, 0]}}]\n{asked}{more}"
+        f"format: 1\nname: parallel cranks\n{plane}units: {{angle: rad}}\n"
+        f"links:\n{links}joints:\n{joints}"
+        f"loads: [{{type: gravity, g: {down}}}]\n{asked}{more}"
         f"responses:\n  run:\n" + "".join(f"    {line}\n" for line in lines)
     )
 

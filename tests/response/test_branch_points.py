@@ -46,6 +46,23 @@ def test_parallel_cranks_are_a_compound_pendulum(loops: int, rate: float) -> Non
     assert f"and {int(np.floor(turned / np.pi + 0.5)) - 4} more" in str(note)
 
 
+@pytest.mark.parametrize("loops", [20, 40])
+def test_many_parallel_cranks_pass_at_once(loops: int) -> None:
+    text = parallel_cranks(
+        loops,
+        "start: {A0.theta: 0, A0.theta_dot: 9 rad/s}",
+        "time: {values: [0, 0.1, 0.2]}",
+        "tolerance: 1e-12",
+        flat=True,
+    )
+    found = mk.loads(text).respond("run")
+    assert set(found["row.status"]) == {"ok"}
+    assert found["A0.theta"][-1] > np.pi / 2
+    assert miss(found, CompoundPendulum(loops, 9.0)) < 1e-11
+    assert np.max(np.abs(found[f"A{loops}.theta"] - found["A0.theta"])) < 1e-12
+    assert np.max(found["row.energy_error"]) < 1e-10
+
+
 def test_rows_at_a_branch_point_and_next_to_it_are_there() -> None:
     pendulum = CompoundPendulum(1, 2.0)
     angles = [mp.pi / 2 + off for off in (-1e-3, -1e-6, 0, 1e-6, 1e-3)]

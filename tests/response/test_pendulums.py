@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -85,14 +86,14 @@ responses:
 """
 
 
-def test_a_spherical_pendulum() -> None:
-    """z'^2 = 2 (E - g z)(1 - z^2) - h^2 = 2 g (z - z1)(z2 - z)(z3 - z); z = z1 + (z2 - z1) sn^2."""
-    found = respond(SPHERICAL)
+def spherical(
+    g: mp.mpf, tilt: mp.mpf, speed: mp.mpf, times: Iterable[float]
+) -> tuple[list[mp.mpf], mp.mpf]:
+    """Heights of a spherical pendulum of length 1 that starts at a `speed` square to the plane of
+    its tilt, and its moment of momentum h by mass: z'^2 = 2 (E - g z)(1 - z^2) - h^2
+    = 2 g (z - z1)(z2 - z)(z3 - z); z = z1 + (z2 - z1) sn^2."""
     with mp.workdps(40):
-        g, tilt = mp.mpf("9.81"), mp.mpf("0.6")
         z0 = -mp.cos(tilt)
-        # the bob moves about x at distance cos(tilt), square to the plane of its swing
-        speed = mp.mpf("2.5") * mp.cos(tilt)
         h, energy = speed * mp.sin(tilt), speed**2 / 2 + g * z0
         roots = mp.polyroots([2 * g, -2 * energy, -2 * g, 2 * energy - h * h], maxsteps=200)
         z1, z2, z3 = sorted(mp.re(z) for z in roots)
@@ -100,11 +101,75 @@ def test_a_spherical_pendulum() -> None:
         sn = mp.ellipfun("sn")
         # it starts at one of its turning points
         begin = 0 if abs(z0 - z1) < abs(z0 - z2) else mp.ellipk(m)
-        heights = [z1 + (z2 - z1) * sn(w * mp.mpf(t) + begin, m=m) ** 2 for t in found["time"]]
+        return [z1 + (z2 - z1) * sn(w * mp.mpf(t) + begin, m=m) ** 2 for t in times], h
+
+
+def test_a_spherical_pendulum() -> None:
+    found = respond(SPHERICAL)
+    with mp.workdps(40):
+        tilt = mp.mpf("0.6")
+        # the bob moves about x at distance cos(tilt), square to the plane of its swing
+        speed = mp.mpf("2.5") * mp.cos(tilt)
+        heights, h = spherical(mp.mpf("9.81"), tilt, speed, found["time"])
     assert off(found["bob_at.position.z"], heights) < EXACT
     x, y = found["bob_at.position.x"], found["bob_at.position.y"]
     u, v = found["bob_at.velocity.x"], found["bob_at.velocity.y"]
     assert off(np.abs(x * v - y * u), 0 * x + abs(float(h))) < EXACT
+
+
+TABLE = """format: 1
+name: table on four equal parallel legs, drawn hanging
+units: {{angle: rad}}
+links:
+  top: {{mass: 3, center_of_mass: [0, 0, -1]}}
+  x: {{}}
+  y: {{}}
+  z: {{}}
+{legs}joints:
+{feet}  X: {{type: P, links: [ground, x], point: [0, 0, 0], axis: [1, 0, 0]}}
+  Y: {{type: P, links: [x, y], point: [0, 0, 0], axis: [0, 1, 0]}}
+  Z: {{type: P, links: [y, z], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: S, links: [z, top], point: [0, 0, -1]}}
+points:
+  middle: {{link: top, at: [0, 0, -1]}}
+  corner: {{link: top, at: [1, 0, -1]}}
+loads:
+  - {{type: gravity, g: [0, 0, -9.81]}}
+responses:
+  run:
+    start: {{X.s: {x!r}, Y.s: 0, X.s_dot: 0, Y.s_dot: {speed!r}}}
+    time: {{from: 0, to: 3, step: 0.125}}
+    tolerance: 1e-13
+"""
+
+
+@pytest.mark.parametrize("rod", [0, 2])
+@pytest.mark.parametrize(("tilt", "speed"), [("0.6", "1.3"), ("0", "2.5")])
+def test_a_table_that_hangs_on_parallel_legs(tilt: str, speed: str, rod: int) -> None:
+    """Drawn where families of motions meet: without a turn, its middle is a spherical pendulum.
+    Slender rods have half their mass in its weight and a third in its inertia."""
+    corners = {"1": (1, 1), "2": (-1, 1), "3": (-1, -1), "4": (1, -1)}
+    feet = "".join(
+        f"  F{k}: {{type: S, links: [ground, l{k}], point: [{x}, {y}, 0]}}\n"
+        f"  H{k}: {{type: S, links: [l{k}, top], point: [{x}, {y}, -1]}}\n"
+        for k, (x, y) in corners.items()
+    )
+    legs = "".join(
+        f"  l{k}: {{mass: {rod}, center_of_mass: [{x}, {y}, -0.5], "
+        f"inertia: {{xx: {rod / 12!r}, yy: {rod / 12!r}, zz: 0}}}}\n"
+        if rod
+        else f"  l{k}: {{}}\n"
+        for k, (x, y) in corners.items()
+    )
+    angle, rate = mp.mpf(tilt), mp.mpf(speed)
+    text = TABLE.format(legs=legs, feet=feet, x=float(mp.sin(angle)), speed=float(rate))
+    found = respond(text)
+    weight = mp.mpf("9.81") * (3 + 4 * mp.mpf(rod) / 2) / (3 + 4 * mp.mpf(rod) / 3)
+    heights, h = spherical(weight, angle, rate, found["time"])
+    assert off(found["middle.position.z"], heights) < EXACT
+    x, y = found["X.s"], found["Y.s"]
+    assert off(x * found["Y.s_dot"] - y * found["X.s_dot"], 0 * x + float(h)) < EXACT
+    assert off(found["corner.position.x"] - x, 0 * x + 1) < EXACT
 
 
 TOP = """format: 1

@@ -356,6 +356,9 @@ def test_conditions_and_counted_passages(stop: str, moment: float) -> None:
         ("abs(S.s - 1 m)", math.sqrt(4 / 9.81)),
         ("(S.s - 2 m)^2/(1 m)", math.sqrt(2 / 9.81)),
         ("max(S.s - 1 m, 1 m - S.s)", math.sqrt(4 / 9.81)),
+        # where a row is
+        ("(time - 1 s)^2/(1 s)", 1.0),
+        ("abs(time - 1.25 s)", 1.25),
     ],
 )
 def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
@@ -363,6 +366,56 @@ def test_a_value_that_only_touches_is_named(value: str, moment: float) -> None:
     assert off(touched["time"][-1], 5.0) < EXACT
     (note,) = [one for one in touched.diagnostics if one.code == "stop-touched"]
     assert f"touched at {moment:.6g} s" in note.message
+
+
+PASSING = """format: 1
+links: {{block: {{mass: 1, center_of_mass: [0, 0, 0]}}}}
+joints: {{S: {{type: P, links: [ground, block], point: [0, 0, 0], axis: [1, 0, 0]}}}}
+responses:
+  run:
+    start: {{S.s: -1.3, S.s_dot: 1}}
+    time: {{from: 0, to: 5, count: {rows}}}
+    stop: [{{value: "{value}", at: 0, direction: {direction}}}]
+"""
+
+
+def _passing(value: str, direction: str, rows: int = 6) -> tuple[float, set[str]]:
+    """When a block of 1 m/s ends, in s from where it passes S.s = 0, and the codes of its notes."""
+    found = mk.loads(PASSING.format(value=value, direction=direction, rows=rows)).respond("run")
+    return found["time"][-1] - 1.3, {one.code for one in found.diagnostics}
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-10, 1e-11, 1e-12])
+@pytest.mark.parametrize(
+    ("value", "down", "up"),
+    [("abs(S.s) - {}*1 m", -1.0, 1.0), ("S.s + 2*abs(S.s - {0}*1 m) - {0}*1.5 m", 0.5, 7 / 6)],
+)
+def test_passages_however_close_to_the_kink_between_them(
+    value: str, down: float, up: float, gap: float
+) -> None:
+    for direction, part in (("down", down), ("up", up)):
+        moment, codes = _passing(value.format(gap), direction)
+        assert abs(moment - part * gap) < 4e-15
+        assert "stop-touched" not in codes
+
+
+@pytest.mark.parametrize("rows", [6, 51])
+@pytest.mark.parametrize(
+    ("value", "order"),
+    [
+        # its kink lies beyond where it is passed, or before, or there
+        ("S.s + abs(S.s - 1e-10 m)/2 - 0.5e-10 m", 1),
+        ("S.s + abs(S.s + 1e-10 m)/2 - 0.5e-10 m", 1),
+        ("S.s + abs(S.s)/2", 1),
+        ("S.s*abs(S.s)/(1 m)", 2),
+        ("S.s^3/(1 m^2)", 3),
+    ],
+)
+def test_what_is_passed_the_other_way_is_not_touched(value: str, order: int, rows: int) -> None:
+    """The value rises all along; with 51 rows one lies where it passes. A zero of an order is met
+    as far as 1e-12 of the values tells."""
+    assert _passing(value, "down", rows) == (5.0 - 1.3, set())
+    assert abs(_passing(value, "up", rows)[0]) < (4e-15 if order == 1 else 1e-12 ** (1 / order))
 
 
 BAR = """format: 1

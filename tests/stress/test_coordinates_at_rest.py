@@ -35,7 +35,9 @@ def test_a_rocker_at_rest_makes_no_dead_centre(angle: int) -> None:
         assert abs(one.upper.value - 180) <= 1e-9
 
 
-def test_a_drawing_at_a_branch_point_is_not_called_beyond_a_dead_centre() -> None:
+def test_a_drawing_at_a_branch_point_goes_on_in_the_motion_in_which_the_crank_turns() -> None:
+    """The parallelogram's; in the other one coupler and rocker turn and the crank rests."""
     analysis = mk.loads(TEXT.format(assembly="")).analyze(["D.theta"])
-    assert analysis["row.status"].tolist() == ["branch-lost"] * 4
-    assert [d.code for d in analysis.diagnostics] == ["home-branch-ends"]
+    assert analysis["row.status"].tolist() == ["ok"] * 4
+    assert analysis["D.theta"] == pytest.approx([10, 40, 70, 100], abs=1e-9)
+    assert [d.code for d in analysis.diagnostics] == ["motions-meet"]

@@ -86,7 +86,7 @@ def machines(folder: Path) -> Iterator[Machines]:
 def command(study: Path, out: Path, *more: str) -> list[str]:
     code = (
         "import sys; from mechkin_cli.studies import study; study.MOST_IN_PIECE = 20; "
-        "from mechkin_cli.cli.main import main; sys.exit(main())"
+        "from mechkin_cli.__main__ import main; sys.exit(main())"
     )
     words = ["study", str(study), "--out", str(out), "--quiet", *more]
     # -P: the installed package, not the source folder that the tests may be started in

@@ -11,7 +11,7 @@ from references import FILE_OF
 from studies.studies import KEPT, MECHANISMS, RCSR, study_text
 
 import mechkin_cli as mk
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 from mechkin_cli.cli.progress import clock
 
 
@@ -142,6 +142,7 @@ BAD: tuple[tuple[dict[str, Any], str], ...] = (
     ({"vary": {}}, "the study varies nothing"),
     ({"vary": {"P1": [1], "P2": [1, 2]}, "lists": "together"}, "different lengths: P1 1, P2 2"),
     ({"keep": [{"of": "O9.theta", "as": "max"}]}, "O9"),
+    ({"keep": [{"of": "O1.torque", "as": "max"}]}, "did you mean O1.effort?"),
     ({"keep": [{"of": "O3.force", "as": "max"}]}, "is a vector, not one number"),
     ({"keep": [{"of": "row.status", "as": "max"}]}, "is words, no number"),
     ({"keep": [{"of": "O4.theta", "as": "value"}]}, "value needs a place"),

@@ -42,6 +42,7 @@ COLUMNS = [
     "norm(A.force)",
     "D.s.mechanical_advantage",
     "O.theta.reduced_inertia",
+    "row.power_error",
 ]
 
 

@@ -33,6 +33,27 @@ def test_existing_files_are_replaced(tmp_path):
     assert everything(tmp_path) == CONTENT
 
 
+@pytest.mark.parametrize("size", [0, 5, 1 << 16, (1 << 16) + 1])
+def test_a_file_of_the_same_content_stays_with_a_new_date(tmp_path, size):
+    same, other = b"." * size, b"." * size + b"old"
+    write_files(tmp_path, {"same.csv": same, "other.csv": other, "longer.csv": same})
+    for path in tmp_path.iterdir():
+        os.utime(path, (1, 1))
+    before = {path.name: path.stat().st_ino for path in tmp_path.iterdir()}
+    new = {"same.csv": same, "other.csv": b"." * size + b"new", "longer.csv": same + b"."}
+    write_files(tmp_path, new)
+    assert everything(tmp_path) == new
+    assert [name for name in new if (tmp_path / name).stat().st_ino == before[name]] == ["same.csv"]
+    assert all((tmp_path / name).stat().st_mtime > 1 for name in new)
+
+
+def test_a_link_to_the_same_content_becomes_a_file(tmp_path):
+    (tmp_path / "elsewhere").write_bytes(CONTENT["a.csv"])
+    (tmp_path / "a.csv").symlink_to("elsewhere")
+    write_files(tmp_path, CONTENT)
+    assert not (tmp_path / "a.csv").is_symlink()
+
+
 def test_new_files_have_the_usual_permissions(tmp_path):
     (tmp_path / "plain").write_bytes(b"")
     write_files(tmp_path, CONTENT)

@@ -71,11 +71,42 @@ def test_the_bytes_depend_on_the_tables_alone(source, monkeypatch):
     assert core.count("1980-01-01T00:00:00Z") == 2
 
 
+def test_rows_and_columns_beyond_a_piece_and_a_letter_are_in_their_places(source, monkeypatch):
+    monkeypatch.setattr(workbook, "ROWS_AT_ONCE", 3)
+    numbers = np.arange(8.0)
+    columns = [column_of_numbers(f"c{k}", "mm", numbers + 100 * k) for k in range(60)]
+    (sheet,) = book(
+        workbook.workbook_bytes([results_of(source, Columns("t", "", tuple(columns)))])
+    ).worksheets
+    for row, index, place in ((2, 0, "A2"), (4, 25, "Z4"), (5, 26, "AA5"), (9, 59, "BH9")):
+        assert sheet[place].value == 100 * index + row - 2
+    assert (sheet.max_row, sheet.max_column) == (9, 60)
+    text = words_of(['<b> & "c"', " blank ", "\u00e4"])
+    (sheet,) = book(
+        workbook.workbook_bytes(
+            [results_of(source, Columns("t", "", (TableColumn("s", "", text),)))]
+        )
+    ).worksheets
+    assert [sheet[f"A{row}"].value for row in (2, 3, 4)] == ['<b> & "c"', " blank ", "\u00e4"]
+
+
 def test_too_many_rows_are_refused(source, monkeypatch):
     pytest.importorskip("openpyxl")
     monkeypatch.setattr(workbook, "MOST_ROWS", 8)
     with pytest.raises(UsageError, match=r"table t has 9 rows with its header.*at most 8.*csv"):
         workbook.workbook_bytes([results_of(source, Columns("t", "", (column("x"),)))])
+
+
+def test_too_long_a_text_is_refused_and_not_cut(source):
+    pytest.importorskip("openpyxl")
+    for length in (32_767, 32_768):
+        table = Columns("t", "", (TableColumn("status", "", words_of(["x" * length])),))
+        if length == 32_767:
+            (sheet,) = book(workbook.workbook_bytes([results_of(source, table)])).worksheets
+            assert sheet["A2"].value == "x" * length
+            continue
+        with pytest.raises(UsageError, match=r"table t has a text of 32768 .*at most 32767.*csv"):
+            workbook.workbook_bytes([results_of(source, table)])
 
 
 def test_without_openpyxl_the_command_to_install_it_is_said(source, monkeypatch):

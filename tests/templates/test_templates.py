@@ -11,7 +11,7 @@ import yaml
 from mpmath import mp
 
 import mechkin_cli as mk
-from mechkin_cli.cli.main import main
+from mechkin_cli.__main__ import main
 from mechkin_cli.templates import USUAL, purpose, template_names, template_text
 
 ROOT = Path(__file__).parents[2]

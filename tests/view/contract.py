@@ -29,6 +29,7 @@ def _packed(kind: str) -> dict[str, Any]:
 TEXT = {"type": "string"}
 NUMBER = {"type": "number"}
 SWITCH = {"type": "boolean"}
+LENGTH = {"type": "number", "exclusiveMinimum": 0}
 INDEX = {"type": "integer", "minimum": 0}
 VECTOR = _list(NUMBER, minItems=3, maxItems=3)
 COLUMN = _object(label=TEXT, unit=TEXT)
@@ -41,7 +42,9 @@ def _shape(kind: Any, **more: Any) -> dict[str, Any]:
 
 SHAPE = {
     "oneOf": [
-        _shape({"enum": ["rod", "none"]}),
+        _shape({"const": "none"}),
+        _shape({"enum": ["rod", "cylinder"]}, radius=_or_null(LENGTH)),
+        _shape({"const": "wheel"}, normal=VECTOR, radius=LENGTH, width=LENGTH),
         _shape({"const": "plate"}, normal=VECTOR),
         _shape({"const": "star"}, centre=VECTOR),
     ]
@@ -52,7 +55,7 @@ BRANCH = _object(
     rows=INDEX,
     x=_packed("f64"),
     poses=_object(rows=_packed("i32"), values=_packed("f32")),
-    status=_object(words=_list(TEXT), codes=_packed("u8")),
+    status=_object(words=_list(TEXT), doubts=_list({"enum": [0, 1, 2]}), codes=_packed("u8")),
     marks=_list(
         _object(x=NUMBER, kind={"enum": ["dead-centre", "branch-point", "event"]}, text=TEXT)
     ),
@@ -106,9 +109,12 @@ DATA = _object(
             x=COLUMN,
             ties=_list(
                 _object(
-                    kind={"enum": ["spring", "damper"]},
+                    kind={"enum": ["spring", "damper", "cylinder"]},
+                    joint=_or_null(INDEX),
+                    turns=SWITCH,
                     links=_list(INDEX, minItems=2, maxItems=2),
-                    places=_list(VECTOR, minItems=2, maxItems=2),
+                    places=_list(VECTOR, maxItems=2),
+                    radius=_or_null(LENGTH),
                 )
             ),
             branches=_list(BRANCH, minItems=1),

@@ -73,7 +73,7 @@ def joint(
 
 
 def rod(*points: Any) -> dict[str, Any]:
-    return {"kind": "rod", "points": [list(each) for each in points]}
+    return {"kind": "rod", "points": [list(each) for each in points], "radius": None}
 
 
 NOTHING = {"kind": "none", "points": []}
@@ -106,6 +106,7 @@ def branch(
         },
         "status": {
             "words": ["ok", "near-singular", "beyond-dead-centre"],
+            "doubts": [0, 1, 2],
             "codes": packed("u8", np.zeros(len(x)) if codes is None else codes),
         },
         "marks": [],

@@ -38,7 +38,8 @@ motion: {inputs: {A.theta: {from: 0, to: 360, step: 10}}}
 
 
 def drawn(text: str) -> str:
-    return mechanism_picture(mk.loads(text).analyze(tables=[]).result)
+    analysis = mk.loads(text).analyze(tables=[])
+    return mechanism_picture(analysis.result, analysis.model.view_settings)
 
 
 def test_the_three_axes_are_seen_alike():
@@ -95,6 +96,43 @@ def test_links_end_where_the_closed_form_has_them():
     places = (seen - middle) * [scale, -scale] + [WIDTH / 2, HEIGHT / 2 - 4]
     expected = {tuple(np.round(sorted(places[list(pair)].tolist()), 1).ravel()) for pair in lines}
     assert {tuple(np.round(end, 1)) for end in ends} == expected
+
+
+def corners(text: str, width: str) -> np.ndarray:
+    """Of the closed lines of a width, in the picture."""
+    root = ElementTree.fromstring(drawn(text))
+    found = [e.get("d") for e in root.iter() if e.get("stroke-width") == width]
+    numbers = [re.findall(r"-?\d+\.\d", d) for d in found if d.endswith("Z")]
+    return np.array(numbers, dtype=float).reshape(-1, 2)
+
+
+def test_a_thin_wheel_is_the_ellipse_that_a_circle_is_seen_as():
+    """Its diameter is not shortened; its axis, seen under 54.7 degrees, shortens it across by the
+    square root of 3."""
+    text = FOUR_BAR.replace("points: {tip: {link: rod, at: [0.8, 0.9, 0]}}\n", "")
+    text += "view: {shapes: {crank: {kind: wheel, radius: 0.4, width: 1e-6}}}\n"
+    rim = corners(text, "2.4")
+    x, y = (rim - rim.mean(axis=0)).T
+    # the conic a x^2 + 2 b xy + c y^2 + d x + e y = 1 through its corners
+    (a, b, c, *_), *_ = np.linalg.lstsq(
+        np.stack([x * x, 2 * x * y, y * y, x, y], axis=1), np.ones(len(rim)), rcond=None
+    )
+    low, high = np.linalg.eigvalsh([[a, b], [b, c]])
+    assert sqrt(high / low) == pytest.approx(sqrt(3.0), rel=0.01)
+
+
+def test_a_cylinder_is_as_thick_as_it_is_to_scale():
+    """An oblong from A to B of the crank: 0.4 long, 0.1 thick, its length seen as sqrt(2/3)."""
+    text = FOUR_BAR + "view: {shapes: {crank: {kind: cylinder, radius: 0.05}}}\n"
+    a, b, c, d = corners(text, "1.6")
+    assert a - b == pytest.approx(d - c, abs=0.11)
+    long, thick = np.hypot(*(b - a)), np.hypot(*(c - b))
+    assert long / thick == pytest.approx(0.4 * sqrt(2 / 3) / 0.1, rel=0.03)
+
+
+def test_hidden_links_are_not_in_the_picture():
+    assert drawn(FOUR_BAR).count('class="l0"') == 1
+    assert 'class="l0"' not in drawn(FOUR_BAR + "view: {hidden: [crank]}\n")
 
 
 @pytest.mark.parametrize("letter", sorted(JOINT_TYPES))

@@ -15,6 +15,7 @@ from view.page_data import (
     joint,
     link,
     one_of_every_type,
+    packed,
     page_data,
     rod,
     slider,
@@ -147,6 +148,44 @@ def test_values_of_many_arrows_are_written_or_counted(show: Show) -> None:
     assert told.startswith(f"{30 - written} of 30 values have no room")
 
 
+@pytest.mark.parametrize("width", [390, 1280])
+def test_nothing_that_is_read_lies_under_tools_or_legend(show: Show, width: int) -> None:
+    data = four_bar()
+    data["view"]["camera"] = [0, 0, 1]
+    for one in data["runs"][0]["branches"]:
+        arrow = one["arrows"][0]
+        one["arrows"] = [{**arrow, "name": f"A{k}.force"} for k in range(40)]
+    browser = show(data, width=width)
+    browser.press("f")
+    for at in (0, 18, 36):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        browser.evaluate("window.mechkin.theatre.stage.draw()")
+        browser.evaluate("window.mechkin.theatre.stage.draw()")
+        boxes = """[...document.querySelectorAll('SELECTOR')].map((each) => {
+          const { left, top, right, bottom } = each.getBoundingClientRect();
+          return [left, top, right, bottom];
+        })"""
+        read = browser.evaluate(boxes.replace("SELECTOR", ".name:not([hidden]), #no-room"))
+        over = browser.evaluate(boxes.replace("SELECTOR", "#tools > *, #legend > *"))
+        assert len(read) > 3
+        for a in read:
+            for b in over:
+                apart = a[2] <= b[0] + 1 or b[2] <= a[0] + 1 or a[3] <= b[1] + 1 or b[3] <= a[1] + 1
+                assert apart, (at, a, b)
+
+
+def test_rounding_is_read_as_zero(show: Show) -> None:
+    data = four_bar()
+    own = data["runs"][0]["branches"][0]
+    values = 100.0 * np.sin(np.radians(np.arange(0, 361, 5)))
+    own["columns"] = [{**own["columns"][0], "values": packed("f64", values)}]
+    browser = show(data)
+    browser.evaluate("window.mechkin.seek(36)")  # 100 sin(pi) is 1.2e-14
+    assert "psi 0 deg" in browser.evaluate("document.querySelector('#curves').innerText")
+    browser.evaluate("window.mechkin.seek(6)")
+    assert "psi 50 deg" in browser.evaluate("document.querySelector('#curves').innerText")
+
+
 def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 11)
     circle = 20.0 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
@@ -175,18 +214,47 @@ def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
 
 def test_a_spring_ends_at_its_points(show: Show) -> None:
     data = four_bar()
-    tie = {"kind": "spring", "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
-    data["runs"][0]["ties"] = [tie, {**tie, "kind": "damper"}]
+    tie = {"joint": None, "turns": False, "links": [0, 1], "radius": None}
+    tie["places"] = [[0, 50, 0], [30, 0, 0]]
+    kinds = ("spring", "damper", "cylinder")
+    data["runs"][0]["ties"] = [{**tie, "kind": kind} for kind in kinds]
     browser = show(data)
     bar = FourBar(np.radians([90.0]))
     browser.evaluate("window.mechkin.seek(18)")
-    for k in (0, 1):
+    for k in range(3):
         ends = browser.evaluate(f"""(() => {{
-          const {{ group }} = window.mechkin.theatre.ties.all[{k}];
+          const {{ group, coil, rod, least }} = window.mechkin.theatre.ties.all[{k}];
           group.updateMatrixWorld(true);
-          const whole = window.mechkin.theatre.ties.all[{k}].length;
-          const place = (y) => group.position.clone().set(0, y, 0);
-          const at = (y) => place(y).applyMatrix4(group.matrixWorld).toArray();
-          return [at(0), at(whole)];
+          const end = coil ? coil.scale.z * least : rod.position.z + rod.scale.z;
+          const place = (z) => group.position.clone().set(0, 0, z);
+          const at = (z) => place(z).applyMatrix4(group.matrixWorld).toArray();
+          return [at(0), at(end)];
         }})()""")
         np.testing.assert_allclose(ends, [[0, 50, 0], bar.crank[0]], atol=SINGLE * 300)
+
+
+def test_a_piston_stays_in_its_tube(show: Show) -> None:
+    data = four_bar()
+    tie = {"joint": None, "turns": False, "links": [0, 1], "places": [[0, 50, 0], [30, 0, 0]]}
+    data["runs"][0]["ties"] = [{**tie, "kind": k, "radius": None} for k in ("damper", "cylinder")]
+    browser = show(data)
+    for at in range(0, 37, 6):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        for k in (0, 1):
+            start, piston, end, rod = browser.evaluate(f"""(() => {{
+              const {{ cup, piston, rod }} = window.mechkin.theatre.ties.all[{k}];
+              return [cup[0], piston.position.z, cup[1], rod.position.z + rod.scale.z];
+            }})()""")
+            assert start < piston < end < rod
+
+
+@pytest.mark.parametrize("kind", ["spring", "damper"])
+def test_what_is_about_a_pin_turns_with_it(show: Show, kind: str) -> None:
+    data = four_bar()
+    tie = {"kind": kind, "joint": 0, "turns": True, "links": [0, 1], "places": [], "radius": None}
+    data["runs"][0]["ties"] = [tie]
+    browser = show(data)
+    for at in (0, 3, 9, 15):
+        browser.evaluate(f"window.mechkin.seek({at})")
+        found = browser.evaluate("window.mechkin.theatre.ties.all[0].angle")
+        assert found == pytest.approx(np.radians(5.0 * at), abs=1e-5)

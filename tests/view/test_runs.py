@@ -51,6 +51,17 @@ def test_rows_beyond_a_dead_centre_have_no_pose_and_a_mark() -> None:
     assert rows[-1][1:] == ["", "", ""]
 
 
+def test_every_verdict_has_a_colour_by_what_its_rows_have() -> None:
+    status = branch(data(mk.loads(ROCKING)))["status"]
+    assert dict(zip(status["words"], status["doubts"], strict=True)) == {
+        **dict.fromkeys(["near-singular", "rank-unclear", "dead-centre"], 1),
+        **dict.fromkeys(["friction-undecided", "unsupported"], 1),
+        **dict.fromkeys(["beyond-dead-centre", "branch-lost", "not-converged"], 2),
+        **dict.fromkeys(["not-assembled", "singular-inertia", "step-limit"], 2),
+        "ok": 0,
+    }
+
+
 def test_nothing_assembled_is_a_page_without_poses() -> None:
     far = FOUR_BAR.replace("point: [70, 0, 0]", "point: [700, 0, 0]")
     shown = data(mk.loads(far.replace("rocker: [70, 50, 0]", "rocker: [700, 50, 0]")))

@@ -35,11 +35,61 @@ def test_everything_reaches_the_page() -> None:
     assert links["coupler"]["shape"]["kind"] == "star"
     assert links["coupler"]["shape"]["centre"] == pytest.approx([50, 10, 0])
     assert links["crank"]["shape"]["points"] == [[0, 0, 0], [20, 0, 0], [0, 5, 0], [10, 5, 0]]
-    assert links["ground"]["shape"] == {"kind": "rod", "points": [[0, 0, 0], [70, 0, 0]]}
+    rod = {"kind": "rod", "points": [[0, 0, 0], [70, 0, 0]], "radius": None}
+    assert links["ground"]["shape"] == rod
     assert {one["radius"] for one in shown["joints"]} == {2.5}
     assert [one["path"] for one in shown["points"]] == [False]
     view = {"camera": [0, -1, 0], "speed": 6.0, "forces": False, "arrow_length": 40.0}
     assert shown["view"] == view
+
+
+PARTS = """
+view:
+  shapes:
+    crank: {kind: wheel, radius: 12}
+    coupler: {kind: cylinder, points: [B, [60, 0, 0]], radius: 0.4 cm}
+    rocker: {kind: wheel, points: [[70, 50, 0]], axis: [0, 3, 4], radius: 8, width: 3}
+  between:
+    - {kind: cylinder, points: [p, post], radius: 2}
+    - {kind: spring, points: [post, p]}
+"""
+
+
+def test_wheels_cylinders_and_springs_reach_the_page() -> None:
+    text = FOUR_BAR.replace("points: {", "points: {post: {link: ground, at: [0, 90, 0]}, ")
+    shown = data(mk.loads(text + PARTS), modes=False)
+    shape = {one["name"]: one["shape"] for one in shown["links"]}
+    wheel = {"kind": "wheel", "points": [[0, 0, 0]], "normal": [0, 0, 1], "radius": 12, "width": 3}
+    assert shape["crank"] == wheel
+    assert shape["rocker"]["normal"] == pytest.approx([0, 0.6, 0.8])
+    assert (shape["rocker"]["radius"], shape["rocker"]["width"]) == (8, 3)
+    tube = {"kind": "cylinder", "points": [[20, 0, 0], [60, 0, 0]], "radius": 4}
+    assert shape["coupler"] == tube
+    cylinder, spring = shown["runs"][0]["ties"]
+    assert cylinder == {
+        "kind": "cylinder",
+        "joint": None,
+        "turns": False,
+        "links": [2, 0],
+        "places": [[50, 30, 0], [0, 90, 0]],
+        "radius": 2,
+    }
+    assert (spring["kind"], spring["links"], spring["radius"]) == ("spring", [0, 2], None)
+
+
+def test_a_wheel_of_a_plane_turns_about_its_normal() -> None:
+    text = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {wheel: {}}
+joints: {A: {type: R, links: [ground, wheel], point: [5, 0]}}
+motion: {inputs: {A.theta: {from: 0, to: 90, step: 10}}}
+tables: [{name: t, columns: [A.theta]}]
+view: {shapes: {wheel: {kind: wheel, radius: 4}}}
+"""
+    shape = data(mk.loads(text), modes=False)["links"][1]["shape"]
+    assert (shape["points"], shape["normal"]) == ([[5, 0, 0]], [0, 0, 1])
 
 
 def test_no_number_depends_on_it() -> None:
@@ -76,6 +126,13 @@ def test_a_joint_that_rubs_has_its_radius() -> None:
         ("{shapes: {crank: {points: [A, p]}}}", "p", "joint or point of crank"),
         ("{shapes: {crank: {points: [A]}}}", "[A]", "2"),
         ("{shapes: {crank: {points: [A, [1, 2]]}}}", "[1, 2]", "3"),
+        ("{shapes: {crank: wheel}}", "wheel", "add `radius:`"),
+        ("{shapes: {crank: {kind: wheel, radius: 0}}}", "0", "above zero"),
+        ("{shapes: {crank: {kind: wheel, radius: 2, points: [[0, 1, 0]]}}}", "{kind", "add `axis"),
+        ("{shapes: {crank: {kind: rod, width: 2}}}", "2", "width belongs to kind: wheel"),
+        ("{shapes: {crank: {kind: plate, radius: 2}}}", "2", "rod, cylinder or wheel"),
+        ("{between: [{kind: spring, points: [p, q]}]}", "q", "there is no point q"),
+        ("{between: [{kind: spring, points: [p]}]}", "[p]", "2"),
         ("{joint_radius: 0}", "0", "above zero"),
         ("{joint_radius: 3 deg}", "3 deg", "length"),
         ("{paths: [q]}", "q", "there is no point q"),

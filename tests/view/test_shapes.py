@@ -31,7 +31,11 @@ def test_what_has_one_place_is_its_joints_alone() -> None:
 def test_one_joint_and_a_mass_make_a_rod() -> None:
     text = SLIDER_CRANK.replace("[130, 10, 0]}}", "[180, 10, 0]}}")
     slider = data(mk.loads(text), modes=False)["links"][3]
-    assert slider["shape"] == {"kind": "rod", "points": [[130, 10, 0], [180, 10, 0]]}
+    assert slider["shape"] == {
+        "kind": "rod",
+        "points": [[130, 10, 0], [180, 10, 0]],
+        "radius": None,
+    }
 
 
 def random_points(kind: str, rng: np.random.Generator) -> np.ndarray:

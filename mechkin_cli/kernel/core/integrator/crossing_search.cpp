@@ -16,7 +16,6 @@ constexpr double MUCH = 4.0;                    // times as bad as where a kink 
 constexpr int MOST_TRIES = 80;
 constexpr double FOUND = 1e-10;                 // of the step; what is left is done by steps
 constexpr int BISECT_EVERY = 3;
-constexpr double TOUCH = 1e-12;                 // of an event's values at the ends: a dip that is none
 
 }  // namespace
 
@@ -85,14 +84,15 @@ bool CrossingSearch::is_bad(int lane) const {
   return false;
 }
 
-// The event that comes nearest to its zero among the places of a step that were looked at, if that is rounding.
+// The event that is rounding at a place of a step that was looked at, and more on both sides: at one end alone it begins at a
+// zero that it has passed, or comes to one that it may pass.
 void CrossingSearch::find_touch(int lane, const Samples& samples) {
   for (std::size_t s = 0; s < states_.kinds.size(); ++s) {
     if (!states_.kinds[s].is_event()) continue;
-    const double ends = std::max(samples.values.front()[s], samples.values.back()[s]);
+    const double begin = samples.values.front()[s], end = samples.values.back()[s], none = TOUCH * std::max(begin, end);
+    if (!(std::min(begin, end) > none)) continue;
     for (std::size_t k = 1; k + 1 < samples.part.size(); ++k)
-      if (samples.values[k][s] <= TOUCH * ends && ends > 0.0)
-        found_[lane].touched = (int)s, found_[lane].touched_part = samples.part[k];
+      if (samples.values[k][s] <= none) found_[lane].touched = (int)s, found_[lane].touched_part = samples.part[k];
   }
 }
 
@@ -145,7 +145,9 @@ void CrossingSearch::end(int lane, Crossing::Kind kind) {
   c.which = first(lane, &c.part);
   // all that was bad is ignored
   if (c.which < 0) return (void)(c.kind = Crossing::NONE);
-  if (c.part < EARLY[2]) c.kind = Crossing::AT_ONCE;
+  // beyond a kink that is passed before its zero events have values that they never take
+  const double near = states_.kinds[c.which].moves ? EARLY[2] * states_.step[lane] : states_.time_rounding(lane);
+  c.kind = c.part * states_.step[lane] <= near ? Crossing::AT_ONCE : Crossing::WITHIN;
   c.slope = (b.at_high[c.which] - b.at_low[c.which]) / (b.high - b.low);
 }
 
@@ -167,15 +169,15 @@ std::vector<Crossing> CrossingSearch::run(const Flags& crossed, const Flags& sus
   method_.prepare_dense(states_, &open_);
   for (int i = 0; i < states_.lanes; ++i)
     if (asked[i] && !open_[i]) found_[i].kind = Crossing::FAULT;
-  scan(suspected);
+  scan(crossed, suspected);
   look_early();
   close_in();
   return found_;
 }
 
 // Looks into the suspected lanes at equal parts, then where their values are likely to be least, and narrows them to the
-// first bad place that it meets.
-void CrossingSearch::scan(const Flags& suspected) {
+// first bad place that it meets; those without one that are crossed keep the step's end.
+void CrossingSearch::scan(const Flags& crossed, const Flags& suspected) {
   Flags waiting(states_.lanes, 0);
   std::vector<Samples> samples(states_.lanes);
   for (int i = 0; i < states_.lanes; ++i) {
@@ -186,7 +188,7 @@ void CrossingSearch::scan(const Flags& suspected) {
   for (int k = 1; k < SCAN + DEEPER && any(open_); ++k) {
     for (int i = 0; i < states_.lanes; ++i) {
       part_[i] = (double)k / SCAN;
-      if (open_[i] && k >= SCAN && !samples[i].deepest(&part_[i])) end(i, Crossing::NONE);
+      if (open_[i] && k >= SCAN && !samples[i].deepest(&part_[i])) crossed[i] ? std::swap(open_[i], waiting[i]) : end(i, Crossing::NONE);
     }
     look();
     for (int i = 0; i < states_.lanes; ++i) {
@@ -209,7 +211,7 @@ void CrossingSearch::scan(const Flags& suspected) {
     }
   }
   for (int i = 0; i < states_.lanes; ++i) {
-    if (open_[i]) end(i, Crossing::NONE);
+    if (open_[i]) crossed[i] ? (void)(waiting[i] = 1) : end(i, Crossing::NONE);
     if (suspected[i] && !waiting[i]) find_touch(i, samples[i]);
     open_[i] = waiting[i];
   }

@@ -8,6 +8,9 @@
 
 #include "integrator/lane_states.hpp"
 
+// Of an event's values at the ends of a step: a dip below its zero that is none.
+constexpr double TOUCH = 1e-12;
+
 struct Crossing {
   enum Kind {
     NONE,
@@ -56,7 +59,7 @@ class CrossingSearch {
   int first(int lane, double* where) const;
   bool is_bad(int lane) const;
   void find_touch(int lane, const Samples& samples);
-  void scan(const Flags& suspected);
+  void scan(const Flags& crossed, const Flags& suspected);
   void look_early();
   void close_in();
   void move(int lane, bool is_bad);

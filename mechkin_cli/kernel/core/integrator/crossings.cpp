@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "integrator/crossing_search.hpp"
+#include "integrator/cubic.hpp"
 #include "integrator/march.hpp"
 
 namespace {
 
-constexpr double ROUNDING = 2.220446049250313e-16;
 constexpr double SMALL = 1e-12;         // of the values at the ends: what is no dip
 constexpr double DOUBT = 0.1;           // of the values' range: about the cubic's least value
 constexpr double OUTSIDE = 0.1;         // of the step: how far beyond it the cubic may have it
@@ -21,21 +21,18 @@ constexpr int RETURNS = 3;              // passes at one place that hold a motio
 // The least that the values at four places may have between them: of the cubic through all, whose extrema and whose values
 // are doubted by parts of the step and of the values' range. Without an extremum, of the inner values.
 double least_between(const double* x, const double* y) {
-  const double d01 = (y[1] - y[0]) / (x[1] - x[0]), d12 = (y[2] - y[1]) / (x[2] - x[1]),
-               d23 = (y[3] - y[2]) / (x[3] - x[2]);
-  const double bend = (d12 - d01) / (x[2] - x[0]), third = ((d23 - d12) / (x[3] - x[1]) - bend) / (x[3] - x[0]);
-  const auto value = [&](double at) { return y[0] + (at - x[0]) * (d01 + (at - x[1]) * (bend + third * (at - x[2]))); };
+  const Cubic cubic(x, y);
   double least = std::min(y[1], y[2]);
   // the extremum where the second derivative is positive: of a slope a + b t + c t^2
-  const double c = 3.0 * third, b = 2.0 * (bend - third * (x[0] + x[1] + x[2])),
-               a = d01 - bend * (x[0] + x[1]) + third * (x[0] * x[1] + x[0] * x[2] + x[1] * x[2]);
+  const double third = cubic.third, c = 3.0 * third, b = 2.0 * (cubic.bend - third * (x[0] + x[1] + x[2])),
+               a = cubic.slope - cubic.bend * (x[0] + x[1]) + third * (x[0] * x[1] + x[0] * x[2] + x[1] * x[2]);
   const double root = b * b - 4.0 * a * c;
   if (!(root >= 0.0)) return least;
   const double below = b + std::copysign(std::sqrt(root), b), one = -2.0 * a / below, other = -0.5 * below / c;
   const double most = std::max({y[0], y[1], y[2], y[3]}), range = most - std::min({y[0], y[3], least});
   for (double at : {one, other}) {
     if (!(at > x[0] - OUTSIDE && at < x[3] + OUTSIDE) || !(b + 2.0 * c * at > 0.0)) continue;
-    least = std::min(least, value(std::max(x[0], std::min(x[3], at))) - DOUBT * range);
+    least = std::min(least, cubic(std::max(x[0], std::min(x[3], at))) - DOUBT * range);
   }
   return least;
 }
@@ -80,6 +77,13 @@ bool March::may_dip(int lane, int landing) const {
   return false;
 }
 
+// The same of those that are not passed at the end.
+bool March::may_dip_beside(int lane) const {
+  for (int s = 0; s < (int)states_.kinds.size(); ++s)
+    if (!is_ignored(lane, s) && !is_crossed_by(lane, s) && least_inside(lane, s, false) < 0.0) return true;
+  return false;
+}
+
 void March::look_for_crossings(Method& method, Flags* mask) {
   Flags crossed(states_.lanes, 0), suspected(states_.lanes, 0);
   for (std::size_t k = 0; k < states_.switch_end.size(); ++k) {
@@ -98,7 +102,8 @@ void March::look_for_crossings(Method& method, Flags* mask) {
       }
     }
     crossed[i] = is_crossed(i, -1);
-    suspected[i] = !crossed[i] && may_dip(i, -1);
+    // beside one that is passed at the end another may be passed there and back before
+    suspected[i] = crossed[i] ? may_dip_beside(i) : may_dip(i, -1);
     if (!crossed[i] && !suspected[i]) c.landing = -1;
   }
   if (any(crossed) || any(suspected)) search(method, crossed, suspected, mask);
@@ -115,8 +120,7 @@ void March::land(int lane, Flags* mask) {
     if (slope < 0.0) c.landing_slope = slope;
   }
   const double wanted = c.landing_slope < 0.0 ? -value / c.landing_slope : 0.0;
-  const double rounding = 4.0 * ROUNDING * std::max(std::fabs(states_.until[lane]), step);
-  if (std::fabs(wanted) <= rounding || c.landing_tries >= LANDINGS) {
+  if (std::fabs(wanted) <= states_.time_rounding(lane) || c.landing_tries >= LANDINGS) {
     c.landed = true;
     return;
   }
@@ -247,16 +251,16 @@ void March::meet_events(const Flags& mask) {
       const std::size_t k = (std::size_t)s * lanes + i;
       if (!at_zero[i] || !states_.kinds[s].is_event() || std::fabs(values_[k]) > rounding[k]) continue;
       if (std::max(std::fabs(states_.switch_inner[0][k]), std::fabs(states_.switch_inner[1][k])) <= rounding[k]) continue;
-      if (ahead[k] * states_.side[k] > 0)
-        states_.motion.touch(i, s, states_.time[i]);
-      else
-        jump(i, s);
+      // one that was passed at this place lies at its zero, too
+      const int goes = ahead[k] * states_.side[k];
+      if (goes < 0 || (goes == 0 && !control_[i].passed[s])) jump(i, s);
     }
 }
 
 void March::jump(int lane, int which) {
   const std::size_t k = (std::size_t)which * states_.lanes + lane;
   states_.side[k] = (std::int8_t)-states_.side[k];
+  ++control_[lane].passed[which];
   ++control_[lane].met[which];
   control_[lane].jumped.push_back(which);
 }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "integrator/cubic.hpp"
 #include "integrator/dop853_tableau.hpp"
 
 namespace {
@@ -136,14 +137,11 @@ double Dop853::unresolved(const LaneStates& s, int which, int lane) const {
   const std::size_t k = (std::size_t)which * s.lanes + lane;
   const double x[4] = {0.0, s.inner[0], s.inner[1], 1.0};
   const double y[4] = {s.switch_value[k], s.switch_inner[0][k], s.switch_inner[1][k], s.switch_end[k]};
-  const double d01 = (y[1] - y[0]) / (x[1] - x[0]), d12 = (y[2] - y[1]) / (x[2] - x[1]), d23 = (y[3] - y[2]) / (x[3] - x[2]);
-  const double bend = (d12 - d01) / (x[2] - x[0]), third = ((d23 - d12) / (x[3] - x[1]) - bend) / (x[3] - x[0]);
-  double least = std::min(std::min(y[0], y[1]), std::min(y[2], y[3])), most = std::max(std::max(y[0], y[1]), std::max(y[2], y[3]));
-  double off = 0.0;
+  const Cubic cubic(x, y);
+  double least = std::min({y[0], y[1], y[2], y[3]}), most = std::max({y[0], y[1], y[2], y[3]}), off = 0.0;
   for (int stage = 2; stage < dop853::STAGES - 1; ++stage) {
-    const double at = dop853::C[stage], value = staged_[(std::size_t)stage * switches_.size() + k];
-    const double cubic = y[0] + (at - x[0]) * (d01 + (at - x[1]) * (bend + third * (at - x[2])));
-    off = std::max(off, std::fabs(value - cubic));
+    const double value = staged_[(std::size_t)stage * switches_.size() + k];
+    off = std::max(off, std::fabs(value - cubic(dop853::C[stage])));
     least = std::min(least, value), most = std::max(most, value);
   }
   const double range = most - least, nearest = std::min(std::fabs(least), std::fabs(most));

@@ -62,6 +62,10 @@ bool LaneStates::drop_faults(Flags* mask) {
   return left;
 }
 
+double LaneStates::time_rounding(int lane) const {
+  return 4.0 * 2.220446049250313e-16 * std::max(std::fabs(until[lane]), step[lane]);
+}
+
 double LaneStates::speed_in(const double* place, int lane) const {
   double largest = 0.0;
   for (int k = freedoms; k < 2 * freedoms; ++k) largest = std::max(largest, std::fabs(place[(long)k * lanes + lane]));

@@ -29,6 +29,8 @@ struct LaneStates {
   // Turns a switch to its other side; from rest to that of a value.
   void turn(std::size_t k, double value) { side[k] = (std::int8_t)(side[k] ? -side[k] : value < 0.0 ? -1 : 1); }
 
+  // What of a time about the lane's step is rounding.
+  double time_rounding(int lane) const;
   // Largest |v| of a lane in y.
   double speed_in(const double* y, int lane) const;
   // What an error of one tolerance is in each component, (size) x lanes, for a step from one y to another; of quadratures

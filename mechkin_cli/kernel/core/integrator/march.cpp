@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/crossing_search.hpp"
+
 namespace {
 
 constexpr long MOST_STEPS = 1000000;
@@ -50,6 +52,7 @@ March::March(Motion& motion, const IntegratorSettings& settings, const double* t
     c.largest.assign(states_.kinds.size(), 0.0);
     c.noise.assign(states_.kinds.size(), 0.0);
     c.let_alone.assign(states_.kinds.size(), 0);
+    c.before.assign(states_.kinds.size(), 0.0);
     c.implicit = settings.method == MethodChoice::IMPLICIT;
   }
   start(time, y);
@@ -211,12 +214,26 @@ void March::settle_ignored(int lane) {
   }
 }
 
+// Events that a step has left at their zero, as one that ends at a row may, and that go back in the next.
+void March::find_touch(int lane) {
+  std::vector<double>& before = control_[lane].before;
+  for (int s = 0; s < (int)before.size(); ++s) {
+    const std::size_t k = (std::size_t)s * states_.lanes + lane;
+    const double here = std::fabs(states_.switch_value[k]), end = states_.good(k, states_.switch_end[k]);
+    const double beside = std::min(before[s], end);
+    if (states_.kinds[s].is_event() && !control_[lane].passed[s] && beside > 0.0 && here <= TOUCH * beside)
+      states_.motion.touch(lane, s, states_.time[lane]);
+    before[s] = here;
+  }
+}
+
 void March::move_on(const Flags& mask) {
   const int lanes = states_.lanes;
   const long moved = (long)states_.freedoms * lanes;
   for (int i = 0; i < lanes; ++i) {
     if (!mask[i]) continue;
     ++states_.report[i].steps;
+    find_touch(i);
     states_.time[i] = states_.until[i];
     states_.speed[i] = std::max(states_.speed[i], states_.speed_in(states_.y_end.data(), i));
     at_[i] = __builtin_inf();

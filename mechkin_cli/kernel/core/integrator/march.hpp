@@ -31,6 +31,7 @@ struct LaneControl {
   std::vector<int> passed;               // switches: how often they were passed at this place
   std::vector<long> met;                 // switches: how often they were passed at all
   std::vector<double> largest;           // switches: their largest values at the ends of steps
+  std::vector<double> before;            // switches: their values' sizes where the last step began
   std::vector<double> noise;             // switches: the largest rounding of theirs that was measured
   std::vector<int> jumped;               // events that were passed as a kink was
   // Switches that are let alone until a step is taken: kinks met again and again where both sides give the same.
@@ -76,8 +77,10 @@ class March {
   bool is_crossed(int lane, int but) const;
   bool is_crossed_by(int lane, int which) const;
   bool may_dip(int lane, int landing) const;
+  bool may_dip_beside(int lane) const;
   double least_inside(int lane, int which, bool stages_alone) const;
   void hold(int lane, int which);
+  void find_touch(int lane);
   void meet_events(const Flags& mask);
   void jump(int lane, int which);
 

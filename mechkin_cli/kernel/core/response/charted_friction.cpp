@@ -19,11 +19,10 @@ constexpr double NO_FORCE = 1e-12;
 // Accelerations of a slip that was just let go, in parts of that by its friction, that are rounding; and how many times
 // more tells that it goes.
 constexpr double NO_START = 1e-9, GOES = 10.0;
-// Such a slip, in parts of what the fastest motion so far would give, that is rounding of the rates.
-constexpr double NO_SLIP = 1e-14;
 
-// Where the slips' independent directions are counted: from the start so far, in rad and parts of the size, so many places.
-constexpr double NEAR_START[] = {0.0, 1e-4, 1e-2};
+// Where the slips' independent directions are counted beside the start: from it so far, in rad and parts of the size, so many
+// places.
+constexpr double NEAR_START[] = {1e-4, 1e-2};
 constexpr int PLACES_NEAR = 2;
 constexpr double GOLDEN = 0.6180339887498949;
 
@@ -45,7 +44,7 @@ SlipStage ChartedMotion::make_slips() const {
   const auto make = [&](long count) { return Packed((std::size_t)(count * lanes_), 0.0); };
   const long m = ::slip_columns(plan_), n = plan_.frictions;
   return {make(m), make(m), make(m), make(m * plan_.charts), make(n), make(n), make(n), make(n), make(1),
-          make(n * TOLD_NUMBERS), make(n), make(2 * m)};
+          make(n * TOLD_NUMBERS), make(n), make(2 * m), {}};
 }
 
 bool ChartedMotion::rubs(int lane, int k) const {
@@ -63,7 +62,7 @@ void ChartedMotion::begin_slips() {
   s.sense.assign((std::size_t)n * lanes_, 1.0), s.quiet.assign((std::size_t)n * lanes_, 0.0);
   s.span.assign((std::size_t)n * lanes_, 0.0), s.way.assign(2 * (std::size_t)s.columns * lanes_, 0.0);
   s.aim.assign((std::size_t)s.columns * lanes_, 0.0), s.armed.assign((std::size_t)n * lanes_, 0.0);
-  s.started.assign((std::size_t)n * lanes_, NAN);
+  s.started.assign((std::size_t)n * lanes_, NAN), s.left.assign((std::size_t)n * lanes_, 0.0);
   s.pushed.assign((std::size_t)n * lanes_, 1);
   s.fastest.assign(lanes_, 0.0), s.duration.assign(lanes_, 0.0), s.ways.resize(lanes_), s.doubtful.resize(lanes_);
   s.rests.assign(lanes_, 0), s.blocked.assign(lanes_, 0), s.measured.assign(lanes_, 0);
@@ -114,20 +113,24 @@ void ChartedMotion::find_spans() {
   std::fill(rate_.begin(), rate_.end(), 0.0), std::fill(elapsed_.begin(), elapsed_.end(), 0.0);
   evaluate(place_.data(), rate_.data(), &trial_);
   jacobian_ = trial_.jacobian;
+  const auto count = [&] {
+    evaluate(place_.data(), rate_.data(), &trial_);
+    for (int l = 0; l < lanes_; ++l) {
+      if (trial_.flags[l] & (STAGE_NOT_CLOSED | STAGE_OFF_BRANCH)) continue;
+      for (int k = 0; k < plan_.frictions; ++k) {
+        double& most = span[(std::size_t)k * lanes_ + l];
+        most = std::max(most, at(trial_.slip.span, k, l));
+      }
+    }
+  };
+  count();
   for (double far : NEAR_START)
     for (int which = 0; which < PLACES_NEAR; ++which) {
       for (int i = 0; i < n; ++i) {
         const double part = (i + 1) * GOLDEN + which * GOLDEN * GOLDEN;
         for (int l = 0; l < lanes_; ++l) place_[(long)i * lanes_ + l] = far * (part - std::floor(part) - 0.5);
       }
-      evaluate(place_.data(), rate_.data(), &trial_);
-      for (int l = 0; l < lanes_; ++l) {
-        if (trial_.flags[l] & (STAGE_NOT_CLOSED | STAGE_OFF_BRANCH)) continue;
-        for (int k = 0; k < plan_.frictions; ++k) {
-          double& most = span[(std::size_t)k * lanes_ + l];
-          most = std::max(most, at(trial_.slip.span, k, l));
-        }
-      }
+      count();
     }
   std::fill(place_.begin(), place_.end(), 0.0);
   slips_.span = span;
@@ -150,13 +153,12 @@ double ChartedMotion::lever(const Stage& found, int lane, int k) const {
   return largest;
 }
 
-// What of a slip's speed is rounding, where friction has just let it go: at that limit a load that barely grows leaves no
+// What of a slip's speed is rounding, where it has just begun. Where friction has let it go a load that barely grows leaves no
 // acceleration that tells the sense.
 double ChartedMotion::unsure(const Stage& found, int lane, int k) const {
-  const double started = slips_.started[(std::size_t)k * lanes_ + lane];
-  if (!(started <= time_[lane])) return 0.0;
-  const double growing = NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
-  return growing + NO_SLIP * slips_.fastest[lane] * lever(found, lane, k);
+  const double started = slips_.started[(std::size_t)k * lanes_ + lane], left = slips_.left[(std::size_t)k * lanes_ + lane];
+  if (!(started <= time_[lane])) return left;
+  return left + NO_START * at(found.slip.limit, k, lane) * at(found.slip.answer, k, lane) * (time_[lane] - started);
 }
 
 // Not negative as long as a joint goes on to slip, or to stick.
@@ -240,9 +242,10 @@ void ChartedMotion::tell_undecided(const Stage& found, int lane) {
 void ChartedMotion::arm(const Stage& found, int lane) {
   for (int k = 0; k < plan_.frictions; ++k) {
     const std::size_t e = (std::size_t)k * lanes_ + lane;
-    if (has_sign(lane, k) && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k) &&
-        time_[lane] > slips_.started[e])
-      slips_.started[e] = NAN;
+    if (has_sign(lane, k) && slips_.sense[e] * at(found.slip.rate, slips_.first[k], lane) > GOES * unsure(found, lane, k)) {
+      slips_.left[e] = 0.0;
+      if (time_[lane] > slips_.started[e]) slips_.started[e] = NAN;
+    }
     if (has_sign(lane, k) || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
     const double size = slip_size(found.slip.rate, lane, k), least = slips_.armed[e] != 0.0 ? 1.0 : ARMED;
     if (size > least * AT_END * slips_.fastest[lane] * lever(found, lane, k)) aim_along(found, lane, k);

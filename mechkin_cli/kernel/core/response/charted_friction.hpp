@@ -9,6 +9,7 @@
 // A stage's slips, as StageFound has them.
 struct SlipStage {
   Packed rate, second, force, row, limit, loose, state, answer, level, told, span, way;
+  Packed system;  // empty where nothing asks
 };
 
 struct SlipMemory {
@@ -17,6 +18,7 @@ struct SlipMemory {
   Packed sense, quiet, aim, armed, span, way;  // as StageGiven has them
   std::vector<signed char> pushed;   // frictions x lanes: the sign of a force that was last more than friction holds
   std::vector<double> started;       // frictions x lanes: s: when a slip of one direction was let go, NaN once it goes
+  std::vector<double> left;          // frictions x lanes: a slip back that is rounding of the rates where it has just begun
   std::vector<double> fastest;       // lanes: the largest rate of a chart so far
   std::vector<double> duration;      // lanes: of the motion, s
   std::vector<std::vector<Signs>> ways;  // lanes: senses in which what rests with forces that are not unique could go

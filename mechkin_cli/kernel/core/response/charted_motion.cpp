@@ -56,7 +56,10 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
   for (auto* a : {&energy_, &lightest_, &lightest_start_, &growth_}) a->assign(lanes_, 0.0);
   stop_start_.assign(stops_.size() * lanes_, 0.0), passed_.assign(stops_.size() * lanes_, 0);
   found_ = make_stage(), end_ = make_stage();
-  if (plan_.frictions) trial_ = make_stage();
+  if (plan_.frictions) {
+    trial_ = make_stage();
+    trial_.slip.system.assign((std::size_t)(SlipSystem::numbers(plan_.frictions, plan_.contacts) * lanes_), 0.0);
+  }
   for (int l = 0; l < lanes_; ++l) {
     const MotionStart& s = starts_[l];
     for (int k = 0; k < plan_.states; ++k) origin_[k * lanes_ + l] = s.state[k];
@@ -123,6 +126,7 @@ void ChartedMotion::evaluate(const double* place, const double* rate, Stage* fou
                           found->slip.row.data(), found->slip.limit.data(), found->slip.loose.data(),
                           found->slip.state.data(), found->slip.answer.data(), found->slip.span.data(), found->slip.way.data(),
                           found->slip.level.data(), found->slip.told.data(),
+                          found->slip.system.empty() ? nullptr : found->slip.system.data(),
                           found->flags.data()};
   unit_.evaluate(wide_.data(), given, out, workspace_.data());
 }

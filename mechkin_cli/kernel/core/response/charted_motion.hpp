@@ -187,6 +187,7 @@ class ChartedMotion : public Motion {
   bool aim(int lane, const std::vector<int>& joints, const Signs& way, const double* place, const double* rate,
            Stage* found);
   double turn_aim(int lane, int k, double step, const Stage& found);
+  bool rules_out(int lane, const Signs& way, const std::vector<int>& joints) const;
   SlipTrial trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v);
   std::vector<Signs> ways_of(int lane, const std::vector<int>& open, int forced);
   void take_senses(int lane, const Signs& senses);

@@ -14,6 +14,11 @@ constexpr double JUST_HELD = 1e-9, NO_FORCE = 1e-12;
 // A slip in several directions that begins without an acceleration: accelerations, in parts of that by its friction, that are
 // none; and what it begins with, in parts of what that would make of it over the duration, and of what the rates give.
 constexpr double NO_START = 1e-9, GIVEN = 1e-12, BESIDE_RATES = 1e-11;
+// A slip that has just begun, in parts of what the fastest motion so far would give, and times what it begins with, that is
+// rounding of the rates.
+constexpr double NO_SLIP = 1e-14, NOISE = 4.0;
+// The margin of a way that nothing can go.
+constexpr double RULED_OUT = -1.0;
 
 }  // namespace
 
@@ -38,6 +43,28 @@ double ChartedMotion::along_sense(const Stage& found, int lane, int k) const {
   return sum;
 }
 
+// Whether joints cannot start as a way says, whatever their friction, of the stage in trial_. The direction of one with
+// several is that of one friction force alone, which rules out no other.
+bool ChartedMotion::rules_out(int lane, const Signs& way, const std::vector<int>& joints) const {
+  const int n = plan_.frictions;
+  long number = 0;
+  const auto next = [&] { return at(trial_.slip.system, number++, lane); };
+  SlipSystem s;
+  s.is_open = next() != 0.0;
+  for (int k = 0; k < n; ++k) s.coefficient.push_back(next()), s.starts.push_back(0);
+  for (int k = 0; k < n * (n + 1); ++k) s.second.push_back(next());
+  for (int k = 0; k < n; ++k)
+    for (int c = plan_.friction[k].contact_begin; c < plan_.friction[k].contact_end; ++c) {
+      s.contacts.push_back({k, starts_[lane].plan->contact[c].weight, {}});
+      for (int i = 0; i < 3 * (n + 1); ++i) s.contacts.back().load.push_back(next());
+    }
+  for (int k : joints) {
+    if (way[k] != 0 && !has_sign(lane, k)) return false;
+    s.starts[k] = way[k] != 0;
+  }
+  return has_no_slip(s);
+}
+
 // What joints would do with some senses; `open` start from rest.
 SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int>& open, const std::vector<double>& v) {
   SlipTrial t;
@@ -50,13 +77,15 @@ SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int
   for (std::size_t i = 0; i < v.size(); ++i) rate_[(long)i * lanes_ + lane] = v[i];
   const bool aimed = aim(lane, starting, way, place_.data(), rate_.data(), &trial_);
   t.decided = aimed && !(trial_.flags[lane] & STAGE_FRICTION);
-  if (aimed && !t.decided) tell_undecided(trial_, lane);
+  t.is_ruled_out = aimed && !t.decided && rules_out(lane, way, open);
+  if (aimed && !t.decided && !t.is_ruled_out) tell_undecided(trial_, lane);
   const double level = at(trial_.slip.level, 0, lane);
   for (int k = 0; k < plan_.frictions; ++k) {
     const double force = slip_size(trial_.slip.force, lane, k), limit = at(trial_.slip.limit, k, lane);
     t.second.push_back(along_sense(trial_, lane, k));
     t.rounding.push_back(NO_FORCE * level * at(trial_.slip.answer, k, lane));
     t.loose.push_back(at(trial_.slip.loose, k, lane) != 0.0);
+    t.excess.push_back((force - limit) * at(trial_.slip.answer, k, lane));
     t.holds.push_back(force <= (1.0 + JUST_HELD) * limit + NO_FORCE * level);
   }
   for (int i = 0; i < plan_.charts; ++i) t.motion.push_back(at(trial_.chart_second, i, lane));
@@ -68,16 +97,22 @@ SlipTrial ChartedMotion::trial(int lane, const Signs& way, const std::vector<int
 double ChartedMotion::margin(int lane, const Signs& way, const double* place, const double* rate, bool* decided) {
   const Signs before = senses(lane);
   take_senses(lane, way);
-  std::vector<int> starting;
+  std::vector<int> starting, open;
   for (int k = 0; k < plan_.frictions; ++k) {
     if (way[k] == before[k]) continue;
+    open.push_back(k);
     quiet(lane, k) = 1.0;
     if (!has_sign(lane, k)) starting.push_back(k);
   }
-  *decided = aim(lane, starting, way, place, rate, &trial_) && !(trial_.flags[lane] & STAGE_FRICTION) && *decided;
-  double least = __builtin_inf();
+  const bool aimed = aim(lane, starting, way, place, rate, &trial_), one = aimed && !(trial_.flags[lane] & STAGE_FRICTION);
+  const bool is_ruled_out = aimed && !one && rules_out(lane, way, open);
+  *decided = *decided && (one || is_ruled_out);
+  double least = is_ruled_out ? RULED_OUT : __builtin_inf();
   for (int k = 0; k < plan_.frictions; ++k)
-    if (way[k] != before[k]) quiet(lane, k) = 0.0, least = std::min(least, along_sense(trial_, lane, k));
+    if (way[k] != before[k]) {
+      const double none = NO_FORCE * at(trial_.slip.level, 0, lane) * at(trial_.slip.answer, k, lane);
+      quiet(lane, k) = 0.0, least = std::min(least, along_sense(trial_, lane, k) - none);
+    }
   take_senses(lane, before);
   return least;
 }
@@ -98,11 +133,11 @@ std::vector<int> ChartedMotion::resting(int lane, int event) {
 bool ChartedMotion::set_going(int lane, int forced, std::vector<int>* open, const std::vector<double>& v) {
   while (!open->empty()) {
     for (int k : *open) quiet(lane, k) = 1.0;
+    slips_.doubtful[lane] = *open;
     std::vector<SlipTrial> trials;
     for (const Signs& way : ways_of(lane, *open, forced)) trials.push_back(trial(lane, way, *open, v));
     const int found = trial_that_holds(trials, *open, forced);
     for (int k : *open) quiet(lane, k) = 0.0;
-    if (trials.empty()) slips_.doubtful[lane] = *open;
     if (found < 0) return false;
     const SlipTrial again = trial(lane, trials[found].way, *open, v);
     std::vector<int> kept;
@@ -183,8 +218,15 @@ bool ChartedMotion::settled(int lane, int event, std::vector<double>* v) {
   if (breaks) slips_.started[(std::size_t)event * lanes_ + lane] = origin_time_[lane];
   if (breaks) sense(lane, event) = !has_sign(lane, event) || push > 0.0 ? 1.0 : -1.0;
   evaluate_here(lane, *v, &trial_);
+  const std::vector<int> rested = open;
   if (event == n && !go_first_way(lane, &open, *v)) return false;
-  return set_going(lane, breaks ? event : -1, &open, *v);
+  if (!set_going(lane, breaks ? event : -1, &open, *v)) return false;
+  // beside rounding also what the rates could not be freed of, as in a dead centre of a joint's own
+  for (int k : rested) {
+    const double none = NO_SLIP * slips_.fastest[lane] * lever(trial_, lane, k);
+    slips_.left[(std::size_t)k * lanes_ + lane] = std::max(NOISE * slip_size(trial_.slip.rate, lane, k), none);
+  }
+  return true;
 }
 
 // Where a lane stands, `event` being the joint whose slip has ended or that friction holds no longer, as many as there are

@@ -21,8 +21,9 @@ constexpr double FARTHEST = 0.25, NEAREST = 1e-6;
 // nodes exact, narrow enough that the polynomial is.
 constexpr double WIDTHS[5] = {0.25, 0.1, 0.03, 0.01, 0.003};
 // What polynomial and closed places may differ by, which is a rounding over the distance: states, their derivatives, and
-// what goes to zero. Angles after many turns round by more, in parts of the largest.
-constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3;
+// what goes to zero. Angles after many turns round by more, in parts of the largest; loops in a row by the sum of
+// theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them.
+constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3, FEW_UNKNOWNS = 5.0;
 // Of the way to the branch point: how far a place may lie from its guess. Another branch lies off by about all of it.
 constexpr double MISS = 0.1;
 // Least slope of what goes to zero, at the nodes next to it, in parts of that at the others: a tenth where the pole is of
@@ -173,6 +174,7 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
   const double place_size = std::fmax(1.0, largest(nodes_[HALF].state));
   const double size = place_size * std::fmax(1.0, largest(nodes_[HALF].tangent));
   const double second_size = size * std::fmax(pace, largest(nodes_[HALF].bend));
+  const double loops = std::fmax(1.0, origin_.jacobian.columns / FEW_UNKNOWNS);
   double most = 0.0;
   for (double m : regular_) most = std::fmax(most, std::fabs(m));
   for (double x : BETWEEN) {
@@ -181,9 +183,9 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
     if (!look(s, told.state, &seen)) return false;
     const double regular = (x < 0.0 ? -1.0 : 1.0) * regularity(seen.jacobian);
     const double expected = between_nodes(x, [&](int k) { return regular_[k]; });
-    const bool same = largest_difference(told.state, seen.state) <= SAME_STATE * place_size &&
-                      largest_difference(told.tangent, seen.tangent) <= SAME_FIRST * size &&
-                      largest_difference(told.bend, seen.bend) <= SAME_SECOND * second_size &&
+    const bool same = largest_difference(told.state, seen.state) <= loops * SAME_STATE * place_size &&
+                      largest_difference(told.tangent, seen.tangent) <= loops * SAME_FIRST * size &&
+                      largest_difference(told.bend, seen.bend) <= loops * SAME_SECOND * second_size &&
                       std::fabs(regular - expected) <= SAME_REGULAR * most;
     if (!same) return false;
   }

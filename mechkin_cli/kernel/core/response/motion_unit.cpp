@@ -231,7 +231,7 @@ void evaluate_stage(const Plan& p, Workspace& w, ReducedMotion& m, const Slips& 
     slid = slide(p, w, m, slips, {packs(given.sense), packs(given.quiet), packs(given.aim), packs(given.armed), packs(given.span), packs(given.way)}, values, second,
                  {packs(found.slip_rate), packs(found.slip_second), packs(found.slip_force), packs(found.slip_row),
                   packs(found.slip_limit), packs(found.slip_loose), packs(found.slip_state), packs(found.slip_answer), packs(found.slip_span),
-                  packs(found.slip_way), packs(found.level), packs(found.told)});
+                  packs(found.slip_way), packs(found.level), packs(found.told), packs(found.system)});
   powers_of_loads(p, w, m, second, input_rate, values, packs(found.power), packs(found.power) + 1);
   packs(found.power)[1] += slid.power;
 

@@ -65,6 +65,7 @@ struct StageFound {
   double* slip_way;      // 2 x slips
   double* level;         // 1
   double* told;          // frictions x TOLD_NUMBERS: see FrictionTold
+  double* system;        // see SlipSystem; null where nothing asks
   unsigned char* flags;  // lanes: StageFlag
 };
 

@@ -188,6 +188,26 @@ inline void tell_rows(const Plan& p, const Workspace& w, const Slips& s, const R
   }
 }
 
+// The small system before it is solved, as SlipSystem has it; `open`: lanes in which loads that slip are not unique.
+inline void tell_system(const Plan& p, const Slips& s, const Rubbing& r, Mask open, Pack* to) {
+  const int n = p.frictions, m = s.columns;
+  const auto put = [&](Pack x) { *to++ = x; };
+  put(select(open, Pack(1.0), Pack(0.0)));
+  for (int k = 0; k < n; ++k) put(r.coefficient[k]);
+  for (int k = 0; k < n; ++k)
+    for (int f = 0; f <= n; ++f) {
+      const int own = s.first[k];
+      Pack second = f ? select(s.sticks[s.first[f - 1]], Pack(0.0), -s.inverse[own * m + s.first[f - 1]]) : s.start[own];
+      for (int c = 0; c < m; ++c) second -= s.inverse[own * m + c] * s.hold[c * (n + 1) + f];
+      put(second);
+    }
+  for (int e = 0; e < p.contacts; ++e)
+    for (int f = 0; f <= n; ++f) {
+      const Vec3 load = f ? r.gain[e * n + f - 1] : r.base[e];
+      put(load.x), put(load.y), put(load.z);
+    }
+}
+
 // u'' with friction in the place of `second`.
 template <class RowValue>
 inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Slips& s, const SlipsGiven& given,
@@ -207,6 +227,7 @@ inline Slid slide(const Plan& p, Workspace& w, const ReducedMotion& m, const Sli
   for (int k = 0; k < p.frictions; ++k) found.loose[k] = 0.0;
   Slid slid = {factor_held(p, s, given, found.loose), Pack(0.0)};
   hold_slips(p, s, r);
+  if (found.system) tell_system(p, s, r, slid.undecided, found.system);
   solve_friction(p, r);
   gather_forces(p, s, r, second);
   tell_slips(p, s, r, given, second, found);

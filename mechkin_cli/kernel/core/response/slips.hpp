@@ -55,6 +55,7 @@ struct SlipsFound {
   Pack *span, *way;             // frictions: independent directions here; 2 x columns: as given, here
   Pack* level;                  // 1: the largest wrench without friction
   Pack* told;                   // frictions x TOLD_NUMBERS: see FrictionTold
+  Pack* system;                 // SlipSystem, or null where nothing asks
 };
 
 inline long lay_out_slips(const Plan& p, char* at, Slips* s) {

@@ -36,8 +36,13 @@ constexpr double SINGULAR_PIVOTS = 100.0;
 // Arclength (rad, length units) on which the path moves by less than this where a walk comes to nothing: a slide that
 // grows without bound. A screw of a thousandth of the size's lead moves it by some tenths.
 constexpr double FARTHEST = 1000.0, STANDING = 1e-6;
+// Half a unit in the last place of an equation, and how many of them its unknowns round by.
+constexpr double ROUNDING = 1e-16, LOOSE = 10.0;
 // Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
 constexpr int MOST_BEHIND = 300;
+// Arclength before a branch point from which its place is told, and steps that are tried to come there.
+constexpr double WAY_BEHIND = 0.1;
+constexpr int MOST_BACK = 100;
 // Rate and second derivative of sigma by arclength that are rounding.
 constexpr double AT_REST = 1e-9;
 // Least ratio of sigma's second derivative at a dead centre and its mean over the step that it lies in.
@@ -100,6 +105,23 @@ class Walker {
       : limits_(limits), refused_(refused), until_(until) {}
 
   void walk(const Node& from, Passage* p) const {
+    go(from, p);
+    if (p->end == PassageEnd::lost && p->blame < 0 && !p->unbounded)
+      p->blame = loosest_before(*p->arc, p->nodes.empty() ? from : p->nodes.back());
+  }
+
+ private:
+  // Of the blocks that its own hang on the one nearest to a singular place, -1 where the rounding of none moves the
+  // equations by more than is accepted: each look closes them anew. What is walked together has one rounding.
+  int loosest_before(const Arc& arc, const Node& a) const {
+    int loosest = -1;
+    double least = LOOSE * ROUNDING / limits_.accept;
+    for (std::size_t k = 0; k < a.singular.size(); ++k)
+      if (arc.before()[k] && a.singular[k] < least) loosest = (int)k, least = a.singular[k];
+    return loosest;
+  }
+
+  void go(const Node& from, Passage* p) const {
     Arc& arc = *p->arc;
     Node a, b;
     if (!arc.enter(from, &a)) return;
@@ -123,7 +145,6 @@ class Walker {
                         shows_its_turns(a, b);
       if (!good) {
         ++p->rejected;
-        
         // at a branch point steps of any length end where the pivots are rounding
         const bool singular = h < SINGULAR_STEP && blame >= 0 && arc.owns(blame) && arc.own_pivot(b) < limits_.arc_pivot;
         h = singular ? 0.0 : 0.5 * h, refuses = blame;
@@ -151,7 +172,6 @@ class Walker {
     }
   }
 
- private:
   // Whether sigma stands still but for rounding, as it does in a narrow place that a block turns through while nothing
   // else moves: its rate's sign there says nothing.
   bool rests(const Arc& arc, const Node& a, const Node& b) const {
@@ -260,13 +280,43 @@ class Walker {
     return false;
   }
 
+  // The nodes of a walk, and before them some of the way backwards where it began too near to a branch point: the place is
+  // told from a way that is long beside its rounding.
+  std::vector<Node> with_way_behind(const Passage& p) const {
+    std::vector<Node> found;
+    Node a = p.nodes.front(), b;
+    double h = p.arc->wanted_step(a);
+    for (int tries = 0; tries < MOST_BACK && h >= LEAST_ARC && p.nodes.back().place - a.place < WAY_BEHIND; ++tries) {
+      int blame = -1;
+      if (!p.arc->step(a, -h, &b, &blame) || b.rate <= 0.0) {
+        h *= 0.5;
+        continue;
+      }
+      found.push_back(b);
+      h = std::fmin(p.arc->wanted_step(b), 4.0 * h);
+      a = b;
+    }
+    std::reverse(found.begin(), found.end());
+    found.insert(found.end(), p.nodes.begin(), p.nodes.end());
+    return found;
+  }
+
   bool cross_branch_point(Passage* p, Node* a) const {
     BranchPointAhead point;
     if (p->arc->own_pivot(*a) > SINGULAR_PIVOTS * limits_.arc_pivot) return false;
-    if (p->nodes.size() < 2 || !branch_point_ahead(*p->arc, p->nodes, &point)) return false;
-    p->end = PassageEnd::branch_point;
     Node before, after;
-    if (!limits_.straight || !pass_straight(*p->arc, point, &before, &after)) {
+    bool is_told = false, passes = false;
+    const auto look = [&](const std::vector<Node>& nodes) {
+      BranchPointAhead seen;
+      if (nodes.size() < 2 || !branch_point_ahead(*p->arc, nodes, &seen)) return;
+      is_told = true, point = seen;
+      passes = limits_.straight && pass_straight(*p->arc, point, &before, &after);
+    };
+    look(p->nodes);
+    if (!is_told || passes != limits_.straight) look(with_way_behind(*p));
+    if (!is_told) return false;
+    p->end = PassageEnd::branch_point;
+    if (!passes) {
       Node there = branch_point_node(*p->arc, point);
       while (p->nodes.size() > 1 && p->nodes.back().sigma >= there.sigma) p->nodes.pop_back();
       p->nodes.push_back(there);
@@ -306,7 +356,10 @@ bool Passage::at(double sigma, Node* node, double* limit) const {
   const double t = part_at(a, b, sigma);
   *node = a;
   interpolate_all(a, b, t, node);
-  *limit = std::fmax(CLOSED, arc->limits().infill * (b.place - a.place));
+  // what is carried along may move far on a short arc
+  double square = 0.0;
+  for (std::size_t s = 0; s < a.state.size(); ++s) square += (b.state[s] - a.state[s]) * (b.state[s] - a.state[s]);
+  *limit = std::fmax(CLOSED, arc->limits().infill * std::fmax(b.place - a.place, std::sqrt(square)));
   if (std::fmin(a.rate, b.rate) * arc->scale() >= SLOW) return true;
   // next to a dead centre the place of sigma on the arc counts
   double low = 0.0, high = b.place - a.place, h = t * high;

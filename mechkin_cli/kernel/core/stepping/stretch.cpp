@@ -109,6 +109,9 @@ Stretch walk_stretch(const Path& path, const KernelUnit& unit, const StepLimits&
     again = false;
     stretch.passages.clear();
     for (std::size_t k = 0; k < trouble.size() && !again; ++k) {
+      // what passed with those that hang on it needs no walk of its own
+      const auto passed = [&](const Passage& p) { return p.end == PassageEnd::through && p.arc->owns(trouble[k]); };
+      if (std::any_of(stretch.passages.begin(), stretch.passages.end(), passed)) continue;
       const std::vector<char> own = chain_of(trouble[k], trouble, upstream, n);
       const auto walk = [&](double weight) {
         Passage p;

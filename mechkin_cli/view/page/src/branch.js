@@ -1,5 +1,6 @@
 // One branch of a run: its rows, and the poses of the links at those rows that have one.
 
+import { DOUBTS } from "./colours.js";
 import { numbers } from "./data.js";
 
 const PER_LINK = 7; // tx ty tz q0 q1 q2 q3
@@ -17,6 +18,7 @@ export class Branch {
     this.values = numbers(packed.poses.values);
     this.codes = numbers(packed.status.codes);
     this.words = packed.status.words;
+    this.doubts = packed.status.doubts;
     this.marks = packed.marks ?? [];
     this.columns = packed.columns ?? [];
     this.arrows = packed.arrows ?? [];
@@ -25,6 +27,11 @@ export class Branch {
 
   get poseCount() {
     return this.poseRows.length;
+  }
+
+  /** The colour of a verdict by its code. */
+  colour(code) {
+    return DOUBTS[this.doubts[code]] ?? DOUBTS.at(-1);
   }
 
   /** The verdict of a row, in words. */

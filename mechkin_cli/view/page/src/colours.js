@@ -36,8 +36,5 @@ function spread(index, saturation) {
   return `hsl(${hue.toFixed(1)}, ${saturation}%, ${index % 2 ? 42 : 56}%)`;
 }
 
-/** The colour of a verdict: only `ok` is good, and what was computed with a doubt is not lost. */
-export function verdictColour(word) {
-  if (word === "ok") return GOOD;
-  return /^near|^ill|undecided|warning|redundant/.test(word) ? DOUBTFUL : BAD;
-}
+/** Colours of rows that are ok, have a position with a reservation, have none. */
+export const DOUBTS = [GOOD, DOUBTFUL, BAD];

@@ -1,8 +1,11 @@
 // Numbers as people read them.
 
-/** A number with as many digits as a reading needs. */
-export function told(value, digits = 6) {
+const ROUNDING = 1e-13; // of the largest of its column: less is zero
+
+/** A number with as many digits as a reading needs; of a column whose `largest` is given, without its rounding. */
+export function told(value, digits = 6, largest = 0) {
   if (!Number.isFinite(value)) return "none";
+  if (Math.abs(value) < ROUNDING * largest) return "0";
   const text = value.toPrecision(digits);
   return text.includes("e") ? String(Number(text)) : String(Number(text)).replace("-", "\u2212");
 }

@@ -1,6 +1,6 @@
 // The player: a slider over the rows, play and pause, speed, modes; it moves the state and shows its place.
 
-import { verdictColour, MARKS } from "./colours.js";
+import { MARKS } from "./colours.js";
 import { choice, element, tick } from "./dom.js";
 import { told } from "./numbers.js";
 
@@ -54,7 +54,7 @@ export class Player {
     this.where.title = this.where.textContent;
     const word = branch.verdict(row);
     this.verdict.textContent = word;
-    this.verdict.style.setProperty("--verdict", verdictColour(word));
+    this.verdict.style.setProperty("--verdict", branch.colour(branch.codes[row]));
   }
 
   #offerModes() {
@@ -82,10 +82,10 @@ export class Player {
     const last = Math.max(1, branch.rows - 1);
     const reach = width / last;
     // a row of doubt must be seen however many rows there are, so bad ones are painted last
-    const words = [...new Set(branch.words.keys())].sort((a, b) => rank(branch.words[a]) - rank(branch.words[b]));
+    const words = [...new Set(branch.words.keys())].sort((a, b) => branch.doubts[a] - branch.doubts[b]);
     const stretches = branch.stretches();
     for (const code of words) {
-      brush.fillStyle = verdictColour(branch.words[code]);
+      brush.fillStyle = branch.colour(code);
       for (const { from, to } of stretches.filter((each) => each.code === code)) {
         brush.fillRect((from - 0.5) * reach, 0.35 * height, Math.max((to - from + 1) * reach, ratio), 0.3 * height);
       }
@@ -145,8 +145,6 @@ export class Player {
     requestAnimationFrame((later) => this.#step(later));
   }
 }
-
-const rank = (word) => ["#2fa36b", "#d9a21b", "#d64545"].indexOf(verdictColour(word));
 
 /** The place that lies a share of the whole way on: by x where that goes one way, else by rows. */
 function advanced(branch, place, share) {

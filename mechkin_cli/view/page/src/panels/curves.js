@@ -1,7 +1,7 @@
 // Curves of any columns: one plot for each unit, a common cursor, a click that seeks, marks and verdicts.
 
 import uPlot from "uplot";
-import { MARKS, curveColour, verdictColour } from "../colours.js";
+import { MARKS, curveColour } from "../colours.js";
 import { numbers } from "../data.js";
 import { element } from "../dom.js";
 import { told } from "../numbers.js";
@@ -156,7 +156,7 @@ export class Curves {
       const { x } = this.axis;
       const left = across((x[first] + (x[first - 1] ?? x[first])) / 2);
       const right = across((x[last] + (x[last + 1] ?? x[last])) / 2);
-      brush.fillStyle = verdictColour(word);
+      brush.fillStyle = branch.colour(code);
       brush.fillRect(left, top + height - 5 * ratio, Math.max(right - left, ratio), 5 * ratio);
     }
     brush.lineWidth = 1.5 * ratio;
@@ -183,7 +183,7 @@ export class Curves {
     for (const plot of this.plots) this.#moveLine(plot);
     this.choice.tell((key) => {
       const column = this.state.branch.columns.find((each) => keyOf(each) === key);
-      return column ? told(numbers(column.values)[this.state.row]) : "";
+      return column ? told(numbers(column.values)[this.state.row], 6, largest(numbers(column.values))) : "";
     });
   }
 
@@ -247,6 +247,7 @@ class RowAxis {
   }
 }
 
+const largest = (values) => values.reduce((most, each) => (Math.abs(each) > most ? Math.abs(each) : most), 0);
 const finite = (value) => (Number.isFinite(value) ? value : null);
 const keyOf = (column) => `${column.table ?? ""}\u0000${column.label}`;
 const withUnit = (label, unit) => (unit ? (label ? `${label} in ${unit}` : unit) : label);

@@ -1,6 +1,5 @@
 // Tables with verdicts. Only the rows that are seen are elements, so that 20 000 rows scroll as ten do.
 
-import { verdictColour } from "../colours.js";
 import { numbers } from "../data.js";
 import { choice, element } from "../dom.js";
 
@@ -85,7 +84,7 @@ export class Tables {
     const code = this.table.status?.[at];
     if (code !== undefined) {
       const word = this.own?.words[code] ?? "";
-      row.append(element("td.verdict", { style: { "--verdict": verdictColour(word) } }, word));
+      row.append(element("td.verdict", { style: { "--verdict": this.own?.colour(code) } }, word));
       if (word !== "ok") row.classList.add("doubtful");
     }
     return row;

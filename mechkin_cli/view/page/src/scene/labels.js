@@ -14,11 +14,12 @@ export class Labels {
 
   /**
    * @param wanted  [{key, text, places: [Vector3], kind}]: at the first place that is seen; the rest goes away
+   * @param covered  boxes [left, top, right, bottom] where no name may be
    * @returns  keys of those that are seen and have no free place
    */
-  show(wanted, camera, width, height) {
+  show(wanted, camera, width, height, covered = []) {
     const kept = new Set();
-    const taken = [];
+    const taken = [...covered];
     const left = [];
     for (const { key, text, places, kind } of wanted) {
       const seen = places.map((place) => place.clone().project(camera)).find(isSeen);
@@ -48,9 +49,15 @@ export class Labels {
       const { color, fontWeight, fontSize, fontFamily } = getComputedStyle(node);
       brush.font = `${fontWeight} ${parseFloat(fontSize) * ratio}px ${fontFamily}`;
       brush.fillStyle = color;
+      brush.strokeStyle = "#ffffff";
+      brush.lineWidth = 3 * ratio;
+      brush.lineJoin = "round";
       const [left, top, right, bottom] = box.map((each) => each * ratio);
       const width = Math.min(brush.measureText(text).width, right - left);
-      brush.fillText(text, (left + right - width) / 2, (top + bottom) / 2, right - left);
+      // on paper a name has no ground of its own, but an edge
+      const at = [(left + right - width) / 2, (top + bottom) / 2, right - left];
+      brush.strokeText(text, ...at);
+      brush.fillText(text, ...at);
     }
   }
 

@@ -5,12 +5,14 @@ import { linkColour } from "../colours.js";
 import { Body } from "./body.js";
 import { Half, stemOf } from "./halves.js";
 import { PAIRS } from "./pairs.js";
-import { addShape } from "./shapes.js";
+import { bar } from "./parts.js";
+import { BORE, TUBE, addShape } from "./shapes.js";
 import { travels } from "./travel.js";
 import { vector } from "./vectors.js";
 
 const JOINT_SIZE = 0.028; // of the mechanism's size
 const LEAST_JOINT_SIZE = 0.008;
+const SLIDING = new Set(["P", "C"]); // in a link that is drawn as a cylinder: a piston
 const CLOSE = 0.22; // of the least distance between two joints of a link
 
 /** The size of a joint where the file says nothing: fit to the mechanism, and to joints that lie close. */
@@ -68,6 +70,13 @@ export class Mechanism {
       const stem = stemOf(others, point, link === 0, axis, up);
       return new Half(half, bodies[link], u, stem, link === 0);
     });
+    const tube = joint.links.map((link) => this.data.links[link].shape).find(({ kind }) => kind === "cylinder");
+    if (tube && SLIDING.has(joint.type)) {
+      const bore = BORE * (tube.radius ?? TUBE * this.unit);
+      const rod = this.data.links[joint.links[1]].shape === tube ? first : second;
+      rod.add(bar(bore, -0.5 * bore, 0.5 * bore));
+      return;
+    }
     PAIRS.get(joint.type)?.({ joint, first, second, u, travel });
   }
 

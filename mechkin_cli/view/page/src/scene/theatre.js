@@ -26,7 +26,7 @@ export class Theatre {
     this.ghosts = [];
     this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
-    this.noRoom = host.querySelector("#no-room");
+    [this.noRoom, this.tools, this.legend] = ["#no-room", "#tools", "#legend"].map((each) => host.querySelector(each));
     this.stage.afterDraw = () => this.#name();
     this.stage.whenSized = () => this.home();
     // until somebody turns or moves it, the view fits the stage, however large that becomes
@@ -64,7 +64,7 @@ export class Theatre {
     this.paths = new Paths(this.data, branch, this.unit);
     this.arrows = new Arrows(this.data, branch, this.unit, this.size);
     this.arrows.zoom = zoom;
-    this.ties = new Ties(this.state.run.ties, this.unit);
+    this.ties = new Ties(this.state.run.ties, this.data, branch, this.unit);
     this.#choose();
     scene.add(this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
     this.places = placesOf(this.data, branch);
@@ -163,9 +163,18 @@ export class Theatre {
         key: `arrow ${arrow.name}`, text: `${name} ${magnitude.toPrecision(4)} ${arrow.unit}`, places: [tip, group.position], kind: arrow.kind,
       });
     }
-    const left = this.labels.show(wanted, camera, width, height).filter((key) => key.startsWith("arrow ")).length;
+    const left = this.labels.show(wanted, camera, width, height, this.#covered()).filter((key) => key.startsWith("arrow ")).length;
     this.noRoom.hidden = left === 0;
+    this.noRoom.style.top = `${this.tools.offsetTop + this.tools.offsetHeight + 4}px`;
     this.noRoom.textContent = `${left} of ${arrows.length} values have no room: come nearer, or choose fewer under forces`;
+  }
+
+  /** Boxes of what lies over the stage, and of the note below it. */
+  #covered() {
+    const parts = [...this.tools.children, ...this.legend.children, this.noRoom];
+    const { left, top } = this.stage.host.getBoundingClientRect();
+    return parts.map((part) => part.getBoundingClientRect()).filter(({ width }) => width > 0)
+      .map((box) => [box.left - left, box.top - top, box.right - left, box.bottom - top]);
   }
 
   /** Looks from where the page looked first, so that everything is seen. */

@@ -1,6 +1,7 @@
 // From where to look first: the side from which the mechanism covers most and hides itself least.
 
 import { Box3, Vector3 } from "three";
+import { reached } from "./shapes.js";
 import { squareTo, vector } from "./vectors.js";
 import { poseMatrix } from "./travel.js";
 
@@ -12,13 +13,14 @@ const HEIGHT = 0.45; // of the camera over the floor, in parts of its distance
 export function placesOf(data, branch) {
   const found = [];
   const shown = (link) => !data.links[link].hidden;
+  const shapes = data.links.map(({ shape }) => reached(shape));
   const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
   for (let index = 0; index < branch.poseCount; index += stride) {
     const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
     const add = (link, place) => shown(link) && found.push(vector(place).applyMatrix4(poses[link]));
     for (const joint of data.joints) joint.links.forEach((link, k) => add(link, joint.halves[k].point));
     for (const { link, place } of data.points) add(link, place);
-    data.links.forEach(({ shape }, link) => shape.points.forEach((place) => add(link, place)));
+    data.links.forEach((_, link) => shapes[link].forEach((place) => add(link, place.toArray())));
   }
   if (found.length === 0) found.push(vector(data.centre));
   return found;

@@ -1,4 +1,4 @@
-"""What a new pair takes: a pin in a straight slot, which the joint table lacks.
+"""What a new pair takes: a pin in a straight slot, which the pairs in space lack.
 
 The pin of the second link slides by s along `slot` of the first and turns by theta about `axis`,
 which is square to the slot: the pair of slotted links and quick-return mechanisms. Every file that
