@@ -12,7 +12,7 @@ the other.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from math import ceil, pi, sqrt
 from typing import TYPE_CHECKING
 
@@ -104,12 +104,12 @@ class Probe:
         return sqrt(x * x + y * y + z * z) or 1.0
 
 
-def telling_points(coordinates: Sequence[Floats], points: Floats) -> list[int]:
+def telling_points(coordinates: Mapping[str, Floats], points: Floats) -> list[int]:
     """Numbers of a few points that tell those of some assemblies apart which the coordinates do
     not.
 
     Args:
-        coordinates: of all assemblies, (assemblies,) each, in SI.
+        coordinates: by name of all assemblies, (assemblies,) each, in SI.
         points: (points, 3, assemblies), in m.
     """
     count = points.shape[2]
@@ -117,8 +117,9 @@ def telling_points(coordinates: Sequence[Floats], points: Floats) -> list[int]:
         return []
     size = float(np.max(np.ptp(points, axis=(0, 2))))
     groups = np.zeros(count, dtype=np.intp)
-    for values in coordinates:
-        groups = _split(groups, values, tolerances.TOLD_APART)
+    for name, values in coordinates.items():
+        scale = 1.0 if is_angle(name.rpartition(".")[2]) else size
+        groups = _split(groups, values, tolerances.TOLD_APART * scale)
     found: list[int] = []
     while (told := int(groups.max()) + 1) < count:
         splits = []

@@ -37,7 +37,7 @@ from mechkin_cli.assembly.near import (
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
-from mechkin_cli.mechanism import dimension_of
+from mechkin_cli.mechanism import dimension_of, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Layout, TrackEnd, build_plan, home_inputs, home_state
 from mechkin_cli.record import replace
@@ -290,25 +290,26 @@ def _meeting(rows: str) -> Diagnostic:
 
 
 def _from_beside_home(session: Session) -> list[AssemblyStart]:
-    """Of a drawing where motions meet: followed from the assemblies next to it, a little further on
-    the way to the nearest row away from it, on either side; none where some assembly next to it
-    moves with the inputs held, or is as singular."""
+    """Of a drawing where motions meet: followed from the assemblies next to it that come back to
+    it, a little further on the way to the nearest row away from it, on either side; none where some
+    assembly there moves with the inputs held, more are there than are listed, or of one it is not
+    known whether it comes from the drawing."""
     home, drawn = home_inputs(session.layout), home_state(session.layout)
+    left = {session.layout.state(*at) for block in session.graph.blocks for at in block.unknowns}
+    about = box_about(session, (drawn, frozenset(left), True), tolerances.HOME_BOX)
     path = session.inputs.values - home[:, None]
     away = np.flatnonzero(np.max(np.abs(path), axis=0, initial=0.0) > tolerances.PASSED)
-    left = {session.layout.state(*at) for block in session.graph.blocks for at in block.unknowns}
-    within = box_about(session, (drawn, frozenset(left), True), tolerances.HOME_BOX)
     for row in two_sides(path, away) if away.size else []:
         way = path[:, row] * min(1.0, tolerances.HOME_STEP / float(np.max(np.abs(path[:, row]))))
-        found = all_assemblies(session, home + way, within)
+        found = all_assemblies(session, home + way)
+        # what moves elsewhere with the inputs held does not come from the drawing
+        if found.cut or all_assemblies(session, home + way, about).free:
+            continue
+        come = [_comes_from_home(session, home, way, state) for state in found.states.T]
+        if None in come:
+            continue
         starts = []
-        for state in found.states.T:
-            if np.any(np.abs(state - drawn) > within[1]) or found.free:
-                continue
-            back = session.follow(np.stack([home + way, home + 0.1 * way], axis=1), state)
-            off = float(np.max(np.abs(back.state - drawn)))
-            if back.end != TrackEnd.FINISHED or off > 0.5 * float(np.max(np.abs(state - drawn))):
-                continue  # no motion from the drawing
+        for state in found.states.T[np.array(come, dtype=bool)]:
             on = session.follow(np.stack([home + way, home + path[:, row]], axis=1), state)
             if on.end == TrackEnd.FINISHED:
                 how = "followed from beside the home drawing, where motions meet"
@@ -316,6 +317,22 @@ def _from_beside_home(session: Session) -> list[AssemblyStart]:
         if starts:
             return starts
     return []
+
+
+def _comes_from_home(session: Session, home: Floats, way: Floats, state: Floats) -> bool | None:
+    """Whether an assembly at the inputs home + way lies on a motion that leaves the drawing there;
+    None where it is lost on the way back. A coordinate may move far faster than the inputs."""
+    drawn = home_state(session.layout)
+    off = float(np.max(np.abs(state - drawn)))
+    here = way
+    for part in tolerances.HOME_PARTS:
+        back = session.follow(np.stack([home + here, home + part * way], axis=1), state)
+        if back.end != TrackEnd.FINISHED:
+            return None
+        state, here = back.state, part * way
+        if float(np.max(np.abs(state - drawn))) <= 0.5 * min(off, tolerances.HOME_NEAR):
+            return True
+    return False
 
 
 def _several_motions(session: Session, starts: Sequence[AssemblyStart]) -> AssemblyStart:
@@ -328,8 +345,10 @@ def _several_motions(session: Session, starts: Sequence[AssemblyStart]) -> Assem
     for name, values in probe_of(session).read(inputs, states)[0].items():
         dimension = dimension_of(name.rpartition(".")[2])
         unit = problem.units.label(dimension)
-        if float(np.ptp(values)) > tolerances.SAME_MODE:
-            each = [f"{problem.units.from_si(v, dimension):.6g}" for v in values.tolist()]
+        size = 1.0 if is_angle(name.rpartition(".")[2]) else session.layout.length
+        if float(np.ptp(values)) > tolerances.SAME_MODE * size:
+            in_file = problem.units.from_si(np.sort(values), dimension).tolist()
+            each = [f"{value:.6g}" for value in in_file]
             told.append(f"{name} = {' or '.join(dict.fromkeys(each))} {unit}")
     diagnostic = Diagnostic(
         "several-motions",

@@ -256,7 +256,7 @@ def _result(
     }
     probe = probe_of(session)
     coordinates, points = probe.read(place, assemblies.states)
-    telling = telling_points(list(coordinates.values()), points)
+    telling = telling_points(coordinates, points)
     axes = "xy" if problem.mechanism.plane else "xyz"
     order = sorted(
         range(assemblies.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])

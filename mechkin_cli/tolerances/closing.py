@@ -368,8 +368,17 @@ HOME_STEP: Final = 0.05
 where an assembly next to it is looked for: regular there, and known to many digits."""
 
 HOME_BOX: Final = 0.25
-"""How far (rad, parts of the size) an assembly there may be from the drawing: five times as fast as
-the inputs."""
+"""How far (rad, parts of the size) from the drawing what moves there with the inputs held is near
+it: five times that step."""
+
+HOME_PARTS: Final = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
+"""Parts of that step at which an assembly is looked at on the way back to the drawing: the crossed
+motion of a parallelogram whose bars differ by 1e-5 of their length moves 1e5 times as fast as its
+crank."""
+
+HOME_NEAR: Final = 0.5
+"""How far (rad, length units) an assembly that comes from the drawing is at most from it where the
+inputs are nearly there, twice over; one that does not stays where it is."""
 
 # --- whole turns ---------------------------------------------------------------------------------
 

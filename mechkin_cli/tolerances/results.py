@@ -359,5 +359,5 @@ LINEAR: Final = 0.1
 """A second-order term beyond this part of the first-order one makes a slope misleading."""
 
 TOLD_APART: Final = 1e-5
-"""Coordinates of assemblies (rad, m), and places of their joints in parts of the mechanism's size,
-that are nearer than this look alike in a list of six digits."""
+"""Angles of assemblies (rad), slides and places of joints (parts of the mechanism's size) that are
+nearer than this look alike in a list of six digits."""

@@ -266,3 +266,27 @@ def test_a_plane_four_bar_with_one_cylinder_has_two_modes_and_no_more(at: str, s
     assert found.bound == 2
     have = sorted(mode.coordinates["D.theta"] for mode in found.modes)
     assert np.abs(np.array(have) - want).max() < 1e-9
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1.0, 1e6])
+def test_a_slide_tells_modes_apart_at_any_size(size: float) -> None:
+    """Crank r = 1, rod l = 3 sizes with a ball at either end: the slide is at
+    cos(t) r +- sqrt(l^2 - r^2 sin(t)^2)."""
+    angle = math.radians(40)
+    far = f"point: [{4 * size!r}, 0, 0]"
+    file = f"""\
+format: 1
+units: {{length: m, angle: rad}}
+links: {{k: {{}}, l: {{}}, m: {{}}}}
+joints:
+  A: {{type: R, links: [ground, k], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: S, links: [k, l], point: [{size!r}, 0, 0]}}
+  C: {{type: S, links: [l, m], {far}}}
+  S: {{type: P, links: [ground, m], {far}, axis: [1, 0, 0]}}
+motion: {{inputs: {{A.theta: {{values: [{angle!r}]}}}}}}
+"""
+    modes = mk.loads(file).modes().modes
+    assert [mode.places for mode in modes] == [{}, {}]
+    found = sorted(mode.coordinates["S.s"] / size + 4 for mode in modes)
+    root = math.sqrt(9 - math.sin(angle) ** 2)
+    assert found == pytest.approx([math.cos(angle) - root, math.cos(angle) + root], rel=1e-9)

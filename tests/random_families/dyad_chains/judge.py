@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -103,15 +104,21 @@ def judge(case: Sweep) -> Judged:
             if word == "lost":
                 lost.append(here)
             continue
-        others = [parts_of(case.chain.flipped(k), at, values) for k in flipped]
-        if verdict != "beyond" and off[row] < 1:
-            counts[f"right: {status[row]}"] += 1
-        elif verdict != "beyond" and any(other[row] < 1 for other in others):
-            counts[f"right, behind a branch point: {status[row]}"] += 1
-        else:
-            counts["wrong"] += 1
+        others = [parts_of(case.chain.flipped(k), at, values)[row] for k in flipped]
+        word = where(verdict, off[row], {"right, behind a branch point": others})
+        counts[f"{word}: {status[row]}"] += 1
+        if word == "wrong":
             wrong.append(f"{here}, off by {off[row]:.2e} of its uncertainty")
     return Judged(counts, lost, wrong)
+
+
+def where(verdict: str, off: float, others: Mapping[str, Sequence[float]]) -> str:
+    """`right`, the first word of which another branch is met, or `wrong`; misses are in parts of
+    the uncertainty."""
+    if verdict == "beyond":
+        return "wrong"
+    branches = {"right": [off], **others}
+    return next((word for word, misses in branches.items() if min(misses, default=1) < 1), "wrong")
 
 
 def parts_of(chain: Chain, at: Array, values: Array) -> Array:

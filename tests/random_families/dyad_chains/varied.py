@@ -10,9 +10,9 @@ import random
 from collections import Counter
 
 import numpy as np
-from random_families.dyad_chains.case import Chain, Long
+from random_families.dyad_chains.case import Long
 from random_families.dyad_chains.drawn import Sweep, sweep
-from random_families.dyad_chains.judge import HAVE, UNDECIDED, Judged, Reach, parts_of
+from random_families.dyad_chains.judge import HAVE, UNDECIDED, Judged, Reach, parts_of, where
 
 import mechkin_cli as mk
 
@@ -76,14 +76,14 @@ def judge_variants(case: Sweep) -> Judged:
             if word.startswith("lost"):
                 lost.append(here)
             continue
-        others: list[Chain] = [case.chain.flipped(k) for k in reach.flipped]
-        if verdict != "beyond" and off[number] < 1:
-            counts[f"right: {status}"] += 1
-        elif verdict != "beyond" and any(parts_of(o, at, values)[number] < 1 for o in others):
-            counts[f"right, behind a branch point: {status}"] += 1
-        elif verdict != "beyond" and any(other[number] < 1 for other in meets):
-            counts[f"right, on the other branch of its base: {status}"] += 1
-        else:
-            counts["wrong"] += 1
+        flipped = [parts_of(case.chain.flipped(k), at, values)[number] for k in reach.flipped]
+        # a base in a dead centre does not know its branch, though `near` names it
+        others = {
+            "right, behind a branch point": flipped,
+            "on the branch that near does not mean": [other[number] for other in meets],
+        }
+        word = where(verdict, off[number], others)
+        counts[f"{word}: {status}"] += 1
+        if word == "wrong":
             wrong.append(f"{here}, off by {off[number]:.2e} of its uncertainty")
     return Judged(counts, lost, wrong)
