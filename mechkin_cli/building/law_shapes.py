@@ -1,0 +1,542 @@
+"""Laws of motion as functions of one variable: value and three derivatives, piece by piece.
+
+`read_law` reads a law of the file over a variable (`Over`): the moment of a row, or a coordinate
+that another one follows. Everything that is asked of a law comes from what it returns, a
+`PiecewiseLaw`, whose numbers are in the file's units or, with `Over.in_si`, in SI:
+
+- `orders(x)`: value and derivatives by the variable at any of its values, in doubles;
+- `recorded(rows, x, at)`: the same on a recording of exact numbers;
+- `value(x, constants)`, of numbers of any kind, with `constants(x)` of the piece in which x lies:
+  one formula for all pieces, so that one tape holds for all of them, and its derivatives are those
+  of the tape; it changes at `edges`, where the law has a kink.
+
+With t from the first value of the variable and u = (x - start)/duration the laws are
+
+- constant rate, constant acceleration, polynomial: c0 + c1 t + c2 t^2 + ...; bare coefficients
+  must be in the file's angle (length) and time throughout
+- rises, from + (to - from) s(u), with rest before and after: `SHAPES`
+- table: the curve through the rows of a CSV file.
+
+A piece is a polynomial of w = (x - origin)/length - shift and a wave of w. Rises are measured from
+their nearer end, so that they leave and reach it exactly. The first and the last value of a rise
+belong to it; where two pieces meet that both move, the place belongs to the later one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import inf, pi, prod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.building.fields import Clock, Fields, Path
+from mechkin_cli.building.load_laws import (
+    join,
+    joining_of,
+    note_overshoot,
+    read_curve,
+    read_rows,
+)
+from mechkin_cli.exact import PI, Exact, nearest
+from mechkin_cli.expressions import literal
+from mechkin_cli.mechanism import Curve
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.schema import (
+    ConstantAcceleration,
+    ConstantRate,
+    Cycloidal,
+    Harmonic,
+    Law,
+    Polynomial,
+    TableLaw,
+)
+from mechkin_cli.tape import Recorded, TraceLost, as_recorded, cos, is_traced, sin
+from mechkin_cli.tolerances import COURSE_SAME
+from mechkin_cli.units import TIME, Conversion, Dimension, conversion
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import ExactRows
+
+_HALF_TURN = Exact(pi, PI)
+_ORDERS = range(4)
+
+
+class Over(NamedTuple):
+    """The variable of a law.
+
+    Attributes:
+        dimension: what it measures.
+        first: its first value, in the units of the law.
+        last: its last value, at which a rise without a duration ends; None where there is none.
+        met: the least and the largest of its values that are met, where they are known.
+        in_si: whether the law is in SI, else in the file's units.
+    """
+
+    dimension: Dimension
+    first: float
+    last: float | None
+    met: tuple[float, ...] = ()
+    in_si: bool = False
+
+
+def over_moments(clock: Clock) -> Over:
+    """Over the moments of the rows."""
+    written = clock.time.written
+    return Over(TIME, clock.first, clock.last, (float(written[0]), float(written[-1])))
+
+
+Orders = tuple[Any, Any, Any, Any]
+"""Value and three derivatives."""
+
+
+class Piece(NamedTuple):
+    """anchor + a polynomial of w = (x - origin)/length - shift + a wave of w, from `start` on.
+
+    Attributes:
+        start: the value of the variable from which it holds.
+        anchor: as above, as `origin`, `length` and `shift`.
+        polynomials: of each order the coefficients of w^0, w^1, ...
+        waves: of each order the factor of sine, cosine, sine and cosine of pi (turns w + phase).
+        moves: whether it is no rest.
+        goes_on: whether it is the same function as the piece before, measured from elsewhere.
+    """
+
+    start: Any
+    anchor: Any
+    origin: Any = 0.0
+    length: Any = 1.0
+    shift: Any = 0.0
+    polynomials: Sequence[Sequence[Any]] = ((), (), (), ())
+    waves: Sequence[Any] = (0.0, 0.0, 0.0, 0.0)
+    turns: Any = 0.0
+    phase: Any = 0.0
+    moves: bool = True
+    goes_on: bool = False
+
+
+def _rest(at: Any, start: Any = -inf) -> Piece:
+    return Piece(start, at, moves=False)
+
+
+class PiecewiseLaw:
+    """A law of one or more pieces in rising order, of which the first has no start.
+
+    With a `period` it repeats itself from the start of its second piece on, and before.
+    """
+
+    def __init__(self, pieces: Sequence[Piece], period: Any = None) -> None:
+        self.pieces, self.period = tuple(pieces), period
+        self._starts = np.array([as_recorded(piece.start) for piece in self.pieces[1:]])
+        self._moves = np.array([piece.moves for piece in self.pieces])
+        self._waves = any(not _is_zero(piece.turns) for piece in self.pieces)
+        sizes = max(len(piece.polynomials[0]) for piece in self.pieces)
+        self._sizes = [max(sizes - order, 1) for order in _ORDERS]
+        rows = zip(*map(self._row, self.pieces), strict=True)
+        self._columns: list[list[Any]] = [list(column) for column in rows]
+        self._own = [k for k in range(self._of_value) if not _alike(self._columns[k])]
+        if period is not None and 0 not in self._own:
+            self._own.insert(0, 0)
+
+    @property
+    def edges(self) -> list[float]:
+        """Values of the variable at which the constants change, of a period those of its first."""
+        parts = zip(self._starts.tolist(), self.pieces[1:], strict=True)
+        return [start for start, piece in parts if not piece.goes_on]
+
+    def constants(self, x: float) -> list[float]:
+        """Those of the piece in which a value of the variable lies."""
+        at = np.array([x])
+        turns = float(self._turns(at)[0])
+        piece = int(self._piece_of(at - turns * self._length)[0])
+        row = [self._columns[k][piece] for k in self._own]
+        if turns:
+            row[0] = row[0] + turns * self._length
+        return row
+
+    def value(self, x: Any, constants: Sequence[Any]) -> Any:
+        """The value at x, a float or a recorded number, with the constants of its piece."""
+        row = [column[0] for column in self._columns]
+        for k, constant in zip(self._own, constants, strict=True):
+            row[k] = constant
+        return self._evaluated(x, row, 1)[0]
+
+    def orders(self, x: Floats) -> Floats:
+        """Value and three derivatives at x (rows,), shape (4, rows).
+
+        Raises:
+            TraceLost: the law depends on a parameter that is recorded.
+        """
+        columns = [c[0] if _alike(c) else np.array(c) for c in self._columns]
+        if any(map(is_traced, columns)):
+            raise TraceLost("a law of motion depends on a varied parameter")
+        x = x - self._turns(x) * self._length if self._length else x
+        piece = self._piece_of(x)
+        row = [c[piece] if isinstance(c, np.ndarray) else c for c in columns]
+        found = self._evaluated(x, row, len(_ORDERS))
+        return np.stack([np.broadcast_to(order, x.shape) for order in found])
+
+    def recorded(self, rows: ExactRows, x: Any, at: Floats) -> Orders:
+        """As `orders`, of a recorded number x of the rows; doubles `at` (rows,) tell its pieces."""
+        turns = self._turns(at)
+        if turns.any():
+            x = x - rows.given(turns) * self.period
+        piece = self._piece_of(at - turns * self._length)
+        row = [c[0] if _alike(c) else rows.picked(c, piece) for c in self._columns]
+        value, first, second, third = self._evaluated(x, row, len(_ORDERS))
+        return value, first, second, third
+
+    @property
+    def _length(self) -> float:
+        """The period; 0 where there is none."""
+        return 0.0 if self.period is None else as_recorded(self.period)
+
+    def _turns(self, x: Floats) -> Floats:
+        """How many periods lie before each x (rows,)."""
+        length = self._length
+        return np.floor((x - self._starts[0]) / length) if length else np.zeros(x.shape)
+
+    def _piece_of(self, x: Floats) -> NDArray[np.intp]:
+        """The number of the piece of each x (rows,)."""
+        starts = self._starts
+        if not starts.size:
+            return np.zeros(x.shape, dtype=np.intp)
+        near = COURSE_SAME * (max(starts[-1], x.max()) - min(starts[0], x.min()))
+        piece = np.searchsorted(starts - near, x, side="right")
+        before = piece - 1
+        at_start = np.abs(x - starts[np.maximum(before, 0)]) <= near
+        stays = ~self._moves[piece] & at_start & (piece > 0)
+        return np.where(stays, before, piece)
+
+    def _row(self, piece: Piece) -> list[Any]:
+        """All numbers of a piece in the order in which `_evaluated` takes them."""
+        row = [piece.origin, piece.length, piece.shift, piece.turns, piece.phase, piece.anchor]
+        for size, wave, polynomial in zip(self._sizes, piece.waves, piece.polynomials, strict=True):
+            row += [wave, *polynomial, *[0.0] * (size - len(polynomial))]
+        return row
+
+    @property
+    def _of_value(self) -> int:
+        """How many of them its value needs."""
+        return 7 + self._sizes[0]
+
+    def _evaluated(self, x: Any, row: Sequence[Any], count: int) -> list[Any]:
+        """The first orders of a law at x, of a piece whose numbers are known."""
+        origin, length, shift, turns, phase, anchor = row[:6]
+        w = x if _is_zero(origin) else x - origin
+        w = w if _is_one(length) else w / length
+        w = w if _is_zero(shift) else w - shift
+        sine, cosine = _half_turns(turns * w + phase) if self._waves else (0.0, 0.0)
+        found, used = [], 6
+        for order, size in enumerate(self._sizes[:count]):
+            wave, *coefficients = row[used : used + 1 + size]
+            total: Any = coefficients[-1]
+            for coefficient in coefficients[-2::-1]:
+                total = total * w
+                total = total if _is_zero(coefficient) else total + coefficient
+            if self._waves:
+                total = total + wave * (cosine if order % 2 else sine)
+            if order == 0 and not _is_zero(anchor):
+                total = anchor + total
+            found.append(total)
+            used += 1 + size
+        return found
+
+
+def _is_zero(number: Any) -> bool:
+    return isinstance(number, float) and number == 0.0
+
+
+def _is_one(number: Any) -> bool:
+    return isinstance(number, float) and number == 1.0
+
+
+def _alike(numbers: Sequence[Any]) -> bool:
+    """Whether numbers are known to be one."""
+    first = numbers[0]
+    if isinstance(first, Recorded):
+        return all(number is first for number in numbers)
+    return all(not isinstance(number, Recorded) and number == first for number in numbers)
+
+
+def _half_turns(m: Any) -> tuple[Any, Any]:
+    """Sine and cosine of pi m; of rows exact where m is a multiple of 1/2."""
+    if not isinstance(m, np.ndarray):
+        return sin(m * _HALF_TURN), cos(m * _HALF_TURN)
+    m = m - 2.0 * np.rint(0.5 * m)
+    size = np.abs(m)
+    sine = sin(pi * np.minimum(size, 1.0 - size))
+    return np.where(m < 0.0, -sine, sine), sin(pi * (0.5 - size))
+
+
+class _Part(NamedTuple):
+    """A stretch of a rise from 0 to 1, with w = u - shift: c0 + c1 w + c2 w^2 + ...
+    + rate/(pi turns) sin(pi (turns w + phase)), above 0, 1/2 or 1 as the shift is below, at or
+    above 1/2."""
+
+    start: Fraction
+    shift: Fraction
+    coefficients: tuple[Fraction, ...]
+    rate: Fraction = Fraction(0)
+    turns: Fraction = Fraction(0)
+    phase: Fraction = Fraction(0)
+    goes_on: bool = False
+
+
+_HALF = Fraction(1, 2)
+
+
+def _rise_of(*first: _Part) -> tuple[_Part, ...]:
+    """A rise with s(1 - u) = 1 - s(u) from its parts to the middle, or around it."""
+    found = list(first)
+    ends = [*(part.start for part in first[1:]), _HALF]
+    for part, end in zip(first[::-1], ends[::-1], strict=True):
+        if part.shift != _HALF:
+            turned = tuple(c if k % 2 else -c for k, c in enumerate(part.coefficients))
+            start, shift, phase = 1 - end, 1 - part.shift, -part.phase
+            goes_on = end == _HALF
+            found.append(_Part(start, shift, turned, part.rate, part.turns, phase, goes_on))
+    return tuple(found)
+
+
+def _wave(
+    rate: Fraction,
+    turns: int,
+    *coefficients: Fraction | int,
+    phase: Fraction = Fraction(0),
+    start: Fraction = Fraction(0),
+    shift: Fraction = Fraction(0),
+) -> _Part:
+    return _Part(start, shift, tuple(map(Fraction, coefficients)), rate, Fraction(turns), phase)
+
+
+SHAPES: dict[type, tuple[_Part, ...]] = {
+    # (1 - cos(pi u))/2
+    Harmonic: _rise_of(_wave(PI / 2, 1, _HALF, phase=-_HALF)),
+    # u - sin(2 pi u)/(2 pi)
+    Cycloidal: _rise_of(_wave(Fraction(-1), 2, 0, 1)),
+}
+"""The rises from 0 to 1 by the kind of their section."""
+
+
+class _Reading(NamedTuple):
+    """How a law is read: where it stands, what it gives, what it runs over."""
+
+    fields: Fields
+    path: Path
+    dimension: Dimension
+    over: Over
+
+    def of_order(self, order: int) -> Dimension:
+        """The dimension of a derivative."""
+        return self.dimension / self.over.dimension**order
+
+    def number(self, key: Path, text: str, dimension: Dimension) -> float:
+        """A number of the file in the units of the law."""
+        read = self.fields.number if self.over.in_si else self.fields.written
+        return read((*self.path, *key), text, dimension)
+
+    def between(self, have: int, want: int) -> Conversion:
+        """From the unit of order `have` times that of the variable to have - want, to the unit of
+        order `want`."""
+        if self.over.in_si:
+            return Conversion(1.0, 1.0)
+        unit, more = self.fields.units.unit, self.over.dimension ** (have - want)
+        before = unit(self.of_order(have)) * unit(more)
+        return conversion(before.factor / unit(self.of_order(want)).factor)
+
+    def scales(self, rise: Any, length: Any) -> list[Any]:
+        """What one unit of each order of a function of w from 0 to 1 is."""
+        found = []
+        for order in _ORDERS:
+            found.append(self.between(0, order).apply(rise))
+            rise = rise / length
+        return found
+
+
+def read_law(
+    fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over
+) -> PiecewiseLaw:
+    """The law at a path of the file, which gives a quantity of a dimension over a variable.
+
+    Errors are noted in `fields`; a law at rest replaces a wrong one.
+    """
+    errors = fields.error_count
+    pieces = _READ[type(law)](_Reading(fields, path, dimension, over), law)
+    if fields.error_count > errors:
+        pieces = [_rest(0.0)]
+    return PiecewiseLaw(pieces)
+
+
+def note_bends(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> None:
+    """Notes what is odd, but no error, in a law without errors."""
+    if isinstance(law, TableLaw) and not over.in_si:
+        curve = _curve(_Reading(fields, path, dimension, over), law)
+        assert curve is not None
+        note_overshoot(fields, (*path, "file"), curve, None)
+
+
+def _of_powers(
+    reading: _Reading, law: ConstantRate | ConstantAcceleration | Polynomial
+) -> list[Piece]:
+    written: list[tuple[Path, str]]
+    if isinstance(law, Polynomial):
+        written = [(("coefficients", k), text) for k, text in enumerate(law.coefficients)]
+        _check_units(reading, law)
+    else:
+        written = [(("at",), law.at), (("rate",), law.rate)]
+    if isinstance(law, ConstantAcceleration):
+        written.append((("acceleration",), law.acceleration))
+    numbers = [
+        reading.number(key, text, reading.of_order(k)) for k, (key, text) in enumerate(written)
+    ]
+    if isinstance(law, ConstantAcceleration):
+        numbers[2] /= 2.0
+    polynomials = [
+        tuple(
+            reading.between(k, order).apply(numbers[k] * float(prod(range(k - order + 1, k + 1))))
+            for k in range(order, len(numbers))
+        )
+        for order in _ORDERS
+    ]
+    orders = tuple(coefficients or (0.0,) for coefficients in polynomials)
+    return [Piece(-inf, 0.0, reading.over.first, polynomials=orders)]
+
+
+def _check_units(reading: _Reading, law: Polynomial) -> None:
+    """Refuses bare coefficients with two meanings: in a row of coefficients of an angle in deg, the
+    next may be meant in deg/s or in the file's rad/s."""
+    fields, variable = reading.fields, reading.over.dimension
+    for k, text in enumerate(law.coefficients):
+        if k == 0 or not literal(text):
+            continue
+        own = fields.units.unit(reading.of_order(k))
+        alike = fields.units.unit(reading.dimension) * fields.units.unit(variable) ** -k
+        if own.factor != alike.factor:
+            fields.error(
+                "bare-coefficient",
+                (*reading.path, "coefficients", k),
+                f"{text.strip()} may be meant in {alike} or in {own}",
+                f"write the unit behind the number, such as {text.strip()} {alike}",
+            )
+
+
+def _rise(reading: _Reading, law: Harmonic | Cycloidal) -> list[Piece]:
+    first = reading.number(("from",), law.first, reading.dimension)
+    last = reading.number(("to",), law.last, reading.dimension)
+    start, duration = _span(reading, law)
+    rising = _risen(reading, type(law), start, duration, first, last)
+    return [_rest(first), *rising, _rest(last, start + duration)]
+
+
+def _span(reading: _Reading, law: Harmonic | Cycloidal) -> tuple[float, float]:
+    """Start and duration of a rise; a duration of one replaces a wrong one."""
+    fields, over = reading.fields, reading.over
+    errors = fields.error_count
+    start = over.first
+    if law.start is not None:
+        start = reading.number(("start",), law.start, over.dimension)
+    key: Path = ("duration",)
+    if law.duration is not None:
+        duration = reading.number(key, law.duration, over.dimension)
+    else:
+        duration = 0.0 if over.last is None else over.last - start
+        key = ("start",) if law.start is not None else ()
+    if duration > 0.0:
+        return start, duration
+    if fields.error_count == errors:
+        hint = "give start and duration so that there is time for it"
+        measured = f"{duration:g} {fields.units.label(over.dimension)}"
+        text = "a rise takes a positive time"
+        fields.error("no-duration", (*reading.path, *key), text, hint, measured=measured)
+    return start, 1.0
+
+
+def _risen(
+    reading: _Reading, kind: type, start: Any, length: Any, first: Any, last: Any
+) -> list[Piece]:
+    """The pieces of a rise of a kind."""
+    scales = reading.scales(last - first, length)
+    pieces = []
+    for part in SHAPES[kind]:
+        anchor = (
+            first if part.shift < _HALF else last if part.shift > _HALF else (first + last) / 2.0
+        )
+        polynomials = [
+            [
+                scale * nearest(c * prod(range(k - order + 1, k + 1)))
+                for k, c in enumerate(part.coefficients)
+                if k >= order
+            ]
+            for order, scale in enumerate(scales)
+        ]
+        waves: Sequence[Any] = Piece._field_defaults["waves"]
+        if part.turns:
+            by_turns = PI * part.turns
+            second = -part.rate * by_turns
+            factors = part.rate / by_turns, part.rate, second, second * by_turns
+            waves = [s * nearest(f) for s, f in zip(scales, factors, strict=True)]
+        pieces.append(
+            Piece(
+                start + length * nearest(part.start) if part.start else start,
+                anchor,
+                start,
+                length,
+                nearest(part.shift),
+                polynomials,
+                waves,
+                nearest(part.turns),
+                nearest(part.phase),
+                goes_on=part.goes_on,
+            )
+        )
+    return pieces
+
+
+def _table(reading: _Reading, law: TableLaw) -> list[Piece]:
+    curve = _curve(reading, law)
+    over = reading.over
+    if curve is None:
+        return [_rest(0.0)]
+    for at in over.met:
+        if not as_recorded(curve.first) <= at <= as_recorded(curve.last):
+            unit = reading.fields.units.label(over.dimension)
+            reading.fields.error(
+                "table-range",
+                (*reading.path, "file"),
+                f"{law.file} does not reach all moments of time",
+                "add rows to the table, or change from and to of time",
+                measured=f"{at:g} {unit}",
+                limit=f"{curve.first:g} to {curve.last:g} {unit}",
+            )
+            break
+    orders = [reading.between(0, order) for order in _ORDERS]
+    pieces = []
+    for k, x in enumerate(curve.x.tolist()):
+        y, b, c, d = curve.coefficients[:, k]
+        polynomials = [[y, b, c, d], [b, 2.0 * c, 3.0 * d], [2.0 * c, 6.0 * d], [6.0 * d]]
+        written = [list(map(unit.apply, p)) for unit, p in zip(orders, polynomials, strict=True)]
+        pieces.append(Piece(x if k else -inf, 0.0, x, polynomials=written))
+    return pieces
+
+
+def _curve(reading: _Reading, law: TableLaw) -> Curve | None:
+    """The curve of a table in the units of the law; None where an error was noted."""
+    place, dimensions = (*reading.path, "file"), (reading.over.dimension, reading.dimension)
+    if reading.over.in_si:
+        return read_curve(reading.fields, place, law.file, *dimensions, *joining_of(law))
+    rows = read_rows(reading.fields, place, law.file, *dimensions)
+    return None if rows is None else join(reading.fields, place, *rows, *joining_of(law))
+
+
+_READ: dict[type, Callable[[_Reading, Any], list[Piece]]] = {
+    ConstantRate: _of_powers,
+    ConstantAcceleration: _of_powers,
+    Polynomial: _of_powers,
+    **dict.fromkeys(SHAPES, _rise),
+    TableLaw: _table,
+}
