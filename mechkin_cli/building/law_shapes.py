@@ -14,6 +14,7 @@ With t from the first value of the variable and u = (x - start)/duration the law
 
 - constant rate, constant acceleration, polynomial: c0 + c1 t + c2 t^2 + ...; bare coefficients
   must be in the file's angle (length) and time throughout
+- sine: offset + amplitude sin(2 pi frequency t + phase)
 - rises, from + (to - from) s(u), with rest before and after: `SHAPES`
 - table: the curve through the rows of a CSV file.
 
@@ -49,12 +50,18 @@ from mechkin_cli.schema import (
     Cycloidal,
     Harmonic,
     Law,
+    ModifiedSine,
+    ModifiedTrapezoid,
     Polynomial,
+    Rise,
+    Rise345,
+    Rise4567,
+    Sine,
     TableLaw,
 )
 from mechkin_cli.tape import Recorded, TraceLost, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import COURSE_SAME
-from mechkin_cli.units import TIME, Conversion, Dimension, conversion
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -94,6 +101,9 @@ Orders = tuple[Any, Any, Any, Any]
 """Value and three derivatives."""
 
 
+_NO_WAVES: Sequence[Any] = (0.0, 0.0, 0.0, 0.0)
+
+
 class Piece(NamedTuple):
     """anchor + a polynomial of w = (x - origin)/length - shift + a wave of w, from `start` on.
 
@@ -112,7 +122,7 @@ class Piece(NamedTuple):
     length: Any = 1.0
     shift: Any = 0.0
     polynomials: Sequence[Sequence[Any]] = ((), (), (), ())
-    waves: Sequence[Any] = (0.0, 0.0, 0.0, 0.0)
+    waves: Sequence[Any] = _NO_WAVES
     turns: Any = 0.0
     phase: Any = 0.0
     moves: bool = True
@@ -178,7 +188,8 @@ class PiecewiseLaw:
         piece = self._piece_of(x)
         row = [c[piece] if isinstance(c, np.ndarray) else c for c in columns]
         found = self._evaluated(x, row, len(_ORDERS))
-        return np.stack([np.broadcast_to(order, x.shape) for order in found])
+        # + 0 makes zeros of either sign one
+        return np.stack([np.broadcast_to(order, x.shape) for order in found]) + 0.0
 
     def recorded(self, rows: ExactRows, x: Any, at: Floats) -> Orders:
         """As `orders`, of a recorded number x of the rows; doubles `at` (rows,) tell its pieces."""
@@ -275,13 +286,13 @@ def _half_turns(m: Any) -> tuple[Any, Any]:
 
 class _Part(NamedTuple):
     """A stretch of a rise from 0 to 1, with w = u - shift: c0 + c1 w + c2 w^2 + ...
-    + rate/(pi turns) sin(pi (turns w + phase)), above 0, 1/2 or 1 as the shift is below, at or
+    + amplitude sin(pi (turns w + phase)), above 0, 1/2 or 1 as the shift is below, at or
     above 1/2."""
 
     start: Fraction
     shift: Fraction
     coefficients: tuple[Fraction, ...]
-    rate: Fraction = Fraction(0)
+    amplitude: Fraction = Fraction(0)
     turns: Fraction = Fraction(0)
     phase: Fraction = Fraction(0)
     goes_on: bool = False
@@ -299,26 +310,44 @@ def _rise_of(*first: _Part) -> tuple[_Part, ...]:
             turned = tuple(c if k % 2 else -c for k, c in enumerate(part.coefficients))
             start, shift, phase = 1 - end, 1 - part.shift, -part.phase
             goes_on = end == _HALF
-            found.append(_Part(start, shift, turned, part.rate, part.turns, phase, goes_on))
+            found.append(_Part(start, shift, turned, part.amplitude, part.turns, phase, goes_on))
     return tuple(found)
 
 
-def _wave(
-    rate: Fraction,
-    turns: int,
-    *coefficients: Fraction | int,
-    phase: Fraction = Fraction(0),
-    start: Fraction = Fraction(0),
-    shift: Fraction = Fraction(0),
-) -> _Part:
-    return _Part(start, shift, tuple(map(Fraction, coefficients)), rate, Fraction(turns), phase)
+_ZERO, _ONE, _EIGHTH, _FOUR_PI = Fraction(0), Fraction(1), Fraction(1, 8), 4 * PI
+# The largest accelerations of a modified sine and of a modified trapezoid over 4 pi; in the first
+# eighth the acceleration is that times sin(4 pi u), and the rate behind it is this.
+_SINE, _TRAPEZOID = PI / (4 + PI), 2 / (2 + PI)
 
 
-SHAPES: dict[type, tuple[_Part, ...]] = {
-    # (1 - cos(pi u))/2
-    Harmonic: _rise_of(_wave(PI / 2, 1, _HALF, phase=-_HALF)),
-    # u - sin(2 pi u)/(2 pi)
-    Cycloidal: _rise_of(_wave(Fraction(-1), 2, 0, 1)),
+def _waving(rate: Fraction, turns: int) -> _Part:
+    """The part from the start on whose acceleration is a sine, with its mean rate."""
+    return _Part(_ZERO, _ZERO, (_ZERO, rate), -rate / (PI * turns), Fraction(turns))
+
+
+def _powers(*coefficients: int) -> _Part:
+    return _Part(_ZERO, _ZERO, tuple(map(Fraction, coefficients)))
+
+
+SHAPES: dict[type[Rise], tuple[_Part, ...]] = {
+    Harmonic: _rise_of(_Part(_ZERO, _ZERO, (_HALF,), _HALF, _ONE, -_HALF)),
+    Cycloidal: _rise_of(_waving(_ONE, 2)),
+    Rise345: _rise_of(_powers(0, 0, 0, 10, -15, 6)),
+    Rise4567: _rise_of(_powers(0, 0, 0, 0, 35, -84, 70, -20)),
+    # R. L. Norton, Cam Design and Manufacturing Handbook, chapter 3
+    ModifiedSine: _rise_of(
+        _waving(_SINE, 4),
+        _Part(_EIGHTH, _HALF, (_ZERO, _SINE), 9 * _SINE / _FOUR_PI, Fraction(4, 3)),
+    ),
+    ModifiedTrapezoid: _rise_of(
+        _waving(_TRAPEZOID, 4),
+        _Part(
+            _EIGHTH,
+            _EIGHTH,
+            (_TRAPEZOID * (_EIGHTH - 1 / _FOUR_PI), _TRAPEZOID, 2 * PI * _TRAPEZOID),
+        ),
+        _Part(3 * _EIGHTH, _HALF, (_ZERO, 2 - _TRAPEZOID), _TRAPEZOID / _FOUR_PI, 4 * _ONE),
+    ),
 }
 """The rises from 0 to 1 by the kind of their section."""
 
@@ -425,7 +454,42 @@ def _check_units(reading: _Reading, law: Polynomial) -> None:
             )
 
 
-def _rise(reading: _Reading, law: Harmonic | Cycloidal) -> list[Piece]:
+def _sine(reading: _Reading, law: Sine) -> list[Piece]:
+    over, fields = reading.over, reading.fields
+    amplitude = reading.number(("amplitude",), law.amplitude, reading.dimension)
+    middle = reading.number(("offset",), law.offset, reading.dimension)
+    phase = fields.number((*reading.path, "phase"), law.phase, ANGLE) / _HALF_TURN
+    key, text, dimension = "period", law.period, over.dimension
+    if text is None:
+        key, text, dimension = "frequency", law.frequency, DIMENSIONLESS / over.dimension
+    assert text is not None
+    errors = fields.error_count
+    number = reading.number((key,), text, dimension)
+    if not number > 0.0:
+        if fields.error_count == errors:
+            measured = f"{number:g} {fields.units.label(dimension)}"
+            hint = f"write a positive {key}; phase: 180 deg turns a sine over"
+            place = (*reading.path, key)
+            fields.error(
+                "no-period", place, f"the {key} of a sine is positive", hint, measured=measured
+            )
+        return []
+    length = number if key == "period" else 1.0 / number
+    waves = _waves(reading.scales(amplitude, length), _ONE, Fraction(2))
+    wave = Piece(-inf, middle, over.first, length, waves=waves, turns=2.0, phase=phase)
+    return [wave]
+
+
+def _waves(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> list[Any]:
+    """The factors of a wave in each order, by what one unit of that is."""
+    by_turns = PI * turns
+    factors = [amplitude]
+    for sign in (1, -1, 1):
+        factors.append(sign * by_turns * factors[-1])
+    return [scale * nearest(factor) for scale, factor in zip(scales, factors, strict=True)]
+
+
+def _rise(reading: _Reading, law: Rise) -> list[Piece]:
     first = reading.number(("from",), law.first, reading.dimension)
     last = reading.number(("to",), law.last, reading.dimension)
     start, duration = _span(reading, law)
@@ -433,7 +497,7 @@ def _rise(reading: _Reading, law: Harmonic | Cycloidal) -> list[Piece]:
     return [_rest(first), *rising, _rest(last, start + duration)]
 
 
-def _span(reading: _Reading, law: Harmonic | Cycloidal) -> tuple[float, float]:
+def _span(reading: _Reading, law: Rise) -> tuple[float, float]:
     """Start and duration of a rise; a duration of one replaces a wrong one."""
     fields, over = reading.fields, reading.over
     errors = fields.error_count
@@ -474,12 +538,7 @@ def _risen(
             ]
             for order, scale in enumerate(scales)
         ]
-        waves: Sequence[Any] = Piece._field_defaults["waves"]
-        if part.turns:
-            by_turns = PI * part.turns
-            second = -part.rate * by_turns
-            factors = part.rate / by_turns, part.rate, second, second * by_turns
-            waves = [s * nearest(f) for s, f in zip(scales, factors, strict=True)]
+        waves = _waves(scales, part.amplitude, part.turns) if part.turns else _NO_WAVES
         pieces.append(
             Piece(
                 start + length * nearest(part.start) if part.start else start,
@@ -537,6 +596,7 @@ _READ: dict[type, Callable[[_Reading, Any], list[Piece]]] = {
     ConstantRate: _of_powers,
     ConstantAcceleration: _of_powers,
     Polynomial: _of_powers,
+    Sine: _sine,
     **dict.fromkeys(SHAPES, _rise),
     TableLaw: _table,
 }
