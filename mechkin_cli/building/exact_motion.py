@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
-from mechkin_cli.building.law_shapes import Orders, over_moments, read_law
+from mechkin_cli.building.law_reading import over_moments, read_law
+from mechkin_cli.building.law_shapes import Orders
 from mechkin_cli.expressions import Expression, Quantity, literal, parse, scalar
 from mechkin_cli.mechanism import ExactMotion
 from mechkin_cli.record import dataclass, field

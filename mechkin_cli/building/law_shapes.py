@@ -1,22 +1,13 @@
-"""Laws of motion as functions of one variable: value and three derivatives, piece by piece.
+"""What laws of motion consist of: pieces, each a polynomial and a wave of the variable, and the
+rises of the textbooks.
 
-`read_law` reads a law of the file over a variable (`Over`): the moment of a row, or a coordinate
-that another one follows. Everything that is asked of a law comes from what it returns, a
-`PiecewiseLaw`, whose numbers are in the file's units or, with `Over.in_si`, in SI:
+Everything that is asked of a law comes from a `PiecewiseLaw`:
 
 - `orders(x)`: value and derivatives by the variable at any of its values, in doubles;
 - `recorded(rows, x, at)`: the same on a recording of exact numbers;
 - `value(x, constants)`, of numbers of any kind, with `constants(x)` of the piece in which x lies:
   one formula for all pieces, so that one tape holds for all of them, and its derivatives are those
   of the tape; it changes at `edges`, where the law has a kink.
-
-With t from the first value of the variable and u = (x - start)/duration the laws are
-
-- constant rate, constant acceleration, polynomial: c0 + c1 t + c2 t^2 + ...; bare coefficients
-  must be in the file's angle (length) and time throughout
-- sine: offset + amplitude sin(2 pi frequency t + phase)
-- rises, from + (to - from) s(u), with rest before and after: `SHAPES`
-- table: the curve through the rows of a CSV file.
 
 A piece is a polynomial of w = (x - origin)/length - shift and a wave of w. Rises are measured from
 their nearer end, so that they leave and reach it exactly. The first and the last value of a rise
@@ -25,43 +16,26 @@ belong to it; where two pieces meet that both move, the place belongs to the lat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import inf, pi, prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.building.fields import Clock, Fields, Path
-from mechkin_cli.building.load_laws import (
-    join,
-    joining_of,
-    note_overshoot,
-    read_curve,
-    read_rows,
-)
 from mechkin_cli.exact import PI, Exact, nearest
-from mechkin_cli.expressions import literal
-from mechkin_cli.mechanism import Curve
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import (
-    ConstantAcceleration,
-    ConstantRate,
     Cycloidal,
     Harmonic,
-    Law,
     ModifiedSine,
     ModifiedTrapezoid,
-    Polynomial,
     Rise,
     Rise345,
     Rise4567,
-    Sine,
-    TableLaw,
 )
 from mechkin_cli.tape import Recorded, TraceLost, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import COURSE_SAME
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,33 +43,9 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactRows
 
-_HALF_TURN = Exact(pi, PI)
+HALF_TURN = Exact(pi, PI)
+"""Half a turn in rad."""
 _ORDERS = range(4)
-
-
-class Over(NamedTuple):
-    """The variable of a law.
-
-    Attributes:
-        dimension: what it measures.
-        first: its first value, in the units of the law.
-        last: its last value, at which a rise without a duration ends; None where there is none.
-        met: the least and the largest of its values that are met, where they are known.
-        in_si: whether the law is in SI, else in the file's units.
-    """
-
-    dimension: Dimension
-    first: float
-    last: float | None
-    met: tuple[float, ...] = ()
-    in_si: bool = False
-
-
-def over_moments(clock: Clock) -> Over:
-    """Over the moments of the rows."""
-    written = clock.time.written
-    return Over(TIME, clock.first, clock.last, (float(written[0]), float(written[-1])))
-
 
 Orders = tuple[Any, Any, Any, Any]
 """Value and three derivatives."""
@@ -129,7 +79,8 @@ class Piece(NamedTuple):
     goes_on: bool = False
 
 
-def _rest(at: Any, start: Any = -inf) -> Piece:
+def rest(at: Any, start: Any = -inf) -> Piece:
+    """Stays at a value, from `start` on."""
     return Piece(start, at, moves=False)
 
 
@@ -277,7 +228,7 @@ def _alike(numbers: Sequence[Any]) -> bool:
 def _half_turns(m: Any) -> tuple[Any, Any]:
     """Sine and cosine of pi m; of rows exact where m is a multiple of 1/2."""
     if not isinstance(m, np.ndarray):
-        return sin(m * _HALF_TURN), cos(m * _HALF_TURN)
+        return sin(m * HALF_TURN), cos(m * HALF_TURN)
     m = m - 2.0 * np.rint(0.5 * m)
     size = np.abs(m)
     sine = sin(pi * np.minimum(size, 1.0 - size))
@@ -352,136 +303,8 @@ SHAPES: dict[type[Rise], tuple[_Part, ...]] = {
 """The rises from 0 to 1 by the kind of their section."""
 
 
-class _Reading(NamedTuple):
-    """How a law is read: where it stands, what it gives, what it runs over."""
-
-    fields: Fields
-    path: Path
-    dimension: Dimension
-    over: Over
-
-    def of_order(self, order: int) -> Dimension:
-        """The dimension of a derivative."""
-        return self.dimension / self.over.dimension**order
-
-    def number(self, key: Path, text: str, dimension: Dimension) -> float:
-        """A number of the file in the units of the law."""
-        read = self.fields.number if self.over.in_si else self.fields.written
-        return read((*self.path, *key), text, dimension)
-
-    def between(self, have: int, want: int) -> Conversion:
-        """From the unit of order `have` times that of the variable to have - want, to the unit of
-        order `want`."""
-        if self.over.in_si:
-            return Conversion(1.0, 1.0)
-        unit, more = self.fields.units.unit, self.over.dimension ** (have - want)
-        before = unit(self.of_order(have)) * unit(more)
-        return conversion(before.factor / unit(self.of_order(want)).factor)
-
-    def scales(self, rise: Any, length: Any) -> list[Any]:
-        """What one unit of each order of a function of w from 0 to 1 is."""
-        found = []
-        for order in _ORDERS:
-            found.append(self.between(0, order).apply(rise))
-            rise = rise / length
-        return found
-
-
-def read_law(
-    fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over
-) -> PiecewiseLaw:
-    """The law at a path of the file, which gives a quantity of a dimension over a variable.
-
-    Errors are noted in `fields`; a law at rest replaces a wrong one.
-    """
-    errors = fields.error_count
-    pieces = _READ[type(law)](_Reading(fields, path, dimension, over), law)
-    if fields.error_count > errors:
-        pieces = [_rest(0.0)]
-    return PiecewiseLaw(pieces)
-
-
-def note_bends(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> None:
-    """Notes what is odd, but no error, in a law without errors."""
-    if isinstance(law, TableLaw) and not over.in_si:
-        curve = _curve(_Reading(fields, path, dimension, over), law)
-        assert curve is not None
-        note_overshoot(fields, (*path, "file"), curve, None)
-
-
-def _of_powers(
-    reading: _Reading, law: ConstantRate | ConstantAcceleration | Polynomial
-) -> list[Piece]:
-    written: list[tuple[Path, str]]
-    if isinstance(law, Polynomial):
-        written = [(("coefficients", k), text) for k, text in enumerate(law.coefficients)]
-        _check_units(reading, law)
-    else:
-        written = [(("at",), law.at), (("rate",), law.rate)]
-    if isinstance(law, ConstantAcceleration):
-        written.append((("acceleration",), law.acceleration))
-    numbers = [
-        reading.number(key, text, reading.of_order(k)) for k, (key, text) in enumerate(written)
-    ]
-    if isinstance(law, ConstantAcceleration):
-        numbers[2] /= 2.0
-    polynomials = [
-        tuple(
-            reading.between(k, order).apply(numbers[k] * float(prod(range(k - order + 1, k + 1))))
-            for k in range(order, len(numbers))
-        )
-        for order in _ORDERS
-    ]
-    orders = tuple(coefficients or (0.0,) for coefficients in polynomials)
-    return [Piece(-inf, 0.0, reading.over.first, polynomials=orders)]
-
-
-def _check_units(reading: _Reading, law: Polynomial) -> None:
-    """Refuses bare coefficients with two meanings: in a row of coefficients of an angle in deg, the
-    next may be meant in deg/s or in the file's rad/s."""
-    fields, variable = reading.fields, reading.over.dimension
-    for k, text in enumerate(law.coefficients):
-        if k == 0 or not literal(text):
-            continue
-        own = fields.units.unit(reading.of_order(k))
-        alike = fields.units.unit(reading.dimension) * fields.units.unit(variable) ** -k
-        if own.factor != alike.factor:
-            fields.error(
-                "bare-coefficient",
-                (*reading.path, "coefficients", k),
-                f"{text.strip()} may be meant in {alike} or in {own}",
-                f"write the unit behind the number, such as {text.strip()} {alike}",
-            )
-
-
-def _sine(reading: _Reading, law: Sine) -> list[Piece]:
-    over, fields = reading.over, reading.fields
-    amplitude = reading.number(("amplitude",), law.amplitude, reading.dimension)
-    middle = reading.number(("offset",), law.offset, reading.dimension)
-    phase = fields.number((*reading.path, "phase"), law.phase, ANGLE) / _HALF_TURN
-    key, text, dimension = "period", law.period, over.dimension
-    if text is None:
-        key, text, dimension = "frequency", law.frequency, DIMENSIONLESS / over.dimension
-    assert text is not None
-    errors = fields.error_count
-    number = reading.number((key,), text, dimension)
-    if not number > 0.0:
-        if fields.error_count == errors:
-            measured = f"{number:g} {fields.units.label(dimension)}"
-            hint = f"write a positive {key}; phase: 180 deg turns a sine over"
-            place = (*reading.path, key)
-            fields.error(
-                "no-period", place, f"the {key} of a sine is positive", hint, measured=measured
-            )
-        return []
-    length = number if key == "period" else 1.0 / number
-    waves = _waves(reading.scales(amplitude, length), _ONE, Fraction(2))
-    wave = Piece(-inf, middle, over.first, length, waves=waves, turns=2.0, phase=phase)
-    return [wave]
-
-
-def _waves(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> list[Any]:
-    """The factors of a wave in each order, by what one unit of that is."""
+def waves_of(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> list[Any]:
+    """The factors of a wave in each order, by what one unit of that is, as of `Piece`."""
     by_turns = PI * turns
     factors = [amplitude]
     for sign in (1, -1, 1):
@@ -489,42 +312,19 @@ def _waves(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> list[
     return [scale * nearest(factor) for scale, factor in zip(scales, factors, strict=True)]
 
 
-def _rise(reading: _Reading, law: Rise) -> list[Piece]:
-    first = reading.number(("from",), law.first, reading.dimension)
-    last = reading.number(("to",), law.last, reading.dimension)
-    start, duration = _span(reading, law)
-    rising = _risen(reading, type(law), start, duration, first, last)
-    return [_rest(first), *rising, _rest(last, start + duration)]
-
-
-def _span(reading: _Reading, law: Rise) -> tuple[float, float]:
-    """Start and duration of a rise; a duration of one replaces a wrong one."""
-    fields, over = reading.fields, reading.over
-    errors = fields.error_count
-    start = over.first
-    if law.start is not None:
-        start = reading.number(("start",), law.start, over.dimension)
-    key: Path = ("duration",)
-    if law.duration is not None:
-        duration = reading.number(key, law.duration, over.dimension)
-    else:
-        duration = 0.0 if over.last is None else over.last - start
-        key = ("start",) if law.start is not None else ()
-    if duration > 0.0:
-        return start, duration
-    if fields.error_count == errors:
-        hint = "give start and duration so that there is time for it"
-        measured = f"{duration:g} {fields.units.label(over.dimension)}"
-        text = "a rise takes a positive time"
-        fields.error("no-duration", (*reading.path, *key), text, hint, measured=measured)
-    return start, 1.0
-
-
-def _risen(
-    reading: _Reading, kind: type, start: Any, length: Any, first: Any, last: Any
+def risen(
+    kind: type[Rise], start: Any, length: Any, first: Any, last: Any, scales: Sequence[Any]
 ) -> list[Piece]:
-    """The pieces of a rise of a kind."""
-    scales = reading.scales(last - first, length)
+    """The pieces of a rise of a kind.
+
+    Args:
+        kind: one of `SHAPES`.
+        start: the value of the variable at which it begins.
+        length: how far it reaches.
+        first: the value at its begin.
+        last: the value at its end.
+        scales: what one unit of each order of a function of w from 0 to 1 is.
+    """
     pieces = []
     for part in SHAPES[kind]:
         anchor = (
@@ -538,7 +338,7 @@ def _risen(
             ]
             for order, scale in enumerate(scales)
         ]
-        waves = _waves(scales, part.amplitude, part.turns) if part.turns else _NO_WAVES
+        waves = waves_of(scales, part.amplitude, part.turns) if part.turns else _NO_WAVES
         pieces.append(
             Piece(
                 start + length * nearest(part.start) if part.start else start,
@@ -554,49 +354,3 @@ def _risen(
             )
         )
     return pieces
-
-
-def _table(reading: _Reading, law: TableLaw) -> list[Piece]:
-    curve = _curve(reading, law)
-    over = reading.over
-    if curve is None:
-        return [_rest(0.0)]
-    for at in over.met:
-        if not as_recorded(curve.first) <= at <= as_recorded(curve.last):
-            unit = reading.fields.units.label(over.dimension)
-            reading.fields.error(
-                "table-range",
-                (*reading.path, "file"),
-                f"{law.file} does not reach all moments of time",
-                "add rows to the table, or change from and to of time",
-                measured=f"{at:g} {unit}",
-                limit=f"{curve.first:g} to {curve.last:g} {unit}",
-            )
-            break
-    orders = [reading.between(0, order) for order in _ORDERS]
-    pieces = []
-    for k, x in enumerate(curve.x.tolist()):
-        y, b, c, d = curve.coefficients[:, k]
-        polynomials = [[y, b, c, d], [b, 2.0 * c, 3.0 * d], [2.0 * c, 6.0 * d], [6.0 * d]]
-        written = [list(map(unit.apply, p)) for unit, p in zip(orders, polynomials, strict=True)]
-        pieces.append(Piece(x if k else -inf, 0.0, x, polynomials=written))
-    return pieces
-
-
-def _curve(reading: _Reading, law: TableLaw) -> Curve | None:
-    """The curve of a table in the units of the law; None where an error was noted."""
-    place, dimensions = (*reading.path, "file"), (reading.over.dimension, reading.dimension)
-    if reading.over.in_si:
-        return read_curve(reading.fields, place, law.file, *dimensions, *joining_of(law))
-    rows = read_rows(reading.fields, place, law.file, *dimensions)
-    return None if rows is None else join(reading.fields, place, *rows, *joining_of(law))
-
-
-_READ: dict[type, Callable[[_Reading, Any], list[Piece]]] = {
-    ConstantRate: _of_powers,
-    ConstantAcceleration: _of_powers,
-    Polynomial: _of_powers,
-    Sine: _sine,
-    **dict.fromkeys(SHAPES, _rise),
-    TableLaw: _table,
-}

@@ -1,6 +1,6 @@
 """The inputs over the rows and between them: from their laws, and those that follow others.
 
-Laws are read by `law_shapes`. The course of the inputs between the rows is recorded from their
+Laws are read by `law_reading`. The course of the inputs between the rows is recorded from their
 laws, with inputs that follow others: `with:` an expression of their coordinates. Its parameter is
 the time where there is one, else the one input that the others follow, else the number of the row.
 Laws and expressions are recorded on a tape as they stand in the file; that tape shows where they
@@ -16,13 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.building.fields import AlreadyRefused, Clock, Fields, Path, dimension_of
-from mechkin_cli.building.law_shapes import (
-    Piece,
-    PiecewiseLaw,
-    note_bends,
-    over_moments,
-    read_law,
-)
+from mechkin_cli.building.law_reading import note_bends, over_moments, read_law
+from mechkin_cli.building.law_shapes import Piece, PiecewiseLaw
 from mechkin_cli.expressions import (
     Expression,
     ExpressionError,
