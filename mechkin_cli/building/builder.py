@@ -25,6 +25,7 @@ from mechkin_cli.building.fields import (
     read_units,
 )
 from mechkin_cli.building.joints import build_linkage
+from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
 from mechkin_cli.building.responses import (
@@ -248,6 +249,7 @@ def build_problem(
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
+    limits = build_limits(fields, file.limits, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
     mechanism = Mechanism(
@@ -255,6 +257,7 @@ def build_problem(
     )
     mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
+    problem = replace(problem, limits=limits)
     # rows of responses have a time
     swept = problem.quantities()
     timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}

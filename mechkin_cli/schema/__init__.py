@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mechkin_cli.schema.couplings import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
+    from mechkin_cli.schema.limits import *
     from mechkin_cli.schema.links_joints import *
     from mechkin_cli.schema.loads import *
     from mechkin_cli.schema.motion import *
@@ -34,6 +35,7 @@ __getattr__, __dir__ = lazy_names(
         "TableCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
+        "limits": "LimitSection",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
         "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
         "SphereGrooveJoint SpherePlaneJoint TwoTurnJoint UniversalJoint WeldJoint",

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.base import NOTHING, Rule, Section, refuse
 from mechkin_cli.schema.couplings import Coupling
+from mechkin_cli.schema.limits import CoordinateLimit
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
@@ -49,6 +50,9 @@ class AnyFile(Section):
     out, none."""
     couplings: dict[Name, Coupling] = NOTHING
     """Relations between coordinates of joints (gears, racks), by name; left out, none."""
+    limits: dict[Coordinate, CoordinateLimit] = NOTHING
+    """Where coordinates end, as [least, largest] or by min and max: a row beyond is not `ok`; left
+    out, nowhere."""
     motion: MotionSection | None = None
     """The driven coordinates and their values; left out, one row."""
     assembly: AssemblySection | None = None

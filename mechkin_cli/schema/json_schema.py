@@ -187,6 +187,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "paths": ["coupler_point"],
     "pin": [1, 0, 0],
     "plot": {"x": "theta", "y": ["torque"]},
+    "limits": {"A.theta": ["-30 deg", "60 deg"], "S.s": {"max": "200 mm"}},
     "points": {"P": {"link": "crank", "at": ["r", 0, 0]}},
     "published": "published/table_3.csv",
     "quantities": {"gap": "norm(P.position - Q.position)"},
