@@ -31,8 +31,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling FunctionCoupling GearCoupling LinearCoupling RackCoupling "
-        "TableCoupling",
+        "couplings": "AnyCoupling BeltCoupling ChainCoupling FunctionCoupling GearCoupling "
+        "LinearCoupling RackCoupling ScrewCoupling TableCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "limits": "LimitSection",
