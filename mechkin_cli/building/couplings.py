@@ -5,12 +5,12 @@ What wheels and teeth come to is in `wheels.py`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.wheels import gear_relation, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
-from mechkin_cli.mechanism import Joint, Relation, Term, dimension_of
+from mechkin_cli.mechanism import Joint, Problem, Relation, Term, dimension_of
 from mechkin_cli.schema import AnyCoupling, FrictionAtJoint, GearCoupling, LinearCoupling
 from mechkin_cli.units import LENGTH
 
@@ -59,6 +59,16 @@ def refuse_friction(
             text = "with friction in joints the force that pushes wheels apart is not computed"
             hint = "leave out pressure_angle, or the friction"
             fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)
+
+
+def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Problem) -> None:
+    """Notes friction at inputs that are tied: it depends on what transmits the tie, which is not
+    said."""
+    for i, load in enumerate(loads):
+        if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
+            text = f"{problem.tied[load.joint]}, and how that loads {load.joint} is not said"
+            hint = "write the tie as a coupling, or leave out the friction"
+            fields.error("rubbing", ("loads", i), text, hint)
 
 
 def _linear(
