@@ -16,6 +16,7 @@ from mechkin_cli.schema.base import (
     each_once,
     refuse,
 )
+from mechkin_cli.schema.motion import LAWS, Law, law_tag
 from mechkin_cli.schema.scalars import (
     Angle,
     AngleOrLength,
@@ -64,6 +65,9 @@ class LinearCoupling(Section):
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
 
 
+CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("CoordinateLaw")]
+
+
 class FunctionCoupling(Section):
     """A coordinate is a function of another one: a cam and its follower, a Scotch yoke."""
 
@@ -72,9 +76,23 @@ class FunctionCoupling(Section):
     """The coordinate that leads, such as the turn of a cam."""
     gives: Coordinate
     """The coordinate that follows."""
-    value: AngleOrLength
+    value: AngleOrLength | None = None
     """What the following coordinate is, an expression of the leading one, by its last word or in
-    full: `20 mm*(1 - cos(theta))`, `20 mm*(1 - cos(A.theta))`."""
+    full: `20 mm*(1 - cos(theta))`, `20 mm*(1 - cos(A.theta))`; left out, `law`."""
+    law: CoordinateLaw | None = None
+    """What it is by a law of motion that runs over the leading coordinate instead of time, so that
+    its start, its duration and the extents of its segments are angles or lengths; left out,
+    `value`."""
+
+    def check(self) -> None:
+        """Exactly one of value and law."""
+        if self.value is None and self.law is None:
+            text = "a function is told by value or by law"
+            raise refuse(
+                "missing-key", text, "add one of them, such as value: 20 mm*(1 - cos(theta))"
+            )
+        if self.value is not None and self.law is not None:
+            raise refuse("two-choices", "value and law say the same", "keep one of them", "law")
 
 
 class TableCoupling(JoinedTable):
