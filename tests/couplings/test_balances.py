@@ -47,7 +47,9 @@ def test_three_turns_of_a_pinion_are_a_cycle() -> None:
     )
     alone = alone.replace("M.effort", "O.effort").replace("1/3, 2/3, 1]", "1, 2, 3]")
     one, other = (mk.loads(text).analyze().balances for text in (GEARED, alone))
-    np.testing.assert_allclose(one["h"]["cosine"], -other["h"]["cosine"] / 3.0, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(
+        one["h"]["cosine"], -other["h"]["cosine"] / 3.0, rtol=1e-9, atol=1e-12
+    )
     np.testing.assert_allclose(one["h"]["sine"], other["h"]["sine"] / 3.0, rtol=1e-9, atol=1e-12)
     wheels = one["w"]["flywheel"][0], other["w"]["flywheel"][0]
     assert wheels[0] == pytest.approx(wheels[1] / 9.0 - 40.0, rel=1e-9)
