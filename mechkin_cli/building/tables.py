@@ -24,7 +24,7 @@ from mechkin_cli.mechanism import (
     is_of_motion,
 )
 from mechkin_cli.schema import MechanismFile, tables as written
-from mechkin_cli.session import turn_of
+from mechkin_cli.session import round_of
 from mechkin_cli.tables import (
     CoefficientsLayout,
     ColumnLayout,
@@ -272,9 +272,6 @@ def build_coefficients(
     if layouts and problem.mechanism.frictions:
         text = "there are no coefficients: where joints rub, since friction is not linear"
         fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
-    if layouts and problem.mechanism.couplings:
-        text = "there are no coefficients: of mechanisms with couplings"
-        fields.error("coupled", ("coefficients",), text, "leave out coefficients:")
     if layouts and problem.hold_idle:
         text = "there are no coefficients: where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")
@@ -309,7 +306,9 @@ def unknown_names(problem: Problem) -> list[str]:
         names += [f"{joint.name}.{word}" for word in words]
     drives = problem.mechanism.drives
     word = "drive" if drives is not None and drives.constraints else "effort"
-    return [*names, *(f"{j}.{c}.{word}" for j, c in problem.acting)]
+    names += [f"{j}.{c}.{word}" for j, c in problem.acting]
+    related = problem.mechanism.couplings.items()
+    return [*names, *(f"{name}.{'force' if r.length else 'torque'}" for name, r in related)]
 
 
 def _along(
@@ -383,7 +382,7 @@ class _BalanceBuilder:
             self.fields.error("not-driven", at, text, hint)
             return None
         item = motion.inputs[inputs[name]]
-        turn = turn_of(self.problem, item)
+        turn = round_of(self.problem, item)
         if turn is None:
             hint = "name an input that turns, or with time: and laws that come back, cycle: time"
             self.fields.error("no-cycle", at, f"{name} is not an angle that goes round", hint)
@@ -414,7 +413,7 @@ class _BalanceBuilder:
         if not self._are_equal(at, TIME, motion.time.written):
             return None
         for item in motion.inputs:
-            turn = turn_of(self.problem, item)
+            turn = round_of(self.problem, item)
             for k, (name, (_, values)) in enumerate(list(item.orders.items())[:3]):
                 gap = float(values[-1] - values[0])
                 if k == 0 and turn is not None:
