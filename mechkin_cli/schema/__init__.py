@@ -13,6 +13,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import *
     from mechkin_cli.schema.couplings import *
+    from mechkin_cli.schema.cylinders import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
     from mechkin_cli.schema.limits import *
@@ -33,6 +34,7 @@ __getattr__, __dir__ = lazy_names(
         "base": "fields_of section_of",
         "couplings": "AnyCoupling BeltCoupling ChainCoupling FunctionCoupling GearCoupling "
         "LinearCoupling RackCoupling ScrewCoupling TableCoupling",
+        "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "limits": "LimitSection",

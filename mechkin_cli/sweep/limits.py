@@ -3,7 +3,6 @@ them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,8 @@ from mechkin_cli.mechanism import dimension_of, is_angle
 from mechkin_cli.verdict import Status, has_forces
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.mechanism import Limit, Problem, Wanted
     from mechkin_cli.show import Bools, Floats
     from mechkin_cli.sweep.rows import RunRows
@@ -69,7 +70,7 @@ def _note(problem: Problem, limit: Limit, end: float, values: Floats, there: Boo
     )
 
 
-def _rows(numbers: Sequence[int]) -> str:
+def _rows(numbers: NDArray[np.intp]) -> str:
     first, last = numbers[0] + 1, numbers[-1] + 1
     if len(numbers) == 1:
         return f"row {first} lies"
