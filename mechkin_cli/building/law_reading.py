@@ -17,6 +17,7 @@ With t from the first value of the variable and u = (x - start)/duration the law
   must be in the file's angle (length) and time throughout
 - sine: offset + amplitude sin(2 pi frequency t + phase)
 - rises, from + (to - from) s(u), with rest before and after: `SHAPES`
+- sequence: rises and rests one after another; over an angle that it spans a turn of again and again
 - table: the curve through the rows of a CSV file.
 """
 
@@ -25,7 +26,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from math import inf, prod
-from typing import Any
+from typing import Any, Literal
 
 from mechkin_cli.building.fields import Clock, Fields, Path
 from mechkin_cli.building.law_shapes import (
@@ -44,6 +45,8 @@ from mechkin_cli.building.load_laws import (
     read_curve,
     read_rows,
 )
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.exact import TURN
 from mechkin_cli.expressions import literal
 from mechkin_cli.mechanism import Curve
 from mechkin_cli.record import NamedTuple
@@ -53,10 +56,12 @@ from mechkin_cli.schema import (
     Law,
     Polynomial,
     Rise,
+    Sequence,
     Sine,
     TableLaw,
 )
 from mechkin_cli.tape import as_recorded
+from mechkin_cli.tolerances import COURSE_SAME
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
 _ORDERS = range(4)
@@ -75,7 +80,7 @@ class Over(NamedTuple):
 
     dimension: Dimension
     first: float
-    last: float | None
+    last: float | None = None
     met: tuple[float, ...] = ()
     in_si: bool = False
 
@@ -129,18 +134,127 @@ def read_law(
     Errors are noted in `fields`; a law at rest replaces a wrong one.
     """
     errors = fields.error_count
-    pieces = _READ[type(law)](_Reading(fields, path, dimension, over), law)
-    if fields.error_count > errors:
-        pieces = [rest(0.0)]
-    return PiecewiseLaw(pieces)
+    reading = _Reading(fields, path, dimension, over)
+    if isinstance(law, Sequence):
+        pieces, period = _sequence(reading, law)
+    else:
+        pieces, period = _READ[law.law](reading, law), None
+    return PiecewiseLaw([rest(0.0)] if fields.error_count > errors else pieces, period)
 
 
 def note_bends(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> None:
-    """Notes what is odd, but no error, in a law without errors."""
+    """Notes what is odd, but no error, in a law without errors: a curve of a table that leaves its
+    points, and jumps of rate and acceleration between the segments of a sequence."""
+    reading = _Reading(fields, path, dimension, over)
     if isinstance(law, TableLaw) and not over.in_si:
-        curve = _curve(_Reading(fields, path, dimension, over), law)
+        curve = _curve(reading, law)
         assert curve is not None
         note_overshoot(fields, (*path, "file"), curve, None)
+    elif isinstance(law, Sequence):
+        _note_jumps(reading, read_law(fields, path, law, dimension, over))
+
+
+_JUMPS: tuple[tuple[str, Literal["warning", "note"], str, str], ...] = (
+    (
+        "rate-jump",
+        "warning",
+        "rate",
+        "forces are infinite there; a rise such as cycloidal begins and ends at rest",
+    ),
+    (
+        "acceleration-jump",
+        "note",
+        "acceleration",
+        "cycloidal, 3-4-5, modified-sine and modified-trapezoid begin and end without acceleration",
+    ),
+)
+
+
+def _note_jumps(reading: _Reading, law: PiecewiseLaw) -> None:
+    """Notes where the rate or else the acceleration jumps between two segments, of each the first
+    place and how many there are."""
+    fields, over = reading.fields, reading.over
+    least, most = over.met or (-inf, inf)
+    found = [(at, jump) for at, jump in law.jumps() if least < at < most]
+    for order, (code, severity, word, hint) in enumerate(_JUMPS, start=1):
+        jumping = [(at, jump) for at, jump in found if jump[order] and not jump[1:order].any()]
+        if not jumping:
+            continue
+        at, jump = max(jumping, key=lambda one: abs(one[1][order]))
+        unit = fields.units.label
+        where = f"{_written(reading, at, over.dimension):.6g} {unit(over.dimension)}"
+        more = f", the largest of {len(jumping)} such jumps" if len(jumping) > 1 else ""
+        size = _written(reading, abs(jump[order]), reading.of_order(order))
+        fields.note(
+            Diagnostic(
+                code,
+                severity,
+                f"the {word} of this sequence jumps at {where}{more}",
+                fields.document.place((*reading.path, "segments")),
+                measured=f"{size:.6g} {unit(reading.of_order(order))}",
+                hint=hint,
+            )
+        )
+
+
+def _written(reading: _Reading, value: float, dimension: Dimension) -> float:
+    """A number of the law in the file's units."""
+    return float(reading.fields.units.from_si(value, dimension)) if reading.over.in_si else value
+
+
+def _sequence(reading: _Reading, law: Sequence) -> tuple[list[Piece], float | None]:
+    """The pieces of a sequence, and its period where it spans a turn of an angle."""
+    fields, over = reading.fields, reading.over
+    first = reading.number(("from",), law.first, reading.dimension)
+    begin = over.first
+    if law.start is not None:
+        begin = reading.number(("start",), law.start, over.dimension)
+    pieces, start, at = [rest(first)], begin, first
+    for k, segment in enumerate(law.segments):
+        key: Path = ("segments", k, "for")
+        errors = fields.error_count
+        length = reading.number(key, segment.extent, over.dimension)
+        if not length > 0.0:
+            if fields.error_count == errors:
+                measured = f"{length:g} {fields.units.label(over.dimension)}"
+                text = "a segment has a positive extent"
+                hint = "write for: how long it lasts"
+                fields.error("no-duration", (*reading.path, *key), text, hint, measured=measured)
+            continue
+        if segment.last is None:
+            pieces.append(rest(at, start))
+        else:
+            to = reading.number(("segments", k, "to"), segment.last, reading.dimension)
+            scales = reading.scales(to - at, length)
+            pieces += risen(segment.law, start, length, at, to, scales)
+            at = to
+        start = start + length
+    period = _turn(reading, law, as_recorded(start - begin), as_recorded(at - first))
+    if period is None:
+        pieces.append(rest(at, start))
+    return pieces, period
+
+
+def _turn(reading: _Reading, law: Sequence, extent: float, rise: float) -> float | None:
+    """The turn that a sequence spans; None where it spans less, or runs over no angle."""
+    fields, over = reading.fields, reading.over
+    if over.dimension != ANGLE:
+        return None
+    turn = TURN if over.in_si else fields.units.from_si(TURN, ANGLE)
+    if extent < turn * (1.0 - COURSE_SAME):
+        return None
+    place = (*reading.path, "segments")
+    if extent > turn * (1.0 + COURSE_SAME):
+        text = "the segments span more than a turn"
+        measured = f"{_written(reading, extent, ANGLE):.12g} {fields.units.label(ANGLE)}"
+        fields.error("too-long", place, text, "shorten one of them", measured=measured)
+    elif rise != 0.0:
+        text = "after a turn the sequence does not end where it began"
+        size = _written(reading, rise, reading.dimension)
+        measured = f"{size:.12g} {fields.units.label(reading.dimension)}"
+        hint = f"write to: {law.first} in the last segment that moves"
+        fields.error("open-sequence", place, text, hint, measured=measured)
+    return turn
 
 
 def _of_powers(
@@ -219,7 +333,7 @@ def _rise(reading: _Reading, law: Rise) -> list[Piece]:
     last = reading.number(("to",), law.last, reading.dimension)
     start, duration = _span(reading, law)
     scales = reading.scales(last - first, duration)
-    rising = risen(type(law), start, duration, first, last, scales)
+    rising = risen(law.law, start, duration, first, last, scales)
     return [rest(first), *rising, rest(last, start + duration)]
 
 
@@ -282,11 +396,11 @@ def _curve(reading: _Reading, law: TableLaw) -> Curve | None:
     return None if rows is None else join(reading.fields, place, *rows, *joining_of(law))
 
 
-_READ: dict[type, Callable[[_Reading, Any], list[Piece]]] = {
-    ConstantRate: _of_powers,
-    ConstantAcceleration: _of_powers,
-    Polynomial: _of_powers,
-    Sine: _sine,
+_READ: dict[str, Callable[[_Reading, Any], list[Piece]]] = {
     **dict.fromkeys(SHAPES, _rise),
-    TableLaw: _table,
+    "constant-rate": _of_powers,
+    "constant-acceleration": _of_powers,
+    "polynomial": _of_powers,
+    "sine": _sine,
+    "table": _table,
 }

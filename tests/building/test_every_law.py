@@ -26,6 +26,7 @@ LAWS = {
     "4-5-6-7": {"from": 0, "to": 1},
     "modified-sine": {"from": 0, "to": 1},
     "modified-trapezoid": {"from": 0, "to": 1},
+    "sequence": {"segments": [{"for": 1, "to": 2, "law": "cycloidal"}, {"for": 1, "law": "dwell"}]},
     "table": {"file": "law.csv"},
 }
 ODD = ["", "x y", [], {}, [[]], {"type": "harmonic"}, "nan", 10**400]
