@@ -15,6 +15,7 @@ With t from the first value of the variable and u = (x - start)/duration the law
 
 - constant rate, constant acceleration, polynomial: c0 + c1 t + c2 t^2 + ...; bare coefficients
   must be in the file's angle (length) and time throughout
+- expression of the variable: `FormulaLaw`
 - sine: offset + amplitude sin(2 pi frequency t + phase)
 - rises, from + (to - from) s(u), with rest before and after: `SHAPES`
 - sequence: rises and rests one after another; over an angle that it spans a turn of again and again
@@ -23,15 +24,18 @@ With t from the first value of the variable and u = (x - start)/duration the law
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import inf, prod
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
-from mechkin_cli.building.fields import Clock, Fields, Path
+import numpy as np
+
+from mechkin_cli.building.fields import AlreadyRefused, Clock, Fields, Path
 from mechkin_cli.building.law_shapes import (
     HALF_TURN,
     SHAPES,
+    Orders,
     Piece,
     PiecewiseLaw,
     rest,
@@ -47,12 +51,23 @@ from mechkin_cli.building.load_laws import (
 )
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.exact import TURN
-from mechkin_cli.expressions import literal
+from mechkin_cli.expressions import (
+    Expression,
+    ExpressionError,
+    Quantity,
+    UnknownName,
+    constant_jet,
+    derivatives,
+    literal,
+    parse,
+    scalar,
+)
 from mechkin_cli.mechanism import Curve
-from mechkin_cli.record import NamedTuple
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import (
     ConstantAcceleration,
     ConstantRate,
+    ExpressionLaw,
     Law,
     Polynomial,
     Rise,
@@ -60,9 +75,13 @@ from mechkin_cli.schema import (
     Sine,
     TableLaw,
 )
-from mechkin_cli.tape import as_recorded
+from mechkin_cli.tape import JetNumber, as_recorded, is_traced, orders_of
 from mechkin_cli.tolerances import COURSE_SAME
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import ExactRows
 
 _ORDERS = range(4)
 
@@ -76,6 +95,7 @@ class Over(NamedTuple):
         last: its last value, at which a rise without a duration ends; None where there is none.
         met: the least and the largest of its values that are met, where they are known.
         in_si: whether the law is in SI, else in the file's units.
+        name: its name in expressions.
     """
 
     dimension: Dimension
@@ -83,6 +103,7 @@ class Over(NamedTuple):
     last: float | None = None
     met: tuple[float, ...] = ()
     in_si: bool = False
+    name: str = "time"
 
 
 def over_moments(clock: Clock) -> Over:
@@ -126,15 +147,114 @@ class _Reading(NamedTuple):
         return found
 
 
-def read_law(
-    fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over
-) -> PiecewiseLaw:
+class FormulaLaw:
+    """A law as an expression of its variable, with the interface of a `PiecewiseLaw`; where it
+    bends its tape tells."""
+
+    edges: tuple[float, ...] = ()
+    period = None
+
+    def __init__(self, reading: _Reading, expression: Expression) -> None:
+        self._reading, self._expression = reading, expression
+
+    def constants(self, _: float) -> list[float]:
+        """None: it is one piece."""
+        return []
+
+    def value(self, x: Any, _: Iterable[Any] = ()) -> Any:
+        """The value at x, a float, doubles (rows,) or a recorded number."""
+        return self._in_own_units(self._in_si(self._variable_in_si(x)), 0)
+
+    def orders(self, x: Floats) -> Floats:
+        """As `PiecewiseLaw.orders`; nan or infinite where there is no such derivative."""
+        variable = self._variable_in_si(x)
+        moving = np.stack([variable, np.ones_like(x), np.zeros_like(x), np.zeros_like(x)])
+        parameters = self._reading.fields.parameters
+        names = {
+            # a recorded parameter refuses to become a float
+            name: constant_jet(float(parameters[name].value)) if name in parameters else moving  # type: ignore[arg-type]
+            for name in self._expression.names
+        }
+        with np.errstate(all="ignore"):
+            found = np.broadcast_to(derivatives(self._expression, names), (4, x.size)).copy()
+            found[0] = self._in_si(variable)
+        return np.stack([self._in_own_units(order, k) for k, order in enumerate(found)])
+
+    def recorded(self, _: ExactRows, x: Any, __: Floats) -> Orders:
+        """As `PiecewiseLaw.recorded`."""
+        moving: Any = JetNumber([self._variable_in_si(x), 1.0, 0.0, 0.0])
+        orders = orders_of(self._in_si(moving))
+        a, b, c, d = (self._in_own_units(order, k) for k, order in enumerate(orders))
+        return a, b, c, d
+
+    def check(self) -> None:
+        """Notes what is wrong with the expression, whatever its variable is."""
+        reading, sample = self._reading, np.ones(1)
+        try:
+            scalar(
+                self._expression.in_doubles,
+                reading.dimension,
+                reading.fields.units,
+                lambda name: self._named(name, sample, recorded=False),
+            )
+        except ExpressionError as error:
+            reading.fields.expression_error((*reading.path, "value"), error)
+
+    def _in_si(self, variable: Any) -> Any:
+        reading = self._reading
+        return scalar(
+            self._expression,
+            reading.dimension,
+            reading.fields.units,
+            lambda name: self._named(name, variable),
+        )
+
+    def _named(self, name: str, variable: Any, *, recorded: bool = True) -> Quantity:
+        """The quantity of a name, with a value of the variable in SI."""
+        fields, over = self._reading.fields, self._reading.over
+        if name == over.name:
+            return Quantity(variable, over.dimension)
+        if fields.is_refused(name):
+            raise AlreadyRefused(name)
+        if name not in fields.parameters:
+            hint = f"a law is an expression of {over.name} and parameters"
+            hint += "; {with: ...} follows other inputs" if "." in name else ""
+            raise UnknownName(name, [*fields.parameters, over.name], hint)
+        parameter = fields.parameters[name]
+        return (
+            parameter
+            if recorded or not is_traced(parameter.value)
+            else replace(parameter, value=np.ones(1))
+        )
+
+    def _variable_in_si(self, x: Any) -> Any:
+        over, units = self._reading.over, self._reading.fields.units
+        return x if over.in_si else units.to_si(x, over.dimension)
+
+    def _in_own_units(self, value: Any, order: int) -> Any:
+        reading = self._reading
+        if reading.over.in_si:
+            return value
+        return reading.fields.units.from_si(value, reading.of_order(order))
+
+
+AnyLaw = PiecewiseLaw | FormulaLaw
+
+
+def read_law(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> AnyLaw:
     """The law at a path of the file, which gives a quantity of a dimension over a variable.
 
     Errors are noted in `fields`; a law at rest replaces a wrong one.
     """
     errors = fields.error_count
     reading = _Reading(fields, path, dimension, over)
+    if isinstance(law, ExpressionLaw) and literal(law.value) is None:
+        formula = _formula(reading, law)
+        return (
+            formula
+            if formula is not None and fields.error_count == errors
+            else PiecewiseLaw([rest(0.0)])
+        )
     if isinstance(law, Sequence):
         pieces, period = _sequence(reading, law)
     else:
@@ -151,7 +271,7 @@ def note_bends(fields: Fields, path: Path, law: Law, dimension: Dimension, over:
         assert curve is not None
         note_overshoot(fields, (*path, "file"), curve, None)
     elif isinstance(law, Sequence):
-        _note_jumps(reading, read_law(fields, path, law, dimension, over))
+        _note_jumps(reading, PiecewiseLaw(*_sequence(reading, law)))
 
 
 _JUMPS: tuple[tuple[str, Literal["warning", "note"], str, str], ...] = (
@@ -255,6 +375,22 @@ def _turn(reading: _Reading, law: Sequence, extent: float, rise: float) -> float
         hint = f"write to: {law.first} in the last segment that moves"
         fields.error("open-sequence", place, text, hint, measured=measured)
     return turn
+
+
+def _formula(reading: _Reading, law: ExpressionLaw) -> FormulaLaw | None:
+    """The law of an expression; None where an error was noted."""
+    try:
+        expression = parse(law.value).taking_whole({reading.over.name})
+    except ExpressionError as error:
+        reading.fields.expression_error((*reading.path, "value"), error)
+        return None
+    formula = FormulaLaw(reading, expression)
+    formula.check()
+    return formula
+
+
+def _constant(reading: _Reading, law: ExpressionLaw) -> list[Piece]:
+    return [rest(reading.number(("value",), law.value, reading.dimension))]
 
 
 def _of_powers(
@@ -401,6 +537,7 @@ _READ: dict[str, Callable[[_Reading, Any], list[Piece]]] = {
     "constant-rate": _of_powers,
     "constant-acceleration": _of_powers,
     "polynomial": _of_powers,
+    "expression": _constant,
     "sine": _sine,
     "table": _table,
 }

@@ -39,9 +39,9 @@ __getattr__, __dir__ = lazy_names(
         "loads": "AnyLoad DamperAtJoint DamperBetweenPoints FallingCoefficient ForceOnJoint "
         "ForceOnLink FrictionAtJoint Gravity SpringAtJoint SpringBetweenPoints TableValue "
         "TorqueOnJoint TorqueOnLink",
-        "motion": "AssemblySection FollowingInput HeldInput InputMotion Law ListedInput "
-        "MotionSection Polynomial Rise Segment Sequence Sine SweptInput TableLaw TimeSection "
-        "ConstantAcceleration ConstantRate WithRates",
+        "motion": "AssemblySection ConstantAcceleration ConstantRate ExpressionLaw FollowingInput "
+        "HeldInput InputMotion Law ListedInput MotionSection Polynomial Rise Segment Sequence Sine "
+        "SweptInput TableLaw TimeSection WithRates",
         "plane": "in_space",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",

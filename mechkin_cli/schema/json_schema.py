@@ -225,6 +225,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Column", "value"): "norm(O1.force)",
     ("Crossing", "value"): "O1.theta - O2.theta",
     ("DeadCentre", "dead_centre"): "O4.theta",
+    ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
     ("FollowingInput", "with"): "2*O1.theta",
     ("Kept", "of"): "O1.effort",
     ("Kept", "at"): "90 deg",

@@ -65,6 +65,14 @@ class Polynomial(Section):
     carry units from c1 on, unless the file's angular rates are in its angle per its time."""
 
 
+class ExpressionLaw(Section):
+    """x as an expression of `time`; its rates are exact."""
+
+    law: Literal["expression"]
+    value: AnyDimension
+    """The value as an expression of `time` and parameters: `20 deg*sin(360 deg*time/(1 s))`."""
+
+
 class Rise(Section):
     """x = from + (to - from) * s(u), with u from 0 to 1 over the duration and s as the law says."""
 
@@ -212,6 +220,7 @@ Law = (
     ConstantRate
     | ConstantAcceleration
     | Polynomial
+    | ExpressionLaw
     | Sine
     | Harmonic
     | Cycloidal
@@ -227,6 +236,7 @@ LAWS: Final = {
     "constant-rate": ConstantRate,
     "constant-acceleration": ConstantAcceleration,
     "polynomial": Polynomial,
+    "expression": ExpressionLaw,
     "sine": Sine,
     "harmonic": Harmonic,
     "cycloidal": Cycloidal,

@@ -20,6 +20,7 @@ LAWS = {
     "constant-rate": {"at": 0, "rate": 1},
     "constant-acceleration": {"at": 0, "acceleration": 1},
     "polynomial": {"coefficients": [0, "1 rad/s"]},
+    "expression": {"value": "1 rad/s*time"},
     "harmonic": {"from": 0, "to": 1},
     "cycloidal": {"from": 0, "to": 1},
     "3-4-5": {"from": 0, "to": 1},
