@@ -1,4 +1,5 @@
-"""`couplings:` to relations between coordinates, each a sum of terms that is constant.
+"""`couplings:` to relations between coordinates, each a sum of terms that is constant; a term is a
+coordinate or a function of it.
 
 What wheels and teeth come to is in `wheels.py`.
 """
@@ -6,26 +7,55 @@ What wheels and teeth come to is in `wheels.py`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import pi
+
+import numpy as np
 
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.law_reading import Over, read_law
+from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.wheels import gear_relation, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
-from mechkin_cli.mechanism import Joint, Relation, Term, dimension_of
-from mechkin_cli.schema import AnyCoupling, FrictionAtJoint, GearCoupling, LinearCoupling
-from mechkin_cli.units import LENGTH
+from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
+from mechkin_cli.mechanism import (
+    CoordinateLaw,
+    ExpressionOf,
+    Joint,
+    Relation,
+    Term,
+    dimension_of,
+)
+from mechkin_cli.record import replace
+from mechkin_cli.schema import (
+    AnyCoupling,
+    FrictionAtJoint,
+    FunctionCoupling,
+    GearCoupling,
+    JoinedTable,
+    LinearCoupling,
+    TableCoupling,
+    TableLaw,
+)
+from mechkin_cli.tape import is_traced, plain
+from mechkin_cli.tolerances import TABLE_END
+from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 
 def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
     """Names of the joints that couplings name."""
-    return {
-        name
-        for section in couplings.values()
-        for name in (
-            [term.rpartition(".")[0] for term in section.terms]
-            if isinstance(section, LinearCoupling)
-            else section.joints
-        )
-    }
+    return {name for section in couplings.values() for name in _joints_of(section)}
+
+
+def _joints_of(section: AnyCoupling) -> Iterable[str]:
+    if isinstance(section, LinearCoupling):
+        return [term.rpartition(".")[0] for term in section.terms]
+    if isinstance(section, FunctionCoupling | TableCoupling):
+        return [name.rpartition(".")[0] for name in (_leading(section), section.gives)]
+    return section.joints
+
+
+def _leading(section: FunctionCoupling | TableCoupling) -> str:
+    return section.of if isinstance(section, FunctionCoupling) else section.over
 
 
 def build_couplings(
@@ -38,6 +68,8 @@ def build_couplings(
         path: Path = ("couplings", name)
         if isinstance(section, LinearCoupling):
             found[name] = _linear(fields, path, section, joints)
+        elif isinstance(section, FunctionCoupling | TableCoupling):
+            found[name] = _followed(fields, path, section, joints)
         elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):
@@ -88,6 +120,110 @@ def _linear(
         terms.append(Term(joint, coordinate, factor))
     total = fields.number((*path, "sum"), section.sum, first)
     return Relation(tuple(terms), first == LENGTH, total)
+
+
+def _followed(
+    fields: Fields,
+    path: Path,
+    section: FunctionCoupling | TableCoupling,
+    joints: Mapping[str, Joint],
+) -> Relation | None:
+    """The coordinate that follows, less the function of the one that leads."""
+    leading, key = _leading(section), "of" if isinstance(section, FunctionCoupling) else "over"
+    places = {(*path, key): leading, (*path, "gives"): section.gives}
+    if not all(
+        is_coordinate(fields, at, name, joints, at_key=False) for at, name in places.items()
+    ):
+        return None
+    ends = [(joints[name.rpartition(".")[0]], name.rpartition(".")[2]) for name in places.values()]
+    (first, coordinate), (second, follows) = ends
+    if first == second and first.type.freedom_of[coordinate] == first.type.freedom_of[follows]:
+        text = f"{leading} and {section.gives} are one freedom"
+        hint = "name a coordinate of another joint"
+        fields.error("one-freedom", (*path, "gives"), text, hint)
+        return None
+    dimensions = dimension_of(coordinate), dimension_of(follows)
+    law = _law(fields, path, section, dimensions)
+    if law is None:
+        return None
+    terms = (Term(second, follows, 1.0), Term(first, coordinate, -1.0, law))
+    return Relation(terms, dimensions[1] == LENGTH)
+
+
+def _law(
+    fields: Fields,
+    path: Path,
+    section: FunctionCoupling | TableCoupling,
+    dimensions: tuple[Dimension, Dimension],
+) -> CoordinateLaw | None:
+    """How the second coordinate follows the first, of these dimensions; None where errors are
+    noted."""
+    if isinstance(section, TableCoupling):
+        return _by_table(fields, (*path, "table"), section.table, section, dimensions)
+    if section.value is not None:
+        return _by_expression(fields, (*path, "value"), section.of, section.value, dimensions)
+    assert section.law is not None
+    path = (*path, "law")
+    if isinstance(section.law, TableLaw):
+        return _by_table(fields, (*path, "file"), section.law.file, section.law, dimensions)
+    errors = fields.error_count
+    over = Over(dimensions[0], 0.0, None, in_si=True)
+    law = read_law(fields, path, section.law, dimensions[1], over)
+    return None if fields.error_count > errors else CoordinateLaw(law.at)
+
+
+def _by_expression(
+    fields: Fields, path: Path, argument: str, text: str, dimensions: tuple[Dimension, Dimension]
+) -> CoordinateLaw | None:
+    try:
+        expression = fields.definitions.parse(text)
+        of = ExpressionOf(expression, argument, dimensions[0], fields.parameters)
+        sample = _sampled(of.resolve(np.ones(1)))
+        scalar(expression.in_doubles, dimensions[1], fields.units, sample)
+        if not expression.names - fields.parameters.keys():
+            hint = f"write an expression of {argument}"
+            raise ExpressionError("this value never changes", 0, hint)
+    except ExpressionError as error:
+        fields.expression_error(path, error)
+        return None
+    return CoordinateLaw(of)
+
+
+def _sampled(resolve: Resolve) -> Resolve:
+    """As `resolve`, with a number in the place of one that is only recorded."""
+
+    def quantity(name: str) -> Quantity:
+        found = resolve(name)
+        return replace(found, value=np.ones(1)) if is_traced(found.value) else found
+
+    return quantity
+
+
+def _by_table(
+    fields: Fields,
+    path: Path,
+    file: str,
+    joined: JoinedTable,
+    dimensions: tuple[Dimension, Dimension],
+) -> CoordinateLaw | None:
+    rows = read_rows(fields, path, file, *dimensions)
+    if rows is None:
+        return None
+    x, y = (
+        [plain(fields.units.to_si(value, dimension)) for value in column]
+        for column, dimension in zip(rows, dimensions, strict=True)
+    )
+    span = x[-1] - x[0]
+    turns = dimensions[0] == ANGLE and abs(span - 2.0 * pi) <= TABLE_END * span
+    repeats = turns and rows[1][0] == rows[1][-1]
+    interpolation, ends = joining_of(joined)
+    if repeats and joined.ends is None:
+        ends = "periodic"
+    curve = join(fields, path, x, y, interpolation, ends)
+    if curve is None:
+        return None
+    note_overshoot(fields, path, curve, dimensions)
+    return CoordinateLaw(curve=curve, period=span if repeats else 0.0)
 
 
 def _freedom(term: Term) -> int:

@@ -16,12 +16,15 @@ from mechkin_cli.schema.base import (
     each_once,
     refuse,
 )
+from mechkin_cli.schema.motion import LAWS, Law, law_tag
 from mechkin_cli.schema.scalars import (
     Angle,
     AngleOrLength,
     AnyDimension,
     Coordinate,
+    CsvPath,
     Dimensionless,
+    JoinedTable,
     Length,
     Name,
 )
@@ -59,6 +62,50 @@ class LinearCoupling(Section):
         if len(self.terms) < 2:
             text = "a coupling is between two coordinates or more"
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
+
+
+CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("CoordinateLaw")]
+
+
+class FunctionCoupling(Section):
+    """A coordinate is a function of another one: a cam and its follower, a Scotch yoke."""
+
+    type: Literal["function"]
+    of: Coordinate
+    """The coordinate that leads, such as the turn of a cam."""
+    gives: Coordinate
+    """The coordinate that follows."""
+    value: AngleOrLength | None = None
+    """What the following coordinate is, an expression of the leading one, by its last word or in
+    full: `20 mm*(1 - cos(theta))`, `20 mm*(1 - cos(A.theta))`; left out, `law`."""
+    law: CoordinateLaw | None = None
+    """What it is by a law of motion that runs over the leading coordinate instead of time, so that
+    its start, its duration and the extents of its segments are angles or lengths; left out,
+    `value`."""
+
+    def check(self) -> None:
+        """Exactly one of value and law."""
+        if self.value is None and self.law is None:
+            text = "a function is told by value or by law"
+            raise refuse(
+                "missing-key", text, "add one of them, such as value: 20 mm*(1 - cos(theta))"
+            )
+        if self.value is not None and self.law is not None:
+            raise refuse("two-choices", "value and law say the same", "keep one of them", "law")
+
+
+class TableCoupling(JoinedTable):
+    """A coordinate is a tabulated function of another one."""
+
+    type: Literal["table"]
+    table: CsvPath
+    """CSV file with a header and two columns: the coordinate that leads, and the one that follows.
+    A table that ends a whole turn later where it begins holds for every turn, joined there as
+    between its points."""
+    over: Coordinate
+    """The coordinate of the first column."""
+    gives: Coordinate
+    """The coordinate of the second column."""
 
 
 class Toothed(Section):
@@ -125,7 +172,10 @@ class RackCoupling(Toothed):
     out, the point of the rack's joint."""
 
 
-AnyCoupling = LinearCoupling | GearCoupling | RackCoupling
+FollowedCoupling = FunctionCoupling | TableCoupling
+"""Those of a coordinate that follows another one."""
+
+AnyCoupling = LinearCoupling | GearCoupling | RackCoupling | FollowedCoupling
 """All forms of a coupling."""
 
-Coupling = Annotated[AnyCoupling, by_word("type", ("linear", "gear", "rack"))]
+Coupling = Annotated[AnyCoupling, by_word("type", ("linear", "gear", "rack", "function", "table"))]

@@ -88,7 +88,7 @@ inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Num
 template <class Number>
 inline Pack output_multiplier(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   const LoopEntry& e = p.loop[p.closing[o.index].loop_begin + o.freedom];
-  return Pack(p.term[e.term].factor) * w.reaction[o.index].force.x;
+  return term_slope(p, w.curve, e.term) * w.reaction[o.index].force.x;
 }
 
 // The value of a quantity, one pack or three; returns how many. `balance` for those that need forces, `row_value` as in
