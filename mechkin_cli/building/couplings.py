@@ -1,6 +1,7 @@
 """`couplings:` to relations between coordinates, each a sum of terms that is constant.
 
-What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`.
+What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`,
+cables in `cables.py`.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import Joint, Relation, Term, dimension_of
 from mechkin_cli.schema import (
     AnyCoupling,
+    CableCoupling,
     FrictionAtJoint,
     GearCoupling,
     LinearCoupling,
@@ -31,21 +33,28 @@ def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
         for name in (
             [term.rpartition(".")[0] for term in section.terms]
             if isinstance(section, LinearCoupling)
+            else ()
+            if isinstance(section, CableCoupling)
             else section.joints
         )
     }
 
 
 def build_couplings(
-    fields: Fields, couplings: Mapping[str, AnyCoupling], joints: Mapping[str, Joint]
+    fields: Fields,
+    couplings: Mapping[str, AnyCoupling],
+    joints: Mapping[str, Joint],
+    cables: Mapping[str, Relation],
 ) -> dict[str, Relation]:
-    """The relations of a file's couplings; errors are noted in `fields`."""
+    """The relations of a file's couplings, `cables` among them; errors are noted in `fields`."""
     found: dict[str, Relation | None] = {}
     drawn = not fields.error_count  # else axes may be none
     for name, section in couplings.items():
         path: Path = ("couplings", name)
         if isinstance(section, LinearCoupling):
             found[name] = _linear(fields, path, section, joints)
+        elif isinstance(section, CableCoupling):
+            found[name] = cables.get(name)
         elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):
