@@ -68,6 +68,11 @@ class _Place(NamedTuple):
     is_drum: bool = False
 
     @property
+    def is_round(self) -> bool:
+        """Whether the cable runs about it."""
+        return self.side != 0.0
+
+    @property
     def beside(self) -> float:
         """How far the cable runs to the left of the centre (m)."""
         return self.side * self.radius
@@ -160,7 +165,7 @@ def _place(
 def _fits(fields: Fields, path: Path, section: CableCoupling, places: Sequence[_Place]) -> bool:
     """Whether the stretches of a cable can be drawn; what is wrong is noted."""
     for i, (place, part) in enumerate(zip(places, section.path, strict=True)):
-        if place.radius and not fields.plane:
+        if place.is_round and not fields.plane:
             text = "a cable runs over pulleys in files of a plane alone"
             hint = "lead it through points, or write the mechanism in its plane (plane: xy)"
             fields.error("spatial-pulley", (*path, "path", i), text, hint)
@@ -209,13 +214,13 @@ class _Cable:
         counts = Counter(ways)
         behind = None
         for i, way in enumerate(ways):
-            is_straight = not (places[i].radius or places[i + 1].radius)
+            is_straight = not (places[i].is_round or places[i + 1].is_round)
             if not self.moves[i] or (is_straight and way in ways[:i]):
                 behind = None
             else:
                 behind = self._add(i, float(counts[way]) if is_straight else 1.0, behind)
         for i, key in list(enumerate(keys))[1:-1]:
-            if places[i].radius:
+            if places[i].is_round:
                 self._add_arc(i, key.partition(" ")[0])
 
     @property
@@ -238,7 +243,8 @@ class _Cable:
         hinge = "R" if self.plane else "S"
         start, finish = (self._upright(place.centre.vector) for place in (one, other))
         turn = self._joint(f"{name} turn", hinge, behind or one.centre.link, near, start)
-        self._wind(i, turn, -one.beside)
+        if one.is_round:
+            self._wind(i, turn, -one.beside)
         from_start = add(one.centre.vector, scale(one.beside, cross(GROUND.z, along)))
         axis = frame_about(along, perpendicular(along), from_start)
         slide = counted(self._joint(f"{name} slide", "P", near, far, axis))
@@ -246,9 +252,9 @@ class _Cable:
         self.slides.append(Term(slide, "s", count))
         words = "has no straight stretch between two places"
         self.extents.append(Extent(words, length, (Term(slide, "s", 1.0),)))
-        if not other.radius or any(self.moves[i + 1 : i + 2]):
+        if not other.is_round or any(self.moves[i + 1 : i + 2]):
             self._joint(f"{name} end", hinge, far, other.centre.link, finish)
-            return far if other.radius else None
+            return far if other.is_round else None
         # no stretch goes on whose bend would tell what is wound here
         hub = f"{name} hub"
         self.links[hub] = RigidLink(hub)
@@ -272,9 +278,8 @@ class _Cable:
 
     def _wind(self, i: int, turn: Joint, radius: float) -> None:
         """Counts what a turn winds on the pulley at place `i`."""
-        if radius != 0.0:
-            self.joints[turn.name] = turn = counted(turn)
-            self.wound[i].append(Term(turn, "theta", radius))
+        self.joints[turn.name] = turn = counted(turn)
+        self.wound[i].append(Term(turn, "theta", radius))
 
     def _upright(self, at: Vector) -> Frame:
         return frame_about(GROUND.z, GROUND.x, at) if self.plane else upright(at)

@@ -378,6 +378,12 @@ class Mechanism:
         return tuple(spin for spin in self.spins if any(map(is_written, spin.links)))
 
     @property
+    def has_arcs(self) -> bool:
+        """Whether cables run over pulleys, which they may leave."""
+        relations = self.couplings.values()
+        return any(extent.most is not None for each in relations for extent in each.extents)
+
+    @property
     def loops(self) -> int:
         """Number of independent loops."""
         moving = sum(name != GROUND_NAME for name in self.links)

@@ -137,6 +137,7 @@ class _SweepRun:
             or (session.is_redundant and any(q.kind in REACTION_KINDS for q in self.wanted))
             or self._forces_are_judged(session)
             or self._led_by_rates()
+            or self.problem.mechanism.has_arcs
             or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
         ):
             return None

@@ -128,9 +128,9 @@ def through_an_eye(turn: float, s: mpmath.mpf) -> mpmath.mpf:
     return abs(end_of(turn) - eye) + abs(mpmath.mpc("-0.2", -2 + s) - eye)
 
 
-def around(turn: float, s: mpmath.mpf) -> mpmath.mpf:
-    """Two tangents and the arc over the top of a circle of radius 1/4, from right to left."""
-    radius, centre = mpmath.mpf("0.25"), mpmath.mpc(0, "0.3")
+def around(turn: float, s: mpmath.mpf, radius: float = 0.25) -> mpmath.mpf:
+    """Two tangents and the arc over the top of a circle, from right to left."""
+    centre = mpmath.mpc(0, "0.3")
     one, other = end_of(turn) - centre, mpmath.mpc("-0.2", -2 + s) - centre
     lengths = [mpmath.sqrt(abs(p) ** 2 - radius**2) for p in (one, other)]
     # seen from the centre each point lies acos(r / d) from where the cable touches
@@ -279,6 +279,32 @@ motion: {inputs: {A.theta: {from: -60, to: 60, count: 7, rate: 1 rad/s}}}
     assert {"ok", "slack"} == set(status)
     (said,) = (d for d in result.diagnostics if d.code == "slack")
     assert "K leaves the pulley at o" in said.message
+    radius = text.replace("motion:", "parameters: {r: 0.3 m}\nmotion:").replace(
+        "radius: 0.3", "radius: r"
+    )
+    varied = mk.loads(radius).vary({"r": ["0.3 m", "0.01 m"]}, ["S.s"])
+    assert varied.status[0].tolist() == list(status)
+    assert varied.status[1].tolist() != list(status)
+
+
+def test_slopes_by_the_radius_of_a_pulley_and_errors_of_cells() -> None:
+    """The cable is as long as drawn over the eye's pulley, whatever its radius is."""
+    text = over("{pulley: o, radius: r, side: right}").replace(
+        "links: {crank", "parameters: {r: 0.25 m}\nlinks: {crank"
+    )
+    model = mk.loads(text)
+    slopes = model.sensitivities(["S.s"], ["r"])["S.s", "r"]
+    places = model.analyze()["S.s"]
+    with mpmath.workdps(40):
+        for row, turn in enumerate(np.linspace(-60.0, 60.0, 5)):
+            longer = mpmath.diff(
+                lambda r, t=turn, s=places[row]: around(t, s, r) - around(0, 0, r), 0.25
+            )
+            by_s = mpmath.diff(lambda s, t=turn: around(t, s), places[row])
+            assert abs(slopes[row] + longer / by_s) < 1e-9
+    errors = model.analyze(errors=True).errors
+    assert errors.digits is not None
+    assert errors.digits >= 13
 
 
 def test_a_crane_is_assembled_with_its_cable_wound_as_drawn() -> None:
