@@ -116,7 +116,7 @@ class Status(IntEnum):
     slack = (
         13,
         "position, rates, forces",
-        "solved as if a strand that goes slack there pushed, which no belt, chain or cable does.",
+        "solved as if a belt, chain or cable pushed, or stuck to a pulley that it leaves.",
     )
 
     has_solution: bool

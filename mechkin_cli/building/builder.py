@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
 from mechkin_cli.assembly import is_home_singular
+from mechkin_cli.building.cables import build_cables
 from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction, refuse_tied_friction
 from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
 from mechkin_cli.building.datum import Datum, datum_of
@@ -241,7 +242,8 @@ def build_problem(
     links, joints = links | telescopes, joints | slides
     for coupled in coupled_joints(file.couplings) & joints.keys():
         joints[coupled] = counted(joints[coupled])
-    couplings = build_couplings(fields, file.couplings, joints)
+    cable_links, cable_joints, cables = build_cables(fields, file.couplings, joints, points)
+    couplings = build_couplings(fields, file.couplings, joints, cables)
     refuse_friction(fields, file.loads, couplings)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
@@ -249,7 +251,8 @@ def build_problem(
         if is_link(fields, ("directions", name, "link"), d.link, links)
     }
     guide_links, guide_joints = point_guides(fields, file.motion, points)
-    links, joints = links | guide_links, joints | guide_joints
+    links = links | guide_links | cable_links
+    joints = joints | guide_joints | cable_joints
     per_row = numbers_per_row(file, joints)
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)

@@ -1,7 +1,8 @@
 """`couplings:` to relations between coordinates, each a sum of terms that is constant; a term is a
 coordinate or a function of it.
 
-What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`.
+What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`,
+cables in `cables.py`.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from mechkin_cli.mechanism import CoordinateLaw, ExpressionOf, Joint, Problem, R
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
+    CableCoupling,
     FrictionAtJoint,
     FunctionCoupling,
     GearCoupling,
@@ -47,7 +49,7 @@ def _joints_of(section: AnyCoupling) -> Iterable[str]:
         return [term.rpartition(".")[0] for term in section.terms]
     if isinstance(section, FunctionCoupling | TableCoupling):
         return [name.rpartition(".")[0] for name in (_leading(section), section.gives)]
-    return section.joints
+    return () if isinstance(section, CableCoupling) else section.joints
 
 
 def _leading(section: FunctionCoupling | TableCoupling) -> str:
@@ -55,9 +57,12 @@ def _leading(section: FunctionCoupling | TableCoupling) -> str:
 
 
 def build_couplings(
-    fields: Fields, couplings: Mapping[str, AnyCoupling], joints: Mapping[str, Joint]
+    fields: Fields,
+    couplings: Mapping[str, AnyCoupling],
+    joints: Mapping[str, Joint],
+    cables: Mapping[str, Relation],
 ) -> dict[str, Relation]:
-    """The relations of a file's couplings; errors are noted in `fields`."""
+    """The relations of a file's couplings, `cables` among them; errors are noted in `fields`."""
     found: dict[str, Relation | None] = {}
     drawn = not fields.error_count  # else axes may be none
     for name, section in couplings.items():
@@ -66,6 +71,8 @@ def build_couplings(
             found[name] = _linear(fields, path, section, joints)
         elif isinstance(section, FunctionCoupling | TableCoupling):
             found[name] = _followed(fields, path, section, joints)
+        elif isinstance(section, CableCoupling):
+            found[name] = cables.get(name)
         elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):

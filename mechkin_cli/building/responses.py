@@ -527,12 +527,8 @@ def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
 def _undetermined(
     response: ResponseProblem, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
 ) -> Diagnostic:
-    names = [
-        f"{joint.name}.{name}"
-        for joint in mechanism.joints.values()
-        for name in joint.type.coordinates
-        if (joint.name, name) not in driven
-    ]
+    places = {".".join(place) for place in driven}
+    names = [name for name in mechanism.coordinates if name not in places]
     return Diagnostic(
         "start-count",
         "error",

@@ -84,11 +84,21 @@ class Tension(NamedTuple):
     at_rest: float
 
 
+class Extent(NamedTuple):
+    """A length of a cable (m): as `drawn`, and what `terms` add to it. It is more than nothing and,
+    where it is known, less than `most`; else the cable does what `words` say."""
+
+    words: str
+    drawn: float
+    terms: tuple[Term, ...]
+    most: float | None = None
+
+
 class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
     strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing."""
+    other with (N) when it transmits nothing. `extents`: those of a cable."""
 
     terms: tuple[Term, ...]
     length: bool
@@ -96,6 +106,7 @@ class Relation(NamedTuple):
     mesh: Mesh | None = None
     tensions: tuple[tuple[str, Tension], ...] = ()
     pull: tuple[Attached, Attached, float] | None = None
+    extents: tuple[Extent, ...] = ()
 
     @property
     def has_teeth(self) -> bool:
@@ -530,7 +541,9 @@ class CouplingConstraint(Constraint):
 
     @property
     def words(self) -> str:
-        """Its coordinates."""
+        """Its coordinates, or that it is a cable."""
+        if self.relation.extents:
+            return f"the length of {self.name}"
         names = dict.fromkeys(f"{term.joint.name}.{term.coordinate}" for term in self.terms)
         return f"a relation between {', '.join(names)}"
 

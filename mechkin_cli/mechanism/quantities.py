@@ -181,6 +181,8 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
     for name, relation in mechanism.couplings.items():
         places: dict[tuple[Kind, Dimension], str] = {}
         for term in relation.terms:
+            if not is_written(term.joint.name):
+                continue
             angle = is_angle(term.coordinate)
             what: tuple[Kind, Dimension] = (
                 ("coupling_torque", MOMENT) if angle else ("coupling_force", FORCE)
@@ -340,7 +342,10 @@ def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
 def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
     """What each puts in at its first coordinate; all that it puts in is zero."""
     for name, relation in mechanism.couplings.items():
-        at = f"{relation.terms[0].joint.name}.{relation.terms[0].coordinate}"
+        first = relation.terms[0]
+        if not is_written(first.joint.name):
+            continue
+        at = f"{first.joint.name}.{first.coordinate}"
         yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
 
 

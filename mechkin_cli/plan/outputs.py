@@ -240,7 +240,9 @@ class OutputPlan:
         if wanted.kind == "tension":
             tension = dict(layout.mechanism.couplings[wanted.owner].tensions)[wanted.coordinate]
             length = layout.length
-            parts = (length * tension.along, length * tension.apart, tension.at_rest / length)
+            # a multiplier is a force, or a moment
+            arm = 1.0 if layout.mechanism.couplings[wanted.owner].length else length
+            parts = (arm * tension.along, arm * tension.apart, tension.at_rest / length)
             return self._output(OutputCode.TENSION, number, length, data=parts)
         joint, _, coordinate = wanted.coordinate.rpartition(".")
         axis = layout.axis_number[joint, coordinate]

@@ -217,6 +217,59 @@ class ScrewCoupling(Section):
 FollowedCoupling = FunctionCoupling | TableCoupling
 """Those of a coordinate that follows another one."""
 
+
+class PathPart(Section):
+    """A place that a cable passes: a point, a pulley or a drum."""
+
+    point: Name | None = None
+    """A named point, through which the cable runs, or where it ends; left out, a pulley or a
+    drum."""
+    pulley: Name | None = None
+    """The R joint of a pulley, or a named point that is its centre; the cable runs over it without
+    friction; left out, a point or a drum."""
+    drum: Name | None = None
+    """The R joint of a drum, its second link, on which the cable is wound and ends; left out, a
+    point or a pulley."""
+    radius: Length | None = None
+    """Of the pulley or drum, to the middle of the cable, which they need; left out, a point."""
+    side: Literal["left", "right"] | None = None
+    """On which side of the centre the cable passes, seen along its path, which pulleys and drums
+    need; left out, a point."""
+
+    def check(self) -> None:
+        """One place, with what it needs."""
+        if sum(key is not None for key in (self.point, self.pulley, self.drum)) != 1:
+            text = "a place of a cable is a point, a pulley or a drum"
+            raise refuse("two-choices", text, "give one of point, pulley and drum")
+        for key, value in (("radius", self.radius), ("side", self.side)):
+            if self.point is None and value is None:
+                text = f"a pulley needs its {key}"
+                raise refuse("missing-key", text, "add radius: 50 mm, side: left")
+            if self.point is not None and value is not None:
+                text = f"a point has no {key}"
+                raise refuse("two-choices", text, "write pulley instead of point", key)
+
+
+def _as_point(value: Any) -> Any:
+    return {"point": value} if isinstance(value, str) else value
+
+
+PointOrPart = Annotated[
+    PathPart,
+    Rule(_as_point, before=True),
+    Shown(("string",), "the name of a point", is_short=True),
+]
+
+
+class CableCoupling(Section):
+    """A cable of constant length over points and pulleys, which bears pull alone."""
+
+    type: Literal["cable"]
+    path: Annotated[tuple[PointOrPart, ...], Limits(min_length=2, max_length=100)]
+    """Places from one end to the other: names of points, pulleys, and drums at its ends. A place
+    may be named again, as in a tackle."""
+
+
 AnyCoupling = (
     LinearCoupling
     | GearCoupling
@@ -224,11 +277,15 @@ AnyCoupling = (
     | BeltCoupling
     | ChainCoupling
     | ScrewCoupling
+    | CableCoupling
     | FollowedCoupling
 )
 """All forms of a coupling."""
 
 Coupling = Annotated[
     AnyCoupling,
-    by_word("type", ("linear", "gear", "rack", "belt", "chain", "screw", "function", "table")),
+    by_word(
+        "type",
+        ("linear", "gear", "rack", "belt", "chain", "screw", "cable", "function", "table"),
+    ),
 ]

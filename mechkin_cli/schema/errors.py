@@ -302,9 +302,8 @@ CONTROL = (
     '{A.theta: "-k*(A.theta - 1 rad) - c*A.theta_dot"}}}'
 )
 ROPE = (
-    "a taut rope, cable or chain ties what it joins: motion: {inputs: {D.s: {with: 20 mm*A.theta, "
-    "drive: tie}, ...}} at a drum of radius 20 mm, {B.theta: {with: 2*A.theta, drive: tie}} over "
-    "two wheels; between two points it is a link with a joint at either end"
+    "a cable over points and pulleys is a coupling: couplings: {K: {type: cable, path: [P, "
+    "{pulley: A, radius: 50 mm, side: left}, Q]}}"
 )
 GENEVA = (
     'the wheel turns by a law of the crank: motion: {inputs: {W.theta: {with: "if(abs(A.theta) < '

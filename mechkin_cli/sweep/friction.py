@@ -13,9 +13,9 @@ import numpy as np
 from mechkin_cli import idle, tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states, strands_of
-from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
+from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState, is_lifted
 from mechkin_cli.sweep.rows import RunRows
-from mechkin_cli.units import FORCE, MOMENT, Dimension
+from mechkin_cli.units import FORCE, LENGTH, MOMENT, Dimension
 from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
@@ -161,6 +161,23 @@ def _slack(result: RunRows, lost: Bools) -> Findings:
                     hint="give more pretension, or hold the load so that it always pulls",
                 ),
             )
+
+
+def lifted(result: RunRows) -> list[Diagnostic]:
+    """Warns of rows in which a cable would leave a pulley, which then are slack."""
+    rows, units = result.row_states, result.problem.units
+    found = []
+    for name, extent, value in result.session.layout.extents(rows.states):
+        where = rows.reached & is_lifted(extent, value)
+        if where.any():
+            rows.status[where & (rows.status == int(Status.ok))] = Status.slack
+            least = float(units.from_si(float(np.min(value[where])), LENGTH))
+            text = f"{name} {extent.words} in {_rows(where)}: it is led as if it stuck there"
+            measured = f"{least:.6g} {units.label(LENGTH)}"
+            hint = "end the sweep before it, or leave that place out of the cable's path"
+            code = Status.slack.label
+            found.append(Diagnostic(code, "warning", text, None, measured, "0", hint))
+    return found
 
 
 def is_slack(tension: Floats, level: Floats) -> Bools:

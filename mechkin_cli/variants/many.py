@@ -138,6 +138,7 @@ class _SweepRun:
             or self._forces_are_judged(session)
             or self._led_by_rates()
             or variation.moves_limits
+            or self.problem.mechanism.has_arcs
             or (variation.moving_inputs and inputs & {q.name for q in self._read_or_judged()})
         ):
             return None

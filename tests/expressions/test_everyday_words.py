@@ -110,7 +110,7 @@ def test_python_says_the_same(name: str) -> None:
 
 
 FEATURES = {
-    "a taut rope, cable or chain ties": ("rope", "cable", "ropes", "tendon", "winch"),
+    "a cable over points and pulleys is a coupling": ("rope", "cable", "ropes", "tendon", "winch"),
     "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
     "the wheel turns by a law of the crank": ("geneva", "maltese", "geneva_drive"),
     "prescribe the place of the pin": ("curved_groove", "curved_slot", "guide_curve"),

@@ -43,6 +43,10 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
     case OUT_CARRIED_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
     case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.hung_bodies, "body");
+    case OUT_TENSION:
+      CHECK(check_index(r.index, 0, p.closings, "relation"));
+      REQUIRE(is_relation(p.closing[r.index].type), "an output of a tension of a closing joint that is no relation");
+      return {};
     case OUT_MULTIPLIER:
       CHECK(check_index(r.index, 0, p.closings, "relation"));
       REQUIRE(is_relation(p.closing[r.index].type), "an output of a multiplier of a closing joint that is no relation");
@@ -50,7 +54,6 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
               "an output of an unknown term of a relation");
       return {};
     case OUT_MESH_FORCE:
-    case OUT_TENSION:
       CHECK(check_index(r.index, 0, p.closings, "relation"));
       REQUIRE(p.closing[r.index].path_end > 0, "an output of the force of a relation that acts by none");
       return {};

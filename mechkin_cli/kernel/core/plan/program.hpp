@@ -41,7 +41,7 @@ enum OutputCode : int {
   OUT_SELF_LOCKING = 34,      // 1 where a drive that would brake without friction has to push
   OUT_MULTIPLIER = 35,        // index: closing joint that is a relation; freedom: one of its terms, along which it acts
   OUT_MESH_FORCE = 36,        // index: closing joint that is a relation and acts by a force
-  OUT_TENSION = 37            // likewise; data: per multiplier, per its magnitude, and without one
+  OUT_TENSION = 37            // index: closing joint that is a relation; data: per multiplier, its magnitude, and beside
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).
