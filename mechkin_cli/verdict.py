@@ -108,6 +108,11 @@ class Status(IntEnum):
             "finite reactions hold them."
         ),
     )
+    slack = (
+        12,
+        "position, rates, forces",
+        "solved as if a strand that goes slack there pushed, which no belt, chain or cable does.",
+    )
 
     has_solution: bool
     has_rates: bool

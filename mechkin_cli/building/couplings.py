@@ -1,17 +1,25 @@
 """`couplings:` to relations between coordinates, each a sum of terms that is constant.
 
-What wheels and teeth come to is in `wheels.py`.
+What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.wheels import gear_relation, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import Joint, Relation, Term, dimension_of
-from mechkin_cli.schema import AnyCoupling, FrictionAtJoint, GearCoupling, LinearCoupling
+from mechkin_cli.schema import (
+    AnyCoupling,
+    FrictionAtJoint,
+    GearCoupling,
+    LinearCoupling,
+    RackCoupling,
+    ScrewCoupling,
+)
 from mechkin_cli.units import LENGTH
 
 
@@ -42,20 +50,28 @@ def build_couplings(
             found[name] = None
         elif isinstance(section, GearCoupling):
             found[name] = gear_relation(fields, path, section, joints)
-        else:
+        elif isinstance(section, RackCoupling):
             found[name] = rack_relation(fields, path, section, joints)
+        elif isinstance(section, ScrewCoupling):
+            found[name] = screw_relation(fields, path, section, joints)
+        else:
+            found[name] = belt_relation(fields, path, section, joints)
     return {name: relation for name, relation in found.items() if relation is not None}
 
 
 def refuse_friction(
     fields: Fields, loads: Iterable[object], couplings: Mapping[str, Relation]
 ) -> None:
-    """Notes teeth that push wheels apart where joints rub: friction is solved for by reactions that
-    are linear in it."""
+    """Notes teeth that push wheels apart, and belts without pretension, where joints rub: friction
+    is solved for by reactions that are linear in it."""
     if not any(isinstance(load, FrictionAtJoint) for load in loads):
         return
     for name, relation in couplings.items():
-        if relation.pushes_apart:
+        if relation.pushes_apart and relation.tensions:
+            text = "with friction in joints a strand that goes slack is not computed"
+            hint = "give the pretension, or leave out the friction"
+            fields.error("rubbing", ("couplings", name), text, hint)
+        elif relation.pushes_apart:
             text = "with friction in joints the force that pushes wheels apart is not computed"
             hint = "leave out pressure_angle, or the friction"
             fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)

@@ -43,7 +43,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "constraint": "Constraint DistanceConstraint InputConstraint Mesh PairConstraint Relation "
-        "Term",
+        "Tension Term",
         "curve": "Curve Ends Interpolation LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
@@ -62,7 +62,7 @@ __getattr__, __dir__ = lazy_names(
         "response_problem undefined_laws",
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
-        "response_quantities",
+        "response_quantities strands_of",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem StartValue Stop TurnsEnd",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "

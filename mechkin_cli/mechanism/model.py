@@ -336,6 +336,17 @@ class Mechanism:
         """Freedoms of a free link: six, or three in a plane."""
         return 3 if self.plane else 6
 
+    @cached_property
+    def pretensions(self) -> tuple[Spring, ...]:
+        """What couplings pull with when they transmit nothing, as springs without stiffness."""
+        found = []
+        for relation in self.couplings.values():
+            if relation.pull is not None:
+                one, other, pull = relation.pull
+                length = norm(subtract(other.vector, one.vector))
+                found.append(Spring((one, other), None, None, 0.0, length, pull))
+        return tuple(found)
+
     @property
     def coordinates(self) -> tuple[str, ...]:
         """All coordinates in joint order."""

@@ -16,6 +16,7 @@ from mechkin_cli.expressions import (
     Resolve,
     parse,
 )
+from mechkin_cli.mechanism.constraint import Relation
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, is_written
 from mechkin_cli.mechanism.model import Mechanism
@@ -188,8 +189,15 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         for (kind, dimension), at in places.items():
             word = kind.removeprefix("coupling_")
             yield Wanted(f"{name}.{word}", kind, name, dimension, False, at)
-        if relation.mesh is not None:
+        if relation.has_teeth:
             yield Wanted(f"{name}.tooth_force", "tooth_force", name, FORCE, True)
+        yield from strands_of(name, relation)
+
+
+def strands_of(name: str, relation: Relation) -> Iterator[Wanted]:
+    """What pulls in the strands of a coupling."""
+    for strand, _ in relation.tensions:
+        yield Wanted(f"{name}.{strand}", "tension", name, FORCE, False, strand)
 
 
 def friction_states(mechanism: Mechanism) -> list[Wanted]:

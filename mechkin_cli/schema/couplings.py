@@ -1,5 +1,5 @@
 """`couplings:` - relations between coordinates of joints anywhere in the mechanism: gears, racks,
-differentials.
+belts, screws, differentials.
 
 All coordinates are zero in the home drawing, so a coupling is drawn as it meshes.
 """
@@ -22,6 +22,7 @@ from mechkin_cli.schema.scalars import (
     AnyDimension,
     Coordinate,
     Dimensionless,
+    Force,
     Length,
     Name,
 )
@@ -125,7 +126,52 @@ class RackCoupling(Toothed):
     out, the point of the rack's joint."""
 
 
-AnyCoupling = LinearCoupling | GearCoupling | RackCoupling
+class Strands(Section):
+    """Two strands that pull at two pulleys with parallel axes on one carrier."""
+
+    joints: TwoJoints
+    """The R or C joints of the two pulleys, which turn on one link, the carrier; where a pulley
+    turns on another link, that is joined to the carrier about the same axis."""
+    pretension: Force | None = None
+    """What pulls in each strand at rest; left out, the slack strand carries nothing."""
+
+
+class BeltCoupling(Strands):
+    """A belt over two pulleys that does not slip."""
+
+    type: Literal["belt"]
+    radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)]
+    """Radii of the pulleys to the middle of the belt, in the order of the joints."""
+    crossed: Truth = False
+    """Whether the strands cross, so that the pulleys turn opposite ways; left out, no."""
+
+
+class ChainCoupling(Strands):
+    """A chain over two wheels."""
+
+    type: Literal["chain"]
+    teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)]
+    """Numbers of teeth of the wheels, in the order of the joints."""
+    pitch: Length
+    """Distance of the chain's pins."""
+
+
+class ScrewCoupling(Section):
+    """A screw and its nut, one of which turns and the other slides, on joints of their own."""
+
+    type: Literal["screw"]
+    joints: TwoJoints
+    """The R or C joint of the part that turns and the P joint of the part that slides, along the
+    same direction, both on one link."""
+    lead: Length
+    """Length per turn, positive for a right-hand thread."""
+
+
+AnyCoupling = (
+    LinearCoupling | GearCoupling | RackCoupling | BeltCoupling | ChainCoupling | ScrewCoupling
+)
 """All forms of a coupling."""
 
-Coupling = Annotated[AnyCoupling, by_word("type", ("linear", "gear", "rack"))]
+Coupling = Annotated[
+    AnyCoupling, by_word("type", ("linear", "gear", "rack", "belt", "chain", "screw"))
+]

@@ -285,8 +285,12 @@ CONTACT = (
     "where they would meet (stop:)"
 )
 RATIO = (
-    "wheels, racks and belts are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
+    "wheels and racks are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
     "teeth: [20, 40]}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
+)
+BELT = (
+    "belts and chains over two pulleys are couplings: couplings: {K: {type: belt, joints: [A, B], "
+    "radii: [30 mm, 50 mm]}}, or {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}"
 )
 CAM = (
     "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "
@@ -372,7 +376,8 @@ LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spr
 _MISSING: Final = {
     **dict.fromkeys(("ratchet", "pawl", "escapement", "clutch", "freewheel", "bumper"), CONTACT),
     **dict.fromkeys(("rope", "ropes", "cable", "cables", "tendon", "winch", "string"), ROPE),
-    **dict.fromkeys(("roller_chain", "chains", "sprocket", "sprockets", "wire"), ROPE),
+    **dict.fromkeys(("roller_chain", "chains", "sprocket", "sprockets"), BELT),
+    "wire": ROPE,
     **dict.fromkeys(("geneva", "maltese", "geneva_drive", "maltese_cross"), GENEVA),
     **dict.fromkeys(("curved_groove", "curved_slot", "groove_curve", "slot_curve"), GROOVE),
     **dict.fromkeys(("grooves", "guide_curve", "path_curve"), GROOVE),
@@ -392,9 +397,10 @@ _MISSING: Final = {
 OUTSIDE: Final = {
     **_MISSING,
     **dict.fromkeys(("contact", "contacts", "collision", "impact", "clearance"), CONTACT),
-    **dict.fromkeys(("gear", "gears", "gearing", "belt", "pulley", "chain_drive", "rack"), RATIO),
+    **dict.fromkeys(("gear", "gears", "gearing", "rack"), RATIO),
     **dict.fromkeys(("cam", "cams", "follower"), CAM),
-    **dict.fromkeys(("gearbox", "reducer", "timing_belt", "pulleys", "worm"), RATIO),
+    **dict.fromkeys(("gearbox", "reducer", "worm"), RATIO),
+    **dict.fromkeys(("belt", "pulley", "pulleys", "timing_belt", "chain_drive"), BELT),
     **dict.fromkeys(("wheel", "wheels", "tyre", "tire"), ROLLING),
     **dict.fromkeys(("cylinder", "cylinders"), CYLINDER),
     **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
@@ -577,7 +583,7 @@ LOAD_ADVICE: Final = {
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",
     "viscous": DAMPER,
-    "chain": ROPE,
+    "chain": BELT,
     "weight": "weights follow from the masses and {type: gravity, g: standard}",
     "acceleration": "write {type: gravity, g: [x, y, z]}",
     "damping": "write {type: damper, ..., damping: c}",
@@ -593,7 +599,7 @@ JOINT_ADVICE: Final = {
     **dict.fromkeys(("prismatic", "slider", "sliding", "translational"), "a slider is P"),
     **dict.fromkeys(("cylindrical", "cylindric"), "turning and sliding is C"),
     "cylinder": f"turning and sliding is C; {CYLINDER}",
-    "chain": ROPE,
+    "chain": BELT,
     **dict.fromkeys(("groove", "curve", "track"), GROOVE),
     **dict.fromkeys(("viscous", "journal"), OIL_FILM),
     **dict.fromkeys(("wheel", "roller"), ROLLING),

@@ -8,6 +8,7 @@
 //   add_hung_links     on_first (12), on_second (12), length, line (3)
 //   add_relation       factors, sum
 //   add_mesh           point (3), along (3), apart (3)
+//   add_force          point (3), along (3), apart (3)
 //   add_place          point (3)
 //   add_axis           vector (3), other_vector (3)
 //   add_input          scale

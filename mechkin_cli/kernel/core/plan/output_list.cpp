@@ -50,6 +50,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
               "an output of an unknown term of a relation");
       return {};
     case OUT_MESH_FORCE:
+    case OUT_TENSION:
       CHECK(check_index(r.index, 0, p.closings, "relation"));
       REQUIRE(p.closing[r.index].path_end > 0, "an output of the force of a relation that acts by none");
       return {};
@@ -70,7 +71,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_MESH_FORCE; }
+bool is_output(int type) { return type >= 0 && type <= OUT_TENSION; }
 
 int output_width(int type) {
   switch (type) {
@@ -130,6 +131,7 @@ unsigned output_demand(int type, int order) {
     case OUT_REACTION_LEVEL:
     case OUT_MULTIPLIER:
     case OUT_MESH_FORCE:
+    case OUT_TENSION:
     case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return to_order[order];
   }
