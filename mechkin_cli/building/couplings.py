@@ -1,4 +1,5 @@
-"""`couplings:` to relations between coordinates, each a sum of terms that is constant.
+"""`couplings:` to relations between coordinates, each a sum of terms that is constant; a term is a
+coordinate or a function of it.
 
 What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`.
 """
@@ -6,34 +7,48 @@ What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `be
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import pi
+
+import numpy as np
 
 from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.wheels import gear_relation, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
-from mechkin_cli.mechanism import Joint, Relation, Term, dimension_of
+from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
+from mechkin_cli.mechanism import CoordinateLaw, Joint, Relation, Term, dimension_of
+from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
     FrictionAtJoint,
+    FunctionCoupling,
     GearCoupling,
     LinearCoupling,
     RackCoupling,
     ScrewCoupling,
+    TableCoupling,
 )
-from mechkin_cli.units import LENGTH
+from mechkin_cli.tape import is_traced, plain
+from mechkin_cli.tolerances import TABLE_END
+from mechkin_cli.units import ANGLE, LENGTH
 
 
 def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
     """Names of the joints that couplings name."""
-    return {
-        name
-        for section in couplings.values()
-        for name in (
-            [term.rpartition(".")[0] for term in section.terms]
-            if isinstance(section, LinearCoupling)
-            else section.joints
-        )
-    }
+    return {name for section in couplings.values() for name in _joints_of(section)}
+
+
+def _joints_of(section: AnyCoupling) -> Iterable[str]:
+    if isinstance(section, LinearCoupling):
+        return [term.rpartition(".")[0] for term in section.terms]
+    if isinstance(section, FunctionCoupling | TableCoupling):
+        return [name.rpartition(".")[0] for name in (_leading(section), section.gives)]
+    return section.joints
+
+
+def _leading(section: FunctionCoupling | TableCoupling) -> str:
+    return section.of if isinstance(section, FunctionCoupling) else section.over
 
 
 def build_couplings(
@@ -46,6 +61,8 @@ def build_couplings(
         path: Path = ("couplings", name)
         if isinstance(section, LinearCoupling):
             found[name] = _linear(fields, path, section, joints)
+        elif isinstance(section, FunctionCoupling | TableCoupling):
+            found[name] = _followed(fields, path, section, joints)
         elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):
@@ -104,6 +121,88 @@ def _linear(
         terms.append(Term(joint, coordinate, factor))
     total = fields.number((*path, "sum"), section.sum, first)
     return Relation(tuple(terms), first == LENGTH, total)
+
+
+def _followed(
+    fields: Fields,
+    path: Path,
+    section: FunctionCoupling | TableCoupling,
+    joints: Mapping[str, Joint],
+) -> Relation | None:
+    """The coordinate that follows, less the function of the one that leads."""
+    leading, key = _leading(section), "of" if isinstance(section, FunctionCoupling) else "over"
+    places = {(*path, key): leading, (*path, "gives"): section.gives}
+    if not all(
+        is_coordinate(fields, at, name, joints, at_key=False) for at, name in places.items()
+    ):
+        return None
+    ends = [(joints[name.rpartition(".")[0]], name.rpartition(".")[2]) for name in places.values()]
+    (first, coordinate), (second, follows) = ends
+    if first == second and first.type.freedom_of[coordinate] == first.type.freedom_of[follows]:
+        text = f"{leading} and {section.gives} are one freedom"
+        hint = "name a coordinate of another joint"
+        fields.error("one-freedom", (*path, "gives"), text, hint)
+        return None
+    law = (
+        _expression_law(fields, path, section)
+        if isinstance(section, FunctionCoupling)
+        else _table_law(fields, path, section)
+    )
+    if law is None:
+        return None
+    terms = (Term(second, follows, 1.0), Term(first, coordinate, -1.0, law))
+    return Relation(terms, dimension_of(follows) == LENGTH)
+
+
+def _expression_law(fields: Fields, path: Path, section: FunctionCoupling) -> CoordinateLaw | None:
+    path, argument = (*path, "value"), section.of
+    try:
+        expression = fields.definitions.parse(section.value)
+        law = CoordinateLaw(
+            argument, dimension_of(argument.rpartition(".")[2]), expression, fields.parameters
+        )
+        dimension, sample = dimension_of(section.gives.rpartition(".")[2]), np.ones(1)
+        scalar(expression.in_doubles, dimension, fields.units, _sampled(law.resolve(sample)))
+        if not expression.names - fields.parameters.keys():
+            hint = f"write an expression of {argument}"
+            raise ExpressionError("this value never changes", 0, hint)
+    except ExpressionError as error:
+        fields.expression_error(path, error)
+        return None
+    return law
+
+
+def _sampled(resolve: Resolve) -> Resolve:
+    """As `resolve`, with a number in the place of one that is only recorded."""
+
+    def quantity(name: str) -> Quantity:
+        found = resolve(name)
+        return replace(found, value=np.ones(1)) if is_traced(found.value) else found
+
+    return quantity
+
+
+def _table_law(fields: Fields, path: Path, section: TableCoupling) -> CoordinateLaw | None:
+    path = (*path, "table")
+    dimensions = [dimension_of(name.rpartition(".")[2]) for name in (section.over, section.gives)]
+    rows = read_rows(fields, path, section.table, *dimensions)
+    if rows is None:
+        return None
+    x, y = (
+        [plain(fields.units.to_si(value, dimension)) for value in column]
+        for column, dimension in zip(rows, dimensions, strict=True)
+    )
+    span = x[-1] - x[0]
+    turns = dimensions[0] == ANGLE and abs(span - 2.0 * pi) <= TABLE_END * span
+    repeats = turns and rows[1][0] == rows[1][-1]
+    interpolation, ends = joining_of(section)
+    if repeats and section.ends is None:
+        ends = "periodic"
+    curve = join(fields, path, x, y, interpolation, ends)
+    if curve is None:
+        return None
+    note_overshoot(fields, path, curve, (dimensions[0], dimensions[1]))
+    return CoordinateLaw(section.over, dimensions[0], curve=curve, period=span if repeats else 0.0)
 
 
 def _freedom(term: Term) -> int:

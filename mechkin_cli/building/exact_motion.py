@@ -1,43 +1,34 @@
 """The motion of a file over its rows, on a recording of the exact numbers of its text.
 
-The formulas are those of `building.motion`, `building.laws` and `building.course`. Which rows there
-are, and on which side of a rise and in which piece of a table they lie, is decided by the doubles.
+The formulas are those of `building.motion`, `building.laws` and `building.law_shapes`. Which rows
+there are, and in which piece of a law they lie, is decided by the doubles.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from math import pi, prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of
-from mechkin_cli.building.load_laws import joining_of, read_rows
-from mechkin_cli.exact import PI, TURN, Exact
+from mechkin_cli.building.law_reading import over_moments, read_law
+from mechkin_cli.building.law_shapes import Orders
 from mechkin_cli.expressions import Expression, Quantity, literal, parse, scalar
-from mechkin_cli.mechanism import ExactMotion, joined_curve
+from mechkin_cli.mechanism import ExactMotion
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.schema import (
-    ConstantAcceleration,
-    ConstantRate,
-    Cycloidal,
     FollowingInput,
-    Harmonic,
     HeldInput,
     Law,
     ListedInput,
     MotionSection,
-    Polynomial,
     SweptInput,
-    TableLaw,
     TimeSection,
-    WithRates,
 )
-from mechkin_cli.show import Floats
-from mechkin_cli.tape import ExactRows, JetNumber, as_recorded, cos, orders_of, sin
-from mechkin_cli.units import TIME, Conversion, UnitSystem, conversion
+from mechkin_cli.tape import ExactRows, JetNumber, orders_of
+from mechkin_cli.units import TIME, UnitSystem
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,69 +37,6 @@ if TYPE_CHECKING:
     from mechkin_cli.schema import ListedTime
     from mechkin_cli.tape import ExactRecorder
     from mechkin_cli.units import Dimension
-
-
-PowerLaw = ConstantRate | ConstantAcceleration | Polynomial
-"""x = c0 + c1 t + c2 t^2 + ..., with t from the first moment of `time`."""
-
-
-def coefficients(fields: Fields, path: Path, law: PowerLaw, coordinate: str) -> list[float]:
-    """c0, c1, ..., where c_k is in the file's unit of the coordinate's derivative of order k.
-
-    Errors are noted in `fields`; zeros replace their values.
-    """
-    written: list[tuple[Path, str]]
-    if isinstance(law, Polynomial):
-        written = [(("coefficients", k), text) for k, text in enumerate(law.coefficients)]
-    else:
-        written = [(("at",), law.at), (("rate",), law.rate)]
-    if isinstance(law, ConstantAcceleration):
-        written.append((("acceleration",), law.acceleration))
-    numbers = [
-        fields.written((*path, *key), text, dimension_of(coordinate, k))
-        for k, (key, text) in enumerate(written)
-    ]
-    if isinstance(law, ConstantAcceleration):
-        numbers[2] /= 2.0
-    return numbers
-
-
-def span(
-    fields: Fields, path: Path, law: Harmonic | Cycloidal, clock: Clock
-) -> tuple[float, float]:
-    """Start and duration of a rise in the file's unit of time.
-
-    Errors are noted in `fields`; a duration of one replaces a wrong one.
-    """
-    errors = fields.error_count
-    start = clock.first
-    if law.start is not None:
-        start = fields.written((*path, "start"), law.start, TIME)
-    if law.duration is not None:
-        duration = fields.written((*path, "duration"), law.duration, TIME)
-        place: Path = (*path, "duration")
-    else:
-        duration, place = clock.last - start, (*path, "start") if law.start is not None else path
-    if duration > 0.0:
-        return start, duration
-    if fields.error_count == errors:
-        hint = "give start and duration so that there is time for it"
-        measured = f"{duration:g} {fields.units.label(TIME)}"
-        fields.error("no-duration", place, "a rise takes a positive time", hint, measured=measured)
-    return start, 1.0
-
-
-def over_time(units: UnitSystem, coordinate: str, have: int, want: int) -> Conversion:
-    """From the unit of order `have` times the unit of time to have - want, to that of order
-    `want`."""
-    before = units.unit(dimension_of(coordinate, have)) * units.unit(TIME ** (have - want))
-    return conversion(before.factor / units.unit(dimension_of(coordinate, want)).factor)
-
-
-Orders = tuple[Any, Any, Any, Any]
-"""Value, rate, acceleration, jerk; each a number of the rows or one for all of them."""
-
-_HALF_TURN = Exact(pi, PI)
 
 
 def exact_motion(
@@ -199,7 +127,7 @@ class _Reading:
         assert self.motion.time is not None
         self.clock = Clock(self.motion.time, first, last)
 
-    def add(self, name: str, item: WithRates | Law) -> None:
+    def add(self, name: str, item: SweptInput | ListedInput | HeldInput | Law) -> None:
         """An input that does not follow others."""
         path: Path = ("motion", "inputs", name)
         coordinate = name.rpartition(".")[2]
@@ -223,12 +151,11 @@ class _Reading:
                 for k, key in enumerate(("rate", "acceleration", "jerk"), start=1)
             ]
             self._put(name, (value, *rates))
-        elif isinstance(item, Harmonic | Cycloidal):
-            self._put(name, self._rise(path, item, coordinate))
-        elif isinstance(item, TableLaw):
-            self._put(name, self._table(path, item, coordinate))
-        elif isinstance(item, PowerLaw):
-            self._put(name, self._power_series(path, item, coordinate))
+        else:
+            assert self.clock is not None
+            law = read_law(self.fields, path, item, dimension, over_moments(self.clock))
+            at = self.clock.time.written
+            self._put(name, law.recorded(self.rows, self.moment, at))
 
     def _place(self, name: str) -> NDArray[np.intp]:
         """The place of each row (rows,) among the values of an input."""
@@ -297,67 +224,6 @@ class _Reading:
             to_si(order, dimension_of(coordinate, k)) for k, order in enumerate(orders)
         )
 
-    def _power_series(self, path: Path, law: PowerLaw, coordinate: str) -> Orders:
-        written = coefficients(self.fields, path, law, coordinate)
-        assert self.clock is not None
-        t = self.moment - self.clock.first
-        orders: list[Any] = []
-        for order in range(4):
-            total: Any = 0.0
-            for k in range(len(written) - 1, order - 1, -1):
-                factor = float(prod(range(k - order + 1, k + 1)))
-                conversion = over_time(self.fields.units, coordinate, k, order)
-                term = conversion.apply(written[k] * factor)
-                total = term if k == len(written) - 1 else total * t + term
-            orders.append(total)
-        return orders[0], orders[1], orders[2], orders[3]
-
-    def _rise(self, path: Path, law: Harmonic | Cycloidal, coordinate: str) -> Orders:
-        dimension, clock = dimension_of(coordinate), self.clock
-        assert clock is not None
-        first: Any = self.fields.written((*path, "from"), law.first, dimension)
-        last: Any = self.fields.written((*path, "to"), law.last, dimension)
-        start, duration = span(self.fields, path, law, clock)
-        at = (clock.time.written - as_recorded(start)) / as_recorded(duration)
-        rising = self._where((at >= 0.0) & (at <= 1.0))
-        risen = self._where(at >= 1.0)
-        u = (self.moment - start) / duration
-        rise: Any = last - first
-        shape = _harmonic(u) if isinstance(law, Harmonic) else _cycloidal(u)
-        orders: list[Any] = [rising.choose(first + rise * shape[0], risen.choose(last, first))]
-        for order in (1, 2, 3):
-            rise = rise / duration
-            conversion = over_time(self.fields.units, coordinate, 0, order)
-            orders.append(rising.choose(conversion.apply(rise * shape[order]), 0.0))
-        return orders[0], orders[1], orders[2], orders[3]
-
-    def _table(self, path: Path, law: TableLaw, coordinate: str) -> Orders:
-        table = read_rows(self.fields, (*path, "file"), law.file, TIME, dimension_of(coordinate))
-        assert table is not None
-        assert self.clock is not None
-        curve = joined_curve(*table, *joining_of(law))
-        knots = np.array([as_recorded(x) for x in table[0]])
-        piece = np.searchsorted(knots, self.clock.time.written, side="right") - 1
-        piece = np.clip(piece, 0, knots.size - 1)
-
-        def picked(numbers: Any) -> Any:
-            return self.rows.picked(list(numbers), piece)
-
-        y, b, c, d = (picked(row) for row in curve.coefficients)
-        u = self.moment - picked(table[0])
-        value = y + u * (b + u * (c + u * d))
-        rates = b + u * (2.0 * c + u * (3.0 * d)), 2.0 * c + u * (6.0 * d), 6.0 * d
-        first, second, third, fourth = (
-            over_time(self.fields.units, coordinate, 0, k).apply(order)
-            for k, order in enumerate((value, *rates))
-        )
-        return first, second, third, fourth
-
-    def _where(self, rows: Any) -> Any:
-        """A condition that holds in some rows, as decided by doubles."""
-        chosen: Floats = rows.astype(np.float64)
-        return self.rows.given(chosen) == 1.0
-
 
 def _spaced(
     fields: Fields,
@@ -379,20 +245,3 @@ def _spaced(
     assert section.step is not None
     step: Any = abs(fields.written((*path, "step"), section.step, dimension))
     return first + number * (step if last >= first else -step)
-
-
-def _harmonic(u: Any) -> Orders:
-    """(1 - cos(pi u))/2 and its derivatives."""
-    sine, cosine = sin(u * _HALF_TURN), cos(u * _HALF_TURN)
-    return (
-        (1.0 - cosine) / 2.0,
-        sine * _HALF_TURN / 2.0,
-        cosine * _HALF_TURN * _HALF_TURN / 2.0,
-        -(sine * _HALF_TURN * _HALF_TURN * _HALF_TURN / 2.0),
-    )
-
-
-def _cycloidal(u: Any) -> Orders:
-    """u - sin(2 pi u)/(2 pi) and its derivatives."""
-    sine, cosine = sin(u * TURN), cos(u * TURN)
-    return (u - sine / TURN, 1.0 - cosine, sine * TURN, cosine * TURN * TURN)

@@ -236,11 +236,25 @@ class PlanBuilder:
         slide_sign: float,
         loop: Sequence[tuple[int, float]],
     ) -> None: ...
+    def add_function(
+        self,
+        arguments: int,
+        curves: Sequence[
+            tuple[int, float, float, float, Sequence[tuple[float, float, float, float, float]]]
+        ],
+        constants: Sequence[float],
+        operations: Sequence[int],
+        operands: Sequence[tuple[int, int, int]],
+        instructions: Sequence[int],
+        outputs: Sequence[int],
+        output_ends: Sequence[int],
+    ) -> int: ...
     def add_relation(
         self,
         length: bool,
-        terms: Sequence[tuple[int, float, int, int]],
+        terms: Sequence[tuple[int, float, int, int, int]],
         factors: Sequence[float],
+        arguments: Sequence[float],
         sum: float,
     ) -> None: ...
     def add_mesh(

@@ -29,6 +29,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 
 from mechkin_cli import tolerances
+from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, far_link, frame_on
 from mechkin_cli.mechanism.pair_type import Attached, Condition
 from mechkin_cli.mechanism.pairs import CLOSING_CONDITIONS
@@ -51,11 +52,12 @@ JointsAt = Mapping[str, tuple[Joint, ...]]
 
 class Term(NamedTuple):
     """A joint's coordinate with its factor: a number, a length per rad (m) or an angle per length
-    (rad/m)."""
+    (rad/m); or where it has a law, a number times the law's value at the coordinate."""
 
     joint: Joint
     coordinate: str
     factor: float
+    law: CoordinateLaw | None = None
 
 
 class Mesh(NamedTuple):

@@ -9,22 +9,24 @@ Source: C. de Boor, A Practical Guide to Splines, chapter IV.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from mechkin_cli.diagnostics import Place
-from mechkin_cli.expressions import Expression
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.tape import of_numbers, plain
+from mechkin_cli.expressions import Expression, Quantity, UnknownName
+from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.tape import JetNumber, of_numbers, orders_of, plain
+from mechkin_cli.tolerances import TABLE_END
+from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 
-Ends = Literal["not-a-knot", "natural", "clamped"]
+Ends = Literal["not-a-knot", "natural", "clamped", "periodic"]
 
 
 class Curve(NamedTuple):
@@ -82,8 +84,8 @@ class Curve(NamedTuple):
 def smooth_curve(x: Sequence[float], y: Sequence[float], ends: Ends = "not-a-knot") -> Curve:
     """The curve through two or more points with strictly increasing x.
 
-    Its ends are natural (no curvature), clamped (no slope) or not-a-knot: through two points a
-    straight line then, through three a parabola.
+    Its ends are natural (no curvature), clamped (no slope), periodic (the same slope and curvature)
+    or not-a-knot: through two points a straight line then, through three a parabola.
 
     Example:
         >>> smooth_curve([0, 1, 3], [0, 1, 9]).evaluate(np.array([2.0])).tolist()
@@ -145,10 +147,35 @@ def _clamped(h: list[float], slopes: list[float]) -> list[float]:
     return _tridiagonal([0.0, *h], diagonal, [*h, 0.0], jumps)
 
 
+def _periodic(h: list[float], slopes: list[float]) -> list[float]:
+    """As `_curvatures`, with the same slope and curvature at both ends.
+
+    The matrix is cyclic: with corners c it is T + c e e^T, e = e_0 + e_last, T tridiagonal.
+    """
+    jumps = [6.0 * (b - a) for a, b in pairwise([slopes[-1], *slopes])]
+    if len(h) == 2:  # both neighbours of a point are the other one
+        total = h[0] + h[1]
+        m = jumps[0] / total
+        return [m, -m, m]
+    if len(h) == 1:
+        return [0.0, 0.0]
+    diagonal = [2.0 * (a + b) for a, b in pairwise([h[-1], *h])]
+    corner = h[-1]
+    diagonal[0] -= corner
+    diagonal[-1] -= corner
+    below, above = [0.0, *h[:-1]], [*h[:-1], 0.0]
+    plain_part = _tridiagonal(below, diagonal, above, jumps)
+    ends = _tridiagonal(below, diagonal, above, [1.0, *[0.0] * (len(h) - 2), 1.0])
+    factor = corner * (plain_part[0] + plain_part[-1]) / (1.0 + corner * (ends[0] + ends[-1]))
+    found = [a - factor * b for a, b in zip(plain_part, ends, strict=True)]
+    return [*found, found[0]]
+
+
 _CURVATURES: dict[Ends, Callable[[list[float], list[float]], list[float]]] = {
     "not-a-knot": _curvatures,
     "natural": _natural,
     "clamped": _clamped,
+    "periodic": _periodic,
 }
 
 
@@ -199,6 +226,8 @@ def joined_curve(
         slopes = _monotone_slopes(h, rises)
         if ends == "clamped":
             slopes[0] = slopes[-1] = 0.0
+        elif ends == "periodic":
+            slopes[0] = slopes[-1] = _between(h[-1], h[0], rises[-1], rises[0])
         pieces = [_piece(y[i], slopes[i], slopes[i + 1], rises[i], h[i]) for i in range(len(h))]
         _, _, bend, third = pieces[-1]
         pieces.append((y[-1], slopes[-1], bend + 3.0 * third * h[-1], third))
@@ -239,6 +268,50 @@ def _at_end(h0: float, h1: float, rise0: float, rise1: float) -> float:
     if rise0 * rise1 <= 0.0 and abs(slope) > 3.0 * abs(rise0):
         return 3.0 * rise0
     return slope
+
+
+@dataclass(frozen=True, eq=False)
+class CoordinateLaw:
+    """A number as a function of a coordinate, both in SI: an `expression` of it, or a `curve` over
+    it, which repeats itself with a `period` unless that is 0.
+
+    An expression calls the coordinate by its name, such as `A.theta`, or by the last word of that.
+    """
+
+    argument: str
+    dimension: Dimension
+    expression: Expression | None = None
+    parameters: Mapping[str, Quantity] = field(default_factory=dict)
+    curve: Curve | None = None
+    period: float = 0.0
+
+    def resolve(self, value: Any) -> Callable[[str], Quantity]:
+        """What the names in the expression are where the coordinate is a value (of any kind)."""
+        words = (self.argument, self.argument.rpartition(".")[2])
+
+        def quantity(name: str) -> Quantity:
+            if name == self.argument or (name in words and name not in self.parameters):
+                return Quantity(value, self.dimension)
+            if name in self.parameters:
+                return self.parameters[name]
+            raise UnknownName(name, [*words, *self.parameters])
+
+        return quantity
+
+    def orders(self, at: Floats) -> Floats:
+        """Value and first three derivatives at places (rows,), shape (4, rows); nan outside of a
+        table."""
+        if self.curve is not None:
+            first, last = self.curve.first, self.curve.last
+            if self.period > 0.0:
+                at = at - self.period * np.rint((at - 0.5 * (first + last)) / self.period)
+            slack = TABLE_END * (last - first)
+            inside = (at >= first - slack) & (at <= last + slack)
+            return np.where(inside, self.curve.evaluate(np.clip(at, first, last)), np.nan)
+        assert self.expression is not None
+        with np.errstate(all="ignore"):
+            found = self.expression.evaluate(self.resolve(JetNumber([at, 1.0, 0.0, 0.0])))
+        return np.stack([np.broadcast_to(order, at.shape) for order in orders_of(found.value)])
 
 
 class LoadLaw(NamedTuple):

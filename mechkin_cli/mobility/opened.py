@@ -32,6 +32,7 @@ from mechkin_cli.structure import SolverGraph, TreeEdge
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from mechkin_cli.mechanism import CoordinateLaw
     from mechkin_cli.plan import Layout
     from mechkin_cli.show import Floats
 
@@ -50,6 +51,20 @@ class Opened(NamedTuple):
     graph: SolverGraph
     elements: Mapping[str, tuple[int, ...]]
     cuts: Mapping[str, str]
+
+
+class RelatedState(NamedTuple):
+    """A term of a coupling's equation `row`: a freedom's column, its state, the factor in the units
+    of the equation, and what a `step` of the column and a `unit` of the state are of the coordinate
+    (rad, m); with a law the term is a function of that."""
+
+    row: int
+    column: int
+    state: int
+    factor: float
+    step: float
+    unit: float
+    law: CoordinateLaw | None
 
 
 def opened(mechanism: Mechanism) -> Opened:
@@ -251,19 +266,17 @@ class Loops:
     def passing(self) -> NDArray[np.bool_]:
         """Which freedoms each cut's loop passes, then which each coupling is between (cuts and
         couplings, freedoms)."""
-        return np.concatenate([self.signs != 0.0, self._relations[0] != 0.0])
+        between = np.zeros(self._relations[0].shape, dtype=np.bool_)
+        for term in self._related:
+            between[term.row, term.column] = True
+        return np.concatenate([self.signs != 0.0, between])
 
     @cached_property
-    def _relations(self) -> tuple[Floats, Floats, Floats]:
-        """Of the couplings: their Jacobian (couplings, freedoms), what they are by the states
-        (couplings, states), and should be (couplings,)."""
-        relations = self.opened.mechanism.couplings.values()
-        jacobian = np.zeros((len(relations), self.count))
-        by_state = np.zeros((len(relations), self.layout.states))
-        totals = np.zeros(len(relations))
-        for row, relation in enumerate(relations):
+    def _related(self) -> list[RelatedState]:
+        """The terms of all couplings."""
+        found = []
+        for row, relation in enumerate(self.opened.mechanism.couplings.values()):
             unit = self.poses.size if relation.length else 1.0
-            totals[row] = relation.total / unit
             for term in relation.terms:
                 freedom = term.joint.freedom_number(term.coordinate)
                 for k in self.opened.elements[term.joint.name]:
@@ -271,10 +284,33 @@ class Loops:
                     if freedom < len(carrier.part.type.freedoms):
                         break
                     freedom -= len(carrier.part.type.freedoms)
-                told = [term.joint.unit_of(term.coordinate, each) for each in self._units]
-                jacobian[row, carrier.column + freedom] += term.factor * told[0] / unit
-                by_state[row, carrier.state + freedom] += term.factor * told[1] / unit
-        return jacobian, by_state, totals
+                step, state = (term.joint.unit_of(term.coordinate, each) for each in self._units)
+                at = carrier.column + freedom, carrier.state + freedom
+                found.append(RelatedState(row, *at, term.factor / unit, step, state, term.law))
+        return found
+
+    @cached_property
+    def _relations(self) -> tuple[Floats, Floats, Floats]:
+        """Of the couplings: their Jacobian (couplings, freedoms), what they are by the states
+        (couplings, states), and should be (couplings,), without functions of coordinates."""
+        relations = self.opened.mechanism.couplings.values()
+        jacobian = np.zeros((len(relations), self.count))
+        by_state = np.zeros((len(relations), self.layout.states))
+        units = [self.poses.size if relation.length else 1.0 for relation in relations]
+        totals = [each.total / unit for each, unit in zip(relations, units, strict=True)]
+        for term in self._related:
+            if term.law is None:
+                jacobian[term.row, term.column] += term.factor * term.step
+                by_state[term.row, term.state] += term.factor * term.unit
+        return jacobian, by_state, np.array(totals)
+
+    def _curved(self, states: Floats, off: Floats, jacobian: Floats) -> None:
+        """Adds the terms that are functions of coordinates, at states (rows, states)."""
+        for term in self._related:
+            if term.law is not None:
+                orders = term.law.orders(states[:, term.state] * term.unit)
+                off[:, term.row] += term.factor * orders[0]
+                jacobian[:, term.row, term.column] += term.factor * term.step * orders[1]
 
     @property
     def _units(self) -> tuple[float, float]:
@@ -299,7 +335,8 @@ class Loops:
         if not totals.size:
             return misses, jacobian
         off = states @ by_state.T - totals
-        every = np.broadcast_to(related, (rows, *related.shape))
+        every = np.broadcast_to(related, (rows, *related.shape)).copy()
+        self._curved(states, off, every)
         return np.concatenate([misses, off], axis=1), np.concatenate([jacobian, every], axis=1)
 
     def screws(self, turns: Floats, places: Floats) -> Floats:

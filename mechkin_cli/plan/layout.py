@@ -36,7 +36,7 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Laws, Relation
+    from mechkin_cli.mechanism import CoordinateLaw, Laws, Relation
     from mechkin_cli.show import Floats
 
 
@@ -59,15 +59,22 @@ NO_FREEDOM = -1
 """For a part of a joint that a relation only leads through."""
 
 
+NO_FUNCTION = -1
+"""For a coordinate that is a term of a relation itself."""
+
+
 class RelationRow(NamedTuple):
     """A part of a joint that a coupling has a term of: the kernel joint, its direction in the tree,
-    the freedom there that is the coordinate, the axis of that, and its factor in length units."""
+    the freedom there that is the coordinate, the axis of that, and its factor in length units. With
+    a function, its number, and what a unit of the coordinate is in its argument (rad, m)."""
 
     part: int
     sign: float
     freedom: int
     axis: int
     factor: float
+    function: int
+    argument: float
 
 
 @dataclass(frozen=True)
@@ -200,6 +207,12 @@ class Layout:
         """Length of the state vector."""
         return sum(c.part.type.states for c in self.carriers)
 
+    @cached_property
+    def functions(self) -> tuple[CoordinateLaw, ...]:
+        """The functions of the plan, in order."""
+        relations = self.mechanism.couplings.values()
+        return tuple(t.law for r in relations for t in r.terms if t.law is not None)
+
     def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
         """All parts of the joints of a coupling; those that have none of its coordinates come
         first."""
@@ -208,13 +221,22 @@ class Layout:
             edge = self.edge_number[term.joint.name]
             own, freedom = self.carrier_of(edge, term.joint.freedom_number(term.coordinate))
             axis, factor = self.axis_number[term.joint.name, term.coordinate], term.factor
-            if not term.joint.type.coordinate[term.coordinate].is_angle:
-                factor = factor * self.length
+            is_angle = term.joint.type.coordinate[term.coordinate].is_angle
+            unit = 1.0 if is_angle else self.length
+            function = NO_FUNCTION if term.law is None else self.functions.index(term.law)
+            if function == NO_FUNCTION:
+                factor = factor * unit
             if relation.length:
                 factor = factor / self.length
             rows += [
                 RelationRow(
-                    k, float(signs[edge]), freedom if k == own else NO_FREEDOM, axis, factor
+                    k,
+                    float(signs[edge]),
+                    freedom if k == own else NO_FREEDOM,
+                    axis,
+                    factor,
+                    function,
+                    unit,
                 )
                 for k in self.parts_of[edge]
             ]

@@ -165,6 +165,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
             layout.mechanism.box_diagonal() if size is None else size,
         ),
         *_tree_joints(layout),
+        *_functions(layout),
         *(
             each
             for closing in zip(layout.graph.closings, layout.graph.loops, strict=True)
@@ -227,8 +228,9 @@ def _relation(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[Pl
     relation = layout.mechanism.couplings[constraint.name]
     rows = layout.relation_rows(relation, loop)
     total = relation.total / layout.length if relation.length else relation.total
-    places = [(row.part, row.sign, row.freedom, row.axis) for row in rows]
-    yield record("add_relation", relation.length, places, [row.factor for row in rows], total)
+    places = [(row.part, row.sign, row.freedom, row.axis, row.function) for row in rows]
+    factors, arguments = [row.factor for row in rows], [row.argument for row in rows]
+    yield record("add_relation", relation.length, places, factors, arguments, total)
     mesh = relation.mesh
     if mesh is None:
         return
@@ -247,6 +249,14 @@ def _force_of(
     """A force of a mesh in the carrier's frame: its point, and its parts per unit moment."""
     along, apart = (scale(layout.length, layout.vector(Attached(carrier, part))) for part in parts)
     return layout.point(Attached(carrier, point)), along, apart
+
+
+def _functions(layout: Layout) -> Iterator[PlanRecord]:
+    if not layout.functions:
+        return
+    from mechkin_cli.plan.programs import function_record
+
+    yield from map(function_record, layout.functions)
 
 
 def _places(layout: Layout) -> Iterator[PlanRecord]:

@@ -9,24 +9,27 @@ plan, and so are the values that end a motion.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle
 from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.plan.records import Output, OutputCode, Program, ReadCode
-from mechkin_cli.tape import Operation, RowRecorder, register
+from mechkin_cli.plan.records import Output, OutputCode, PlanRecord, Program, ReadCode, record
+from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of, register
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Curve, Laws, LoadLaw, Wanted
+    from mechkin_cli.mechanism import CoordinateLaw, Curve, Laws, LoadLaw, Wanted
     from mechkin_cli.plan.layout import Layout
 
 
 KINKS = (Operation.MAGNITUDE, Operation.SIGN, Operation.LARGER, Operation.SMALLER, Operation.WHOLE)
 """Operations at which a value bends or jumps."""
+
+ORDERS = range(4)
+"""Of a function: its value and its derivatives."""
 
 _NOTHING = Output(OutputCode.STATE, 0, 0, 0, (0.0, 0.0, 0.0), 1.0)
 """Where no quantity of the mechanism is read."""
@@ -133,6 +136,29 @@ class _Recording:
 
 def _turns(wanted: Wanted) -> bool:
     return wanted.kind == "coordinate" and wanted.order == 0 and is_angle(wanted.coordinate)
+
+
+def function_record(law: CoordinateLaw) -> PlanRecord:
+    """The record of a function of a coordinate, with its derivatives (`plan/functions.hpp`)."""
+    curves = []
+    if law.curve is not None:
+        over, low, high, knots = _curve(law.curve, 0)
+        curves.append((over, low, high, law.period, knots))
+    recorder = RowRecorder(1 + len(ORDERS) * len(curves))
+    number = recorder.number
+    if law.curve is not None:
+        orders: Sequence[Any] = [number(1 + order) for order in ORDERS]
+    else:
+        assert law.expression is not None
+        moving = JetNumber([number(0), 1.0, 0.0, 0.0])
+        orders = orders_of(law.expression.evaluate(law.resolve(moving)).value)
+    outputs = [register(recorder, order) for order in orders]
+    parts = recorder.listed_in_turn([outputs[: order + 1] for order in ORDERS])
+    ends = [order + 1 for order in ORDERS]
+    constants, operations, operands, instructions, registers = parts
+    return record(
+        "add_function", 1, curves, constants, operations, operands, instructions, registers, ends
+    )
 
 
 def _read(layout: Layout, wanted: Wanted) -> tuple[int, Output]:

@@ -30,8 +30,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling BeltCoupling ChainCoupling GearCoupling LinearCoupling "
-        "RackCoupling ScrewCoupling",
+        "couplings": "AnyCoupling BeltCoupling ChainCoupling FunctionCoupling GearCoupling "
+        "LinearCoupling RackCoupling ScrewCoupling TableCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
@@ -41,8 +41,9 @@ __getattr__, __dir__ = lazy_names(
         "ForceOnLink FrictionAtJoint Gravity SpringAtJoint SpringBetweenPoints TableValue "
         "TorqueOnJoint TorqueOnLink",
         "motion": "AssemblySection ConstantAcceleration ConstantRate Cycloidal FollowingInput "
-        "Harmonic HeldInput InputMotion Law ListedInput MotionSection Polynomial SweptInput "
-        "TableLaw TimeSection WithRates",
+        "Harmonic HeldInput InputMotion Law ListedInput ModifiedSine ModifiedTrapezoid "
+        "MotionSection Polynomial Rise Rise345 Rise4567 Sine SweptInput TableLaw TimeSection "
+        "WithRates",
         "plane": "in_space",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",

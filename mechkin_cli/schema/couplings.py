@@ -21,8 +21,10 @@ from mechkin_cli.schema.scalars import (
     AngleOrLength,
     AnyDimension,
     Coordinate,
+    CsvPath,
     Dimensionless,
     Force,
+    JoinedTable,
     Length,
     Name,
 )
@@ -60,6 +62,33 @@ class LinearCoupling(Section):
         if len(self.terms) < 2:
             text = "a coupling is between two coordinates or more"
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
+
+
+class FunctionCoupling(Section):
+    """A coordinate is a function of another one: a cam and its follower, a Scotch yoke."""
+
+    type: Literal["function"]
+    of: Coordinate
+    """The coordinate that leads, such as the turn of a cam."""
+    gives: Coordinate
+    """The coordinate that follows."""
+    value: AngleOrLength
+    """What the following coordinate is, an expression of the leading one, by its last word or in
+    full: `20 mm*(1 - cos(theta))`, `20 mm*(1 - cos(A.theta))`."""
+
+
+class TableCoupling(JoinedTable):
+    """A coordinate is a tabulated function of another one."""
+
+    type: Literal["table"]
+    table: CsvPath
+    """CSV file with a header and two columns: the coordinate that leads, and the one that follows.
+    A table that ends a whole turn later where it begins holds for every turn, joined there as
+    between its points."""
+    over: Coordinate
+    """The coordinate of the first column."""
+    gives: Coordinate
+    """The coordinate of the second column."""
 
 
 class Toothed(Section):
@@ -167,11 +196,21 @@ class ScrewCoupling(Section):
     """Length per turn, positive for a right-hand thread."""
 
 
+FollowedCoupling = FunctionCoupling | TableCoupling
+"""Those of a coordinate that follows another one."""
+
 AnyCoupling = (
-    LinearCoupling | GearCoupling | RackCoupling | BeltCoupling | ChainCoupling | ScrewCoupling
+    LinearCoupling
+    | GearCoupling
+    | RackCoupling
+    | BeltCoupling
+    | ChainCoupling
+    | ScrewCoupling
+    | FollowedCoupling
 )
 """All forms of a coupling."""
 
 Coupling = Annotated[
-    AnyCoupling, by_word("type", ("linear", "gear", "rack", "belt", "chain", "screw"))
+    AnyCoupling,
+    by_word("type", ("linear", "gear", "rack", "belt", "chain", "screw", "function", "table")),
 ]

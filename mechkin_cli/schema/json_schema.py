@@ -244,14 +244,24 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("UnitsSection", "time"): "s",
     ("UnitsSection", "angular_rate"): "deg/s",
     ("ViewSection", "speed"): "4 s",
-    ("Cycloidal", "duration"): "0.5 s",
-    ("Cycloidal", "from"): 0,
-    ("Cycloidal", "start"): "0.1 s",
-    ("Cycloidal", "to"): "40 mm",
-    ("Harmonic", "duration"): "0.5 s",
-    ("Harmonic", "from"): 0,
-    ("Harmonic", "start"): "0.1 s",
-    ("Harmonic", "to"): "40 mm",
+    ("Sine", "amplitude"): "20 deg",
+    ("Sine", "frequency"): "2 Hz",
+    ("Sine", "offset"): "5 deg",
+    ("Sine", "period"): "0.5 s",
+    ("Sine", "phase"): "90 deg",
+    **{
+        (rise, key): value
+        for rise in (
+            *("Cycloidal", "Harmonic", "ModifiedSine", "ModifiedTrapezoid"),
+            *("Rise345", "Rise4567"),
+        )
+        for key, value in (
+            ("duration", "0.5 s"),
+            ("from", 0),
+            ("start", "0.1 s"),
+            ("to", "40 mm"),
+        )
+    },
     ("SweptInput", "from"): 0,
     ("SweptInput", "step"): 5,
     ("SweptInput", "to"): 360,

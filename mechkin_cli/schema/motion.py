@@ -17,6 +17,7 @@ from mechkin_cli.schema.base import (
     refuse,
 )
 from mechkin_cli.schema.scalars import (
+    Angle,
     AngleOrLength,
     AnyDimension,
     Coordinate,
@@ -64,32 +65,83 @@ class Polynomial(Section):
     carry units from c1 on, unless the file's angular rates are in its angle per its time."""
 
 
-class _Rise(Section):
+class Rise(Section):
+    """x = from + (to - from) * s(u), with u from 0 to 1 over the duration and s as the law says."""
+
     start: Duration | None = None
     """When the rise begins, as `time` counts; left out, at the first moment of `time`. Before it
     the input rests."""
     duration: Duration | None = None
     """How long it lasts; left out, to the last moment of `time`. After it the input rests."""
+    first: AngleOrLength
+    """Value before the rise."""
+    last: AngleOrLength
+    """Value after the rise."""
 
 
-class Harmonic(_Rise):
+class Harmonic(Rise):
     """x = from + (to - from) * (1 - cos(pi*u))/2, with u from 0 to 1 over the duration."""
 
     law: Literal["harmonic"]
-    first: AngleOrLength
-    """Value before the rise."""
-    last: AngleOrLength
-    """Value after the rise."""
 
 
-class Cycloidal(_Rise):
+class Cycloidal(Rise):
     """x = from + (to - from) * (u - sin(2*pi*u)/(2*pi)), with u from 0 to 1 over the duration."""
 
     law: Literal["cycloidal"]
-    first: AngleOrLength
-    """Value before the rise."""
-    last: AngleOrLength
-    """Value after the rise."""
+
+
+class Rise345(Rise):
+    """x = from + (to - from) * (10*u^3 - 15*u^4 + 6*u^5), with u from 0 to 1 over the duration."""
+
+    law: Literal["3-4-5"]
+
+
+class Rise4567(Rise):
+    """x = from + (to - from) * (35*u^4 - 84*u^5 + 70*u^6 - 20*u^7), with u from 0 to 1 over the
+    duration."""
+
+    law: Literal["4-5-6-7"]
+
+
+class ModifiedSine(Rise):
+    """A rise whose acceleration is a quick sine in its first and last eighth, a slow one between
+    them."""
+
+    law: Literal["modified-sine"]
+
+
+class ModifiedTrapezoid(Rise):
+    """A rise whose acceleration is constant over two quarters, which quarter waves of a sine join
+    to each other and to the ends."""
+
+    law: Literal["modified-trapezoid"]
+
+
+class Sine(Section):
+    """x = offset + amplitude * sin(2*pi*frequency*t + phase), with t from the first moment of
+    `time`."""
+
+    law: Literal["sine"]
+    amplitude: AngleOrLength
+    """Amplitude, half of the way between the extreme values."""
+    frequency: AnyDimension | None = None
+    """Periods per time, such as `2 Hz` or `120/(1 min)`; left out, `period`."""
+    period: Duration | None = None
+    """How long a period lasts; left out, `frequency`."""
+    phase: Angle = "0"
+    """Phase at the first moment."""
+    offset: AngleOrLength = "0"
+    """Value in the middle of the oscillation."""
+
+    def check(self) -> None:
+        """Exactly one of frequency and period."""
+        if self.frequency is None and self.period is None:
+            text = "a sine needs a frequency or a period"
+            raise refuse("missing-key", text, "add one of them, such as frequency: 2 Hz")
+        if self.frequency is not None and self.period is not None:
+            text = "frequency and period say the same"
+            raise refuse("two-choices", text, "keep one of them", "period")
 
 
 class TableLaw(JoinedTable):
@@ -108,14 +160,31 @@ class TableLaw(JoinedTable):
             raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
 
 
-Law = ConstantRate | ConstantAcceleration | Polynomial | Harmonic | Cycloidal | TableLaw
+Law = (
+    ConstantRate
+    | ConstantAcceleration
+    | Polynomial
+    | Sine
+    | Harmonic
+    | Cycloidal
+    | Rise345
+    | Rise4567
+    | ModifiedSine
+    | ModifiedTrapezoid
+    | TableLaw
+)
 
 LAWS: Final = {
     "constant-rate": ConstantRate,
     "constant-acceleration": ConstantAcceleration,
     "polynomial": Polynomial,
+    "sine": Sine,
     "harmonic": Harmonic,
     "cycloidal": Cycloidal,
+    "3-4-5": Rise345,
+    "4-5-6-7": Rise4567,
+    "modified-sine": ModifiedSine,
+    "modified-trapezoid": ModifiedTrapezoid,
     "table": TableLaw,
 }
 """The laws of motion by their words."""

@@ -185,8 +185,10 @@ def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
     coupled = [bool(graph.closings[c].terms) for c in block.closings]
     if any(coupled):
-        # couplings alone are linear
-        return 1 if all(coupled) and block.equations == len(block.unknowns) else None
+        # couplings alone are linear, unless they are functions of coordinates
+        laws = [term.law for c in block.closings for term in graph.closings[c].terms]
+        linear = all(coupled) and all(law is None for law in laws)
+        return 1 if linear and block.equations == len(block.unknowns) else None
     if all(graph.closings[c].length is not None for c in block.closings):
         return _bound_of_distances(graph, block)
     if len(block.closings) != 1 or block.equations != len(block.unknowns):

@@ -96,6 +96,23 @@ class RowRecorder(Recorder):
             [k for k, instruction in enumerate(written) if instruction in marks],
         )
 
+    def listed_in_turn(
+        self, outputs: Sequence[Sequence[int]]
+    ) -> tuple[list[Any], list[int], list[tuple[int, int, int]], list[int], list[int]]:
+        """The program of registers, of which a part after the other is asked for, each with those
+        before: constants, operations, operands, how many operations each part needs, and the
+        numbers of the last part's registers."""
+        needed: list[int] = []
+        counts = []
+        for part in outputs:
+            needed += [r for r in self._needed(part) if r not in needed]
+            counts.append(sum(r in self._written for r in needed))
+        constants = [r for r in needed if r in self.constants]
+        leaves = [*range(len(self.inputs)), *constants]
+        operations, operands, number = self._renumbered(leaves, needed)
+        numbers = [number[r] for r in outputs[-1]]
+        return [self.constants[r] for r in constants], operations, operands, counts, numbers
+
 
 _LARGEST_POWER = 64
 """Whole exponents up to this one are products."""

@@ -22,6 +22,10 @@ LAWS = {
     "polynomial": {"coefficients": [0, "1 rad/s"]},
     "harmonic": {"from": 0, "to": 1},
     "cycloidal": {"from": 0, "to": 1},
+    "3-4-5": {"from": 0, "to": 1},
+    "4-5-6-7": {"from": 0, "to": 1},
+    "modified-sine": {"from": 0, "to": 1},
+    "modified-trapezoid": {"from": 0, "to": 1},
     "table": {"file": "law.csv"},
 }
 ODD = ["", "x y", [], {}, [[]], {"type": "harmonic"}, "nan", 10**400]

@@ -114,14 +114,35 @@ class Hostile:
                 self.attempt(builder.add_hung_links, *arguments, loop)
         return closings
 
+    def function(self, builder: Any) -> None:
+        knots = [[float(k), *(self.number() for _ in range(4))] for k in range(2)]
+        range_of = [self.number() for _ in range(3)]
+        curves = [(self.index(0, 1), *range_of, knots)] * self.random.randint(0, 1)
+        size = self.random.randint(0, 4)
+        operations = [self.index(0, 27) for _ in range(size)]
+        operands = [(self.index(0, 4), self.index(0, 4), self.index(0, 4)) for _ in range(size)]
+        ends = [*sorted(self.random.randint(0, size) for _ in range(3)), size]
+        outputs = [self.index(0, 4) for _ in range(4)]
+        parts = curves, self.numbers(2), operations, operands, ends, outputs
+        self.attempt(builder.add_function, self.index(1, 2), *parts, [1, 2, 3, 4])
+
     def relation(self, builder: Any, links: int, loop: list[tuple[int, float]]) -> None:
+        functions = self.random.randint(0, 2)
+        for _ in range(functions):
+            self.function(builder)
         terms = [
-            (self.index(0, links), self.sign(), self.index(-1, 2), self.index(0, 2))
+            (
+                self.index(0, links),
+                self.sign(),
+                self.index(-1, 2),
+                self.index(0, 2),
+                self.index(-1, functions),
+            )
             for _ in range(links)
         ]
-        factors = [self.number() for _ in terms]
+        factors, arguments = ([self.number() for _ in terms] for _ in range(2))
         is_length = self.random.random() < 0.5
-        self.attempt(builder.add_relation, is_length, terms, factors, self.number())
+        self.attempt(builder.add_relation, is_length, terms, factors, arguments, self.number())
         if self.random.random() < 0.5:
             vectors = self.numbers(3), self.numbers(3), self.numbers(3)
             self.attempt(builder.add_mesh, self.index(-1, links), *vectors, loop)

@@ -112,7 +112,46 @@ LAWS = [
             )
         ),
     ),
+    (
+        "{law: 3-4-5, from: 3, to: 40, start: 0, duration: 2.1 s}",
+        lambda t: DEGREE * (3 + 37 * powers(t / mp.mpf("2.1"), 0, 0, 0, 10, -15, 6)),
+    ),
+    (
+        "{law: 4-5-6-7, from: 3, to: 40, start: 0, duration: 2.1 s}",
+        lambda t: DEGREE * (3 + 37 * powers(t / mp.mpf("2.1"), 0, 0, 0, 0, 35, -84, 70, -20)),
+    ),
+    (
+        "{law: modified-sine, from: 3, to: 40, start: -4 s, duration: 9 s}",
+        lambda t: DEGREE * (3 + 37 * slow_sine((t + 4) / 9)),
+    ),
+    (
+        "{law: modified-trapezoid, from: 3, to: 40, start: -1.2 s, duration: 9 s}",
+        lambda t: DEGREE * (3 + 37 * flat((t + mp.mpf("1.2")) / 9)),
+    ),
+    (
+        "{law: sine, amplitude: 0.7, frequency: 0.3 Hz, phase: 25, offset: 4}",
+        lambda t: DEGREE * (4 + mp.mpf("0.7") * mp.sin(mp.mpf("0.6") * mp.pi * t + 25 * DEGREE)),
+    ),
 ]
+
+
+def powers(u: Any, *coefficients: int) -> Any:
+    """The polynomial of u."""
+    return sum(c * u**k for k, c in enumerate(coefficients))
+
+
+def slow_sine(u: Any) -> Any:
+    """The middle of a modified sine as Norton's handbook has it."""
+    return (2 + mp.pi * u - mp.mpf(9) / 4 * mp.sin(mp.pi / 3 + 4 * mp.pi * u / 3)) / (4 + mp.pi)
+
+
+def flat(u: Any) -> Any:
+    """The stretch of constant acceleration of a modified trapezoid; there the largest acceleration
+    is 8 pi/(2 + pi), from a quarter of a sine over an eighth."""
+    largest = 8 * mp.pi / (2 + mp.pi)
+    rate, value = largest / (4 * mp.pi), largest / (4 * mp.pi) * (mp.mpf(1) / 8 - 1 / (4 * mp.pi))
+    w = u - mp.mpf(1) / 8
+    return value + rate * w + largest * w * w / 2
 
 
 @pytest.mark.parametrize(("law", "function"), LAWS)

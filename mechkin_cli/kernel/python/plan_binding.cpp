@@ -133,7 +133,9 @@ void bind_builder(nb::module_& m) {
            "on_second"_a, "parameter"_a, "loop"_a)
       .def("add_hung_links", raising(&PlanBuilder::add_hung_links), "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
            "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
-      .def("add_relation", raising(&PlanBuilder::add_relation), "length"_a, "terms"_a, "factors"_a, "sum"_a)
+      .def("add_function", raising(&PlanBuilder::add_function), "arguments"_a, "curves"_a, "constants"_a, "operations"_a,
+           "operands"_a, "instructions"_a, "outputs"_a, "output_ends"_a)
+      .def("add_relation", raising(&PlanBuilder::add_relation), "length"_a, "terms"_a, "factors"_a, "arguments"_a, "sum"_a)
       .def("add_mesh", raising(&PlanBuilder::add_mesh), "carrier"_a, "point"_a, "along"_a, "apart"_a, "path"_a)
       .def("add_force", raising(&PlanBuilder::add_force), "point"_a, "along"_a, "apart"_a)
       .def("add_place", raising(&PlanBuilder::add_place), "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,

@@ -243,7 +243,7 @@ inline void transmit_along_coordinates(const Plan& p, Workspace& w, int c, Pack 
   for (int l = j.loop_begin; l < j.loop_end; ++l) {
     const LoopEntry& e = p.loop[l];
     const Term& t = p.term[e.term];
-    w.carried[e.joint] -= Pack(e.sign) * along_coordinate(p, w, t.axis, Pack(t.factor) * multiplier);
+    w.carried[e.joint] -= Pack(e.sign) * along_coordinate(p, w, t.axis, term_slope(p, w.curve, e.term) * multiplier);
   }
 }
 

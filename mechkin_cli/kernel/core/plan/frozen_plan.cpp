@@ -53,6 +53,13 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_OPERAND, p.law.operand, 3 * p.law.instructions);
   visit(ARRAY_PROGRAM_OUTPUT, p.law.output, p.law.outputs);
   visit(ARRAY_KINK, p.law.kink, p.law.kinks);
+  visit(ARRAY_FUNCTION, p.functions.function, p.functions.functions);
+  visit(ARRAY_FUNCTION_CURVE, p.functions.curve, p.functions.curves);
+  visit(ARRAY_FUNCTION_KNOT, p.functions.knot, p.functions.knots);
+  visit(ARRAY_FUNCTION_CONSTANT, p.function_constant, p.functions.constants);
+  visit(ARRAY_FUNCTION_OPERATION, p.functions.operation, p.functions.instructions);
+  visit(ARRAY_FUNCTION_OPERAND, p.functions.operand, 3 * p.functions.instructions);
+  visit(ARRAY_FUNCTION_OUTPUT, p.functions.output, p.functions.outputs);
 }
 
 }  // namespace

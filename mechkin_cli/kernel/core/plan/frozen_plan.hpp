@@ -6,7 +6,8 @@
 //   add_tree_joint     pitch, at (12: axes x, y, z, origin)
 //   add_closing_joint  on_first (12), on_second (12), parameter
 //   add_hung_links     on_first (12), on_second (12), length, line (3)
-//   add_relation       factors, sum
+//   add_function       constants
+//   add_relation       factors, arguments, sum
 //   add_mesh           point (3), along (3), apart (3)
 //   add_force          point (3), along (3), apart (3)
 //   add_place          point (3)
@@ -68,6 +69,13 @@ enum PlanArray : int {
   ARRAY_OPERAND,
   ARRAY_PROGRAM_OUTPUT,
   ARRAY_KINK,
+  ARRAY_FUNCTION,
+  ARRAY_FUNCTION_CURVE,
+  ARRAY_FUNCTION_KNOT,
+  ARRAY_FUNCTION_CONSTANT,
+  ARRAY_FUNCTION_OPERATION,
+  ARRAY_FUNCTION_OPERAND,
+  ARRAY_FUNCTION_OUTPUT,
   ARRAY_COUNT
 };
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "plan/friction_records.hpp"
+#include "plan/functions.hpp"
 #include "plan/program.hpp"
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
@@ -72,11 +73,13 @@ struct LoopEntry {
 };
 
 // A term of a relation: `factor` times the coordinate of an axis, which is the freedom of the entry's tree joint; -1: of
-// another part of the same joint.
+// another part of the same joint. With a function, `factor` times its value at the coordinate, which is `argument` of it in SI.
 template <class Number>
 struct TermOf {
   int freedom, axis;
   Number factor;
+  int function;  // of Plan::functions; -1: none
+  Number argument;
 };
 
 // A hung body: a body from a point of `first` (the origin of its tree joint) to a point of `second`, where it has a rod that
@@ -228,6 +231,7 @@ struct PlanShape {
   const int* column_joint;   // tree joint of a column
   const int* column_block;   // block that solves for a column, -1: input
   const int* column_place;   // its place among that block's unknowns
+  FunctionTable functions;
 };
 
 template <class Number>
@@ -236,6 +240,7 @@ struct PlanOf : PlanShape {
   const ClosingJointOf<Number>* closing;
   const HungBodyOf<Number>* hung;
   const TermOf<Number>* term;
+  const Number* function_constant;
   const JointPlaceOf<Number>* place;
   const CoordinateAxisOf<Number>* axis;
   const DriveOf<Number>* drive;

@@ -132,18 +132,45 @@ std::pair<int, int> PlanBuilder::add_loop(const Loop& loop) {
   return {begin, (int)loop_.size()};
 }
 
-Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors,
-                                  double sum) {
+Result<int> PlanBuilder::add_function(int arguments, const std::vector<FunctionCurveTuple>& curves,
+                                      const std::vector<double>& constants, const std::vector<int>& operations,
+                                      const std::vector<std::array<int, 3>>& operands,
+                                      const std::vector<int>& instructions, const std::vector<int>& outputs,
+                                      const std::vector<int>& output_ends) {
   CHECK(open());
-  REQUIRE(!terms.empty() && terms.size() == factors.size(), "a relation has terms, each with a factor");
+  FunctionRecord record = {arguments, {}, constants, {}, {}, instructions, {outputs.begin(), outputs.end()}, output_ends};
+  for (const auto& [over, low, high, period, knots] : curves) {
+    record.curves.push_back({over, low, high, period, {}});
+    for (const auto& [x, y, b, c, d] : knots) record.curves.back().knots.push_back({x, y, b, c, d});
+  }
+  for (int o : operations) {
+    REQUIRE(o >= 0 && o <= 255, "unknown operation");
+    record.operations.push_back((std::uint8_t)o);
+  }
+  for (const auto& [a, b, c] : operands) record.operands.insert(record.operands.end(), {a, b, c});
+  const int first = functions_.view().constants;
+  Result<int> added = functions_.add(record);
+  CHECK(added.refusal());
+  number(ARRAY_FUNCTION_CONSTANT, first * sizeof(double), (int)constants.size());
+  return added;
+}
+
+Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors,
+                                  const std::vector<double>& arguments, double sum) {
+  CHECK(open());
+  REQUIRE(!terms.empty() && terms.size() == factors.size() && terms.size() == arguments.size(),
+          "a relation has terms, each with a factor and an argument");
   CHECK(check_finite(sum));
-  REQUIRE(all_finite(factors.data(), factors.size()), "a plan's numbers must be finite");
+  REQUIRE(all_finite(factors.data(), factors.size()) && all_finite(arguments.data(), arguments.size()),
+          "a plan's numbers must be finite");
   for (std::size_t k = 0; k < terms.size(); ++k)
     for (std::size_t other = 0; other < k; ++other)
       REQUIRE(std::get<0>(terms[k]) != std::get<0>(terms[other]) || std::get<2>(terms[k]) < 0 ||
                   std::get<2>(terms[k]) != std::get<2>(terms[other]), "a relation has one term of a freedom");
-  for (const auto& [joint, sign, freedom, axis] : terms) {
+  for (const auto& [joint, sign, freedom, axis, function] : terms) {
     CHECK(check_joint(joint, "a relation of an unknown joint"));
+    REQUIRE(function == -1 || (function >= 0 && function < functions_.view().functions), "a term of an unknown function");
+    REQUIRE(function == -1 || functions_.is_of_one(function), "a term is a function of its coordinate alone");
     REQUIRE(is_sign(sign), NO_SIGN);
     const TreeType& tree = tree_type(joints_[joint].type);
     REQUIRE(freedom == -1 || (freedom >= 0 && freedom < tree.freedoms && tree.states == tree.freedoms),
@@ -155,12 +182,12 @@ Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& ter
     REQUIRE(std::get<2>(terms[k]) >= 0 || std::get<2>(terms[k - 1]) < 0, "parts that a relation only leads through come first");
   const int begin = (int)loop_.size(), first_term = (int)term_.size();
   for (std::size_t k = 0; k < terms.size(); ++k) {
-    const auto& [joint, sign, freedom, axis] = terms[k];
+    const auto& [joint, sign, freedom, axis, function] = terms[k];
     loop_.push_back({joint, sign, (int)term_.size()});
-    term_.push_back({freedom, axis, factors[k]});
+    term_.push_back({freedom, axis, factors[k], function, arguments[k]});
   }
-  for (int t = first_term; t < (int)term_.size(); ++t)
-    number(ARRAY_TERM, t * sizeof(Term) + offsetof(Term, factor), 1);
+  for (std::size_t part : {offsetof(Term, factor), offsetof(Term, argument)})
+    for (int t = first_term; t < (int)term_.size(); ++t) number(ARRAY_TERM, t * sizeof(Term) + part, 1);
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
   const Frame none = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
   const int type = length ? RELATION_OF_LENGTHS : RELATION_OF_ANGLES;

@@ -11,15 +11,19 @@
 #include <vector>
 
 #include "plan/frozen_plan.hpp"
+#include "plan/function_store.hpp"
 #include "plan/program_store.hpp"
 #include "result.hpp"
 
 using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
 using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
-using TermTuple = std::tuple<int, double, int, int>;  // tree joint and sign, freedom and axis of a Term
+using TermTuple = std::tuple<int, double, int, int, int>;  // tree joint and sign, freedom, axis and function of a Term
 // Register, range, and knots x, y, b, c, d.
 using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
+
+// Argument, range, period (0: none), and knots x, y, b, c, d.
+using FunctionCurveTuple = std::tuple<int, double, double, double, std::vector<std::array<double, 5>>>;
 
 class PlanBuilder {
  public:
@@ -32,8 +36,15 @@ class PlanBuilder {
   // The next closing equation: a hung body of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
   Refusal add_hung_links(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
                double length, const Triple& line, double slide_sign, const Loop& loop);
-  // The next closing equation: the sum of terms, each with its factor, is `sum`; a length, or an angle. Axes may come later.
-  Refusal add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors, double sum);
+  // The next function, see Function; returns its number.
+  Result<int> add_function(int arguments, const std::vector<FunctionCurveTuple>& curves,
+                           const std::vector<double>& constants, const std::vector<int>& operations,
+                           const std::vector<std::array<int, 3>>& operands, const std::vector<int>& instructions,
+                           const std::vector<int>& outputs, const std::vector<int>& output_ends);
+  // The next closing equation: the sum of terms, each with its factor and what its coordinate is in a function's argument, is
+  // `sum`; a length, or an angle. Axes may come later.
+  Refusal add_relation(bool length, const std::vector<TermTuple>& terms, const std::vector<double>& factors,
+                       const std::vector<double>& arguments, double sum);
   // The last relation acts by a force, see ClosingJoint, at a point of `carrier`, on the end of the way `path`.
   Refusal add_mesh(int carrier, const Triple& point, const Triple& along, const Triple& apart, const Loop& path);
   // And by another one, at another point of the same link.
@@ -128,4 +139,5 @@ class PlanBuilder {
   std::vector<Contact> contact_;
   std::vector<Output> size_point_;
   ProgramStore program_;
+  FunctionStore functions_;
 };

@@ -60,6 +60,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
   ClosingJoint* const closing = room.take<ClosingJoint>(first.closings);
   HungBody* const hung = room.take<HungBody>(first.hung_bodies);
   Term* const term = room.take<Term>(first.terms);
+  PlanNumber* const constant = room.take<PlanNumber>(first.functions.constants);
   if (!room.memory) return;
   for (int k = 0; k < first.links; ++k) {
     const auto& j = first.joints[k];
@@ -84,8 +85,10 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
   }
   for (int t = 0; t < first.terms; ++t)
     term[t] = {first.term[t].freedom, first.term[t].axis,
-               lanes.number([&](const LanePlan& p) { return p.term[t].factor; })};
-  w->joints = joint, w->closing = closing, w->hung = hung, w->term = term;
+               lanes.number([&](const LanePlan& p) { return p.term[t].factor; }), first.term[t].function,
+               lanes.number([&](const LanePlan& p) { return p.term[t].argument; })};
+  lanes.numbers(constant, first.functions.constants, [&](const LanePlan& p) { return p.function_constant; });
+  w->joints = joint, w->closing = closing, w->hung = hung, w->term = term, w->function_constant = constant;
 }
 
 template <class Constants>

@@ -12,7 +12,7 @@ bool all_same(const Record* a, const Record* b, int count, const Same& same) {
 bool same_counts(const Plan& a, const Plan& b) {
   return a.links == b.links && a.states == b.states && a.columns == b.columns && a.closings == b.closings &&
          a.hung_bodies == b.hung_bodies && a.blocks == b.blocks && a.inputs == b.inputs && a.unknowns == b.unknowns &&
-         a.loop_entries == b.loop_entries && a.terms == b.terms && a.largest_block == b.largest_block;
+         a.loop_entries == b.loop_entries && a.terms == b.terms && a.functions.functions == b.functions.functions && a.largest_block == b.largest_block;
 }
 
 bool same_joint(const TreeJoint& a, const TreeJoint& b) {

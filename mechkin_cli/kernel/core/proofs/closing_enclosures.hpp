@@ -18,6 +18,8 @@ struct Enclosures {
   Pack* equation;  // of all blocks, one block after the other
   Real side;       // least of what is positive in an assembly and not in a false root
   Pack* jacobian;  // equations x columns
+  TermCurve* curve;  // terms: of those that are functions
+  Pack* function;    // registers of the largest function
 };
 
 inline int equations_of(const Plan& p) {
@@ -77,7 +79,8 @@ inline void enclose_closing(const Plan& p, Enclosures& w) {
       const Closure k = enclosed_closure(p, w, j);
       const int equation = first + j.row;
       with_closing_joint(j.type, [&](auto entry) {
-        closing_residual(p, w.q, j, k, entry, w.equation + equation);
+        if constexpr (entry.is_relation) find_curves(p, j, w.q, 1, w.function, w.curve);
+        closing_residual(p, w.q, w.curve, j, k, entry, w.equation + equation);
         entry.sides(k, [&](const Pack& x) { w.side = min(w.side, lower_bound(x)); });
         for (int l = j.loop_begin; l < j.loop_end; ++l) {
           const TreeJoint& t = p.joints[p.loop[l].joint];
@@ -87,7 +90,7 @@ inline void enclose_closing(const Plan& p, Enclosures& w) {
           }
           for (int f = t.column; f < t.column + freedoms_of(t); ++f) {
             Pack column[MAX_EQUATIONS];
-            closing_column(p, k, p.loop[l], f - t.column, w.screw[f], entry, column);
+            closing_column(p, w.curve, k, p.loop[l], f - t.column, w.screw[f], entry, column);
             for (int i = 0; i < entry.equations; ++i) w.jacobian[(equation + i) * p.columns + f] = column[i];
           }
         }

@@ -72,7 +72,7 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
       if constexpr (entry.is_relation)
-        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) {
+        r[0] = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) {
           return unknown_index(p, index, t.column + f) < 0 ? w.rate[t.column + f] : Pack(0.0);
         });
       else
@@ -83,6 +83,28 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
   for (int i = 0; i < b.charts; ++i) right[b.rows - b.charts + i] = w.place_rate[i];
 }
 
+// Second and third derivative of a relation: those of a term g of a coordinate c, which moves by c', c'' and c''', are
+// g_c c'' + g_cc c' c' and g_c c''' + 3 g_cc c' c'' + g_ccc c' c' c'.
+inline Pack second_of_relation(const Plan& p, Workspace& w, const ClosingJoint& j) {
+  find_curves(p, j, w.q, 2, w.function, w.curve);
+  Pack sum = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) { return w.acceleration[t.column + f]; });
+  each_curve(p, w.curve, j, [&](const TermCurve& g, const LoopEntry& e, int f) {
+    const Pack rate = coordinate_by_freedom(p, e) * w.rate[p.joints[e.joint].column + f];
+    sum += g.bend * (rate * rate);
+  });
+  return sum;
+}
+inline Pack third_of_relation(const Plan& p, Workspace& w, const ClosingJoint& j) {
+  find_curves(p, j, w.q, 3, w.function, w.curve);
+  Pack sum = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) { return w.jerk[t.column + f]; });
+  each_curve(p, w.curve, j, [&](const TermCurve& g, const LoopEntry& e, int f) {
+    const int column = p.joints[e.joint].column + f;
+    const Pack by = coordinate_by_freedom(p, e), rate = by * w.rate[column], acceleration = by * w.acceleration[column];
+    sum += Pack(3.0) * g.bend * (rate * acceleration) + g.third * (rate * rate * rate);
+  });
+  return sum;
+}
+
 // Second derivatives of a block's closing equations, negative, into w.right: as the links move.
 inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
@@ -91,7 +113,7 @@ inline void second_of_equations(const Plan& p, Workspace& w, const Block& b) {
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
       if constexpr (entry.is_relation)
-        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) { return w.acceleration[t.column + f]; });
+        r[0] = second_of_relation(p, w, j);
       else
         entry.second(w.closure[c], first, other, r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];
@@ -137,7 +159,7 @@ inline void third_of_equations(const Plan& p, Workspace& w, const Block& b) {
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       Pack r[MAX_CLOSING_ROWS];
       if constexpr (entry.is_relation)
-        r[0] = sum_of_terms(p, j, [&](const TreeJoint& t, int f) { return w.jerk[t.column + f]; });
+        r[0] = third_of_relation(p, w, j);
       else
         entry.third(w.closure[c], first, other, r);
       for (int i = 0; i < entry.equations; ++i) w.right[j.row + i] = -r[i];

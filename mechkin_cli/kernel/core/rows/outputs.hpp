@@ -88,7 +88,7 @@ inline Pack output_closing(const Plan& p, const Workspace& w, const OutputOf<Num
 template <class Number>
 inline Pack output_multiplier(const Plan& p, const Workspace& w, const OutputOf<Number>& o) {
   const LoopEntry& e = p.loop[p.closing[o.index].loop_begin + o.freedom];
-  return Pack(p.term[e.term].factor) * w.reaction[o.index].force.x;
+  return term_slope(p, w.curve, e.term) * w.reaction[o.index].force.x;
 }
 
 // What pulls in a strand of a relation that acts by such.

@@ -95,7 +95,8 @@ MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& 
     place_closure(p, w, c, axes);
     Pack* r = w.right + j.row;
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      closing_residual(p, w.q, j, w.closure[c], entry, r);
+      if constexpr (entry.is_relation) find_curves(p, j, w.q, 1, w.function, w.curve);
+      closing_residual(p, w.q, w.curve, j, w.closure[c], entry, r);
       meet(entry, r);
     });
   }
@@ -109,7 +110,7 @@ MECHKIN_INLINE void closing_columns(const Plan& p, const Workspace& w, int c, co
   with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
     for (int i = 0; i < tree.freedoms; ++i) {
       with_closing_joint(p.closing[c].type, [&](auto entry) __attribute__((always_inline)) {
-        closing_column(p, k, e, i, w.screw[t.column + i], entry, out + i * MAX_CLOSING_ROWS);
+        closing_column(p, w.curve, k, e, i, w.screw[t.column + i], entry, out + i * MAX_CLOSING_ROWS);
       });
     }
   });
@@ -140,7 +141,7 @@ inline void block_jacobian(const Plan& p, Workspace& w, int index, Pack* a) {
           const int u = unknown_index(p, index, t.column + f);
           if (u < 0) continue;
           Pack column[entry.equations];
-          closing_column(p, k, p.loop[l], f, w.screw[t.column + f], entry, column);
+          closing_column(p, w.curve, k, p.loop[l], f, w.screw[t.column + f], entry, column);
           for (int i = 0; i < entry.equations; ++i) rows[i * n + u] = column[i];
           if (u < 64) written |= std::uint64_t(1) << u;
         }

@@ -156,7 +156,7 @@ MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, cons
       for (int f = 0; f < freedoms; ++f) {
         Pack column[MAX_CLOSING_ROWS];
         with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-          closing_column(p, w.closure[c], p.loop[l], f, screw[f], entry, column);
+          closing_column(p, w.curve, w.closure[c], p.loop[l], f, screw[f], entry, column);
         });
         // an orientation's quaternion has unit length
         const Pack x = states == freedoms ? abs(w.q[t.state + f]) : Pack(1.0);

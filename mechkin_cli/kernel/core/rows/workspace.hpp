@@ -39,6 +39,8 @@ struct Workspace {
   Mask* kept_swap;
   Pack* load;                     // load values: of loads that vary
   Pack* law;                      // registers of Plan::law
+  TermCurve* curve;               // terms: of those that are functions
+  Pack* function;                 // registers of the largest function
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
   bool* stands;                   // links: whether it moves against a parent that carries it and does not
   Pose* frame;                    // links: the frames of such joints on their parents
@@ -100,6 +102,8 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   if (at) w->motion[-1] = {zero_twist(), zero_twist()}, w->link_jerk[-1] = zero_twist();
   w->load = (Pack*)take(p.load_values * pack);
   w->law = (Pack*)take((long)p.law.registers() * pack);
+  w->curve = (TermCurve*)take((p.functions.functions ? p.terms : 0) * sizeof(TermCurve));
+  w->function = (Pack*)take((long)p.functions.registers * pack);
   return used;
 }
 

@@ -1,0 +1,254 @@
+"""Coordinates that are functions of others, by an expression or a table, against derivatives of
+closed forms at 40 digits and forces by virtual work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+from mechkin_cli.diagnostics import InvalidFile
+
+YOKE = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+parameters: {r: 0.2 m}
+links:
+  crank: {mass: 1, center_of_mass: [0, 0], inertia: 0.5}
+  yoke: {mass: 2, center_of_mass: [0, 0], inertia: 1}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: P, links: [ground, yoke], point: [0, 0], axis: [1, 0]}
+couplings:
+  K: {type: function, of: A.theta, gives: B.s, value: "r*(1 - cos(theta))"}
+"""
+TURNING = """
+motion:
+  inputs: {A.theta: {from: 0.1, to: 12.7, count: 64, rate: 10 rad/s, acceleration: 3 rad/s^2,
+           jerk: 7 rad/s^3}}
+loads: [{type: force, joint: B, value: 5}]
+"""
+PUSHED = """
+motion:
+  inputs: {B.s: {from: 0.02, to: 0.38, count: 10, rate: 0.5 m/s, acceleration: 0.3 m/s^2}}
+assembly: {near: {A.theta: 0.4}}
+loads: [{type: torque, joint: A, value: 3}]
+"""
+
+
+def followed(g: Any, x: float, rates: tuple[float, float, float]) -> list[float]:
+    """g and its first three derivatives by time at x, which moves at rates, at 40 digits."""
+    with mp.workdps(40):
+        v, a, j = map(mp.mpf, rates)
+        d = [mp.diff(g, mp.mpf(x), k) for k in range(4)]
+        found = [
+            d[0],
+            d[1] * v,
+            d[2] * v**2 + d[1] * a,
+            d[3] * v**3 + 3 * d[2] * v * a + d[1] * j,
+        ]
+        return [float(each) for each in found]
+
+
+def expected(g: Any, places: Any, rates: tuple[float, float, float]) -> Any:
+    """Those of all places, shape (4, rows)."""
+    return np.array([followed(g, x, rates) for x in places]).T
+
+
+def test_scotch_yoke() -> None:
+    """The yoke moves as r (1 - cos theta), and the crank feels its force by virtual work."""
+    result = mk.loads(YOKE + TURNING).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(0.1, 12.7, 64)
+    moves = expected(lambda x: mp.mpf("0.2") * (1 - mp.cos(x)), turn, (10.0, 3.0, 7.0))
+    for order, name in enumerate(("s", "s_dot", "s_ddot", "s_dddot")):
+        scale = np.abs(moves[order]).max()
+        np.testing.assert_allclose(
+            result[f"B.{name}"], moves[order], rtol=1e-14, atol=3e-15 * scale
+        )
+    force = 2.0 * moves[2] - 5.0
+    np.testing.assert_allclose(result["K.force"], force, rtol=1e-13, atol=1e-13)
+    by_turn = 0.2 * np.sin(turn)
+    effort = 0.5 * 3.0 + force * by_turn
+    np.testing.assert_allclose(result["A.effort"], effort, rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(result["K.torque"], -force * by_turn, rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(result["K.power"], force * moves[1], rtol=1e-12, atol=1e-13)
+
+
+def test_the_follower_may_drive_up_to_its_dead_centres() -> None:
+    model = mk.loads(YOKE + PUSHED)
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    way = np.linspace(0.02, 0.38, 10)
+
+    def of_way(s: Any) -> Any:
+        return mp.acos(1 - s / mp.mpf("0.2"))
+
+    turn = expected(of_way, way, (0.5, 0.3, 0.0))
+    for order, name in enumerate(("theta", "theta_dot", "theta_ddot")):
+        np.testing.assert_allclose(result[f"A.{name}"], turn[order], rtol=1e-12)
+    by_way = expected(of_way, way, (1.0, 0.0, 0.0))[1]
+    effort = 2.0 * 0.3 + (0.5 * turn[2] - 3.0) * by_way
+    np.testing.assert_allclose(result["B.effort"], effort, rtol=1e-12)
+    ends = [(r.lower.value, r.upper.value) for r in model.ranges().ranges]
+    np.testing.assert_allclose(ends, [(0.0, 0.4)] * len(ends), atol=1e-9)
+    # two ways to stand at each place, once a turn, of which one and a half are looked through
+    turns = sorted(abs(float(mode.coordinates["A.theta"])) for mode in model.modes().modes)
+    first = float(of_way(mp.mpf("0.02")))
+    once = 2.0 * np.pi
+    np.testing.assert_allclose(turns, np.repeat([first, once - first, once + first], 2), rtol=1e-9)
+
+
+CAM = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {shaft: {}, crank: {mass: 2, center_of_mass: [0.1, 0], inertia: 0.3}, rod: {}, rocker: {}}
+joints:
+  I: {type: R, links: [ground, shaft], point: [-1, 0]}
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, rod], point: [0, 0.3]}
+  C: {type: R, links: [rod, rocker], point: [1, 0.8]}
+  D: {type: R, links: [ground, rocker], point: [0.9, 0]}
+motion:
+  inputs: {I.theta: {from: 0, to: 6, count: 25, rate: 2 rad/s, acceleration: 3 rad/s^2,
+           jerk: 5 rad/s^3}}
+loads: [{type: torque, link: rocker, torque: 4}]
+couplings:
+"""
+LAW = 'K: {type: function, of: I.theta, gives: A.theta, value: "theta + 0.3 rad*sin(2*theta)"}'
+
+
+def test_a_function_before_a_loop_drives_it_as_its_crank_would_be() -> None:
+    """The four-bar alone, its crank prescribed by the values and rates of the law."""
+    places = np.linspace(0.0, 6.0, 25)
+    turn = expected(lambda x: x + mp.mpf("0.3") * mp.sin(2 * x), places, (2.0, 3.0, 5.0))
+    result = mk.loads(CAM + "  " + LAW).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    alone = CAM.replace("  I: {type: R, links: [ground, shaft], point: [-1, 0]}\n", "")
+    alone = alone.replace("shaft: {}, ", "").replace("couplings:", "")
+    for row in range(25):
+        value, rate, acceleration, jerk = map(float, turn[:, row])
+        motion = (
+            f"inputs: {{A.theta: {{at: {value!r}, rate: {rate!r} rad/s, "
+            f"acceleration: {acceleration!r} rad/s^2, jerk: {jerk!r} rad/s^3}}}}\n"
+        )
+        start, rest = alone.split("inputs:")[0], alone.split("rad/s^3}}\n")[1]
+        single = mk.loads(start + motion + rest).analyze()
+        for name in ("D.theta_dot", "D.theta_ddot", "D.theta_dddot", "C.force", "A.force"):
+            np.testing.assert_allclose(
+                result[name][row], single[name][0], rtol=1e-10, atol=1e-10, err_msg=name
+            )
+        by_shaft = rate / 2.0
+        effort = single["A.effort"][0]
+        np.testing.assert_allclose(result["K.torque"][row], effort, rtol=1e-10, atol=1e-11)
+        np.testing.assert_allclose(
+            result["I.effort"][row], effort * by_shaft, rtol=1e-9, atol=1e-10
+        )
+
+
+def test_rows_are_proven_their_errors_known_and_their_slopes_exact() -> None:
+    for text in (YOKE + TURNING, YOKE + PUSHED, CAM + "  " + LAW):
+        model = mk.loads(text)
+        certificate = model.certify()
+        assert set(certificate.status) == {"proven"}
+        assert certificate.is_one_branch
+    model = mk.loads(YOKE + TURNING)
+    errors = model.analyze(errors=True).errors
+    assert errors.digits is not None
+    assert errors.digits >= 13
+    slopes = model.sensitivities(["B.s"], ["r"])
+    turn = np.linspace(0.1, 12.7, 64)
+    np.testing.assert_allclose(slopes["B.s", "r"], 1.0 - np.cos(turn), rtol=1e-12, atol=1e-14)
+
+
+def test_mobility_counts_a_function_as_one_equation() -> None:
+    found = mk.loads(CAM + "  " + LAW).mobility()
+    assert found.mobility == 1
+    # where the slope is zero the follower rests to first order, and moves all the same
+    assert mk.loads(YOKE + TURNING).mobility().mobility == 1
+
+
+def test_variants_and_lanes_give_the_same_bits() -> None:
+    model = mk.loads(YOKE + TURNING)
+    names = ["B.s", "B.s_ddot", "A.effort"]
+    radii = ["0.1 m", "0.2 m", "0.3 m", "0.45 m", "0.7 m"]
+    table = model.vary({"r": radii}, names)
+    for number, radius in enumerate(radii):
+        alone = model.with_parameters({"r": radius}).analyze()
+        narrow = model.with_parameters({"r": radius}).analyze(lanes=2, threads=1)
+        for name in names:
+            np.testing.assert_array_equal(table[name][number], alone[name])
+            np.testing.assert_array_equal(narrow[name], alone[name])
+
+
+TABLE = YOKE.replace(
+    'K: {type: function, of: A.theta, gives: B.s, value: "r*(1 - cos(theta))"}',
+    "K: {type: table, table: lift.csv, over: A.theta, gives: B.s}",
+).replace("parameters: {r: 0.2 m}\n", "")
+
+
+def tabled(folder: Path, text: str, rows: list[tuple[float, float]]) -> mk.Model:
+    """The model of a text whose table has rows."""
+    lines = [f"{x!r},{y!r}" for x, y in rows]
+    (folder / "lift.csv").write_text("\n".join(["turn,lift", *lines]) + "\n")
+    (folder / "m.yaml").write_text(text)
+    return mk.load(folder / "m.yaml")
+
+
+def test_a_table_of_a_cubic_is_that_cubic(tmp_path: Path) -> None:
+    """A spline meets a cubic exactly, up to its third derivative."""
+
+    def cubic(x: Any) -> Any:
+        return (x - 3) * (x - 8) * x / 100
+
+    rows = [(float(x), float(cubic(x))) for x in (0, 1, 2.5, 4, 7, 13)]
+    result = tabled(tmp_path, TABLE + TURNING, rows).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(0.1, 12.7, 64)
+    moves = expected(cubic, turn, (10.0, 3.0, 7.0))
+    for order, name in enumerate(("s", "s_dot", "s_ddot", "s_dddot")):
+        scale = np.abs(moves[order]).max()
+        np.testing.assert_allclose(result[f"B.{name}"], moves[order], atol=1e-12 * scale)
+    force = 2.0 * moves[2] - 5.0
+    by_turn = moves[1] / 10.0
+    np.testing.assert_allclose(result["A.effort"], 1.5 + force * by_turn, atol=1e-10)
+
+
+def test_a_table_of_a_whole_turn_holds_for_every_turn(tmp_path: Path) -> None:
+    """Seven turns on and one back it is the same; the spline goes on smoothly over its end."""
+    places = [2.0 * np.pi * k / 40 for k in range(41)]
+    lifts = [0.2 * (1.0 - float(np.cos(x))) for x in places]
+    lifts[-1] = lifts[0]
+    moved = TURNING.replace("from: 0.1, to: 12.7", "from: -7.4, to: 50.3")
+    result = tabled(tmp_path, TABLE + moved, list(zip(places, lifts, strict=True))).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(-7.4, 50.3, 64)
+    # of fourth order in the spacing, and the curvature of second
+    np.testing.assert_allclose(result["B.s"], 0.2 * (1.0 - np.cos(turn)), atol=1e-6)
+    bend = 0.2 * (100.0 * np.cos(turn) + 3.0 * np.sin(turn))
+    np.testing.assert_allclose(result["B.s_ddot"], bend, atol=0.06)
+
+
+WRONG = {
+    "no expression of it": ("r*(1 - cos(theta))", "r", "this value never changes"),
+    "an angle": ("r*(1 - cos(theta))", "theta", "expected a length, found an angle"),
+    "unknown name": ("cos(theta)", "cos(phi)", "phi"),
+    "itself": ("gives: B.s", "gives: A.theta", "are one freedom"),
+    "no coordinate": ("of: A.theta", "of: A.s", "has no coordinate s"),
+}
+
+
+@pytest.mark.parametrize(("before", "after", "words"), WRONG.values(), ids=WRONG.keys())
+def test_what_is_wrong_is_told_at_its_place(before: str, after: str, words: str) -> None:
+    with pytest.raises(InvalidFile) as told:
+        mk.loads((YOKE + TURNING).replace(before, after))
+    errors = [d for d in told.value.diagnostics if d.severity == "error"]
+    assert len(errors) == 1
+    assert words in str(errors[0])
+    assert errors[0].place is not None
