@@ -233,7 +233,7 @@ def build_problem(
     is not built again, nor are the motions in time of `moving` responses."""
     points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
-    for coupled in coupled_joints(file.couplings) & joints.keys():
+    for coupled in coupled_joints(fields, file.couplings, joints):
         joints[coupled] = counted(joints[coupled])
     couplings = build_couplings(fields, file.couplings, joints)
     refuse_friction(fields, file.loads, couplings)
