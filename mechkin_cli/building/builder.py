@@ -13,7 +13,12 @@ from typing import TYPE_CHECKING, Any, Final
 from mechkin_cli import mobility
 from mechkin_cli.assembly import is_home_singular
 from mechkin_cli.building.cables import build_cables
-from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction, refuse_tied_friction
+from mechkin_cli.building.couplings import (
+    build_couplings,
+    coupled_joints,
+    refuse_friction,
+    refuse_tied_friction,
+)
 from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
@@ -198,11 +203,11 @@ def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[An
 
 
 def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
-    if file.view is None:
+    if file.view is None and not file.couplings:
         return None
     from mechkin_cli.building.view import build_view
 
-    return build_view(fields, file.view, problem.mechanism)
+    return build_view(fields, file.view, file.couplings, problem.mechanism)
 
 
 def read_fields(
@@ -240,7 +245,7 @@ def build_problem(
     links, joints = build_linkage(fields, file)
     telescopes, slides = build_cylinders(fields, file.cylinders, points)
     links, joints = links | telescopes, joints | slides
-    for coupled in coupled_joints(file.couplings) & joints.keys():
+    for coupled in coupled_joints(fields, file.couplings, joints):
         joints[coupled] = counted(joints[coupled])
     cable_links, cable_joints, cables = build_cables(fields, file.couplings, joints, points)
     couplings = build_couplings(fields, file.couplings, joints, cables)

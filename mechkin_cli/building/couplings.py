@@ -16,10 +16,18 @@ from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.law_reading import Over, read_law
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
-from mechkin_cli.building.wheels import gear_relation, rack_relation
+from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
-from mechkin_cli.mechanism import CoordinateLaw, ExpressionOf, Joint, Problem, Relation, Term, dimension_of
+from mechkin_cli.mechanism import (
+    CoordinateLaw,
+    ExpressionOf,
+    Joint,
+    Problem,
+    Relation,
+    Term,
+    dimension_of,
+)
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
@@ -39,9 +47,23 @@ from mechkin_cli.tolerances import TABLE_END
 from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 
-def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
-    """Names of the joints that couplings name."""
-    return {name for section in couplings.values() for name in _joints_of(section)}
+def coupled_joints(
+    fields: Fields, couplings: Mapping[str, AnyCoupling], joints: Mapping[str, Joint]
+) -> set[str]:
+    """Names of the joints that couplings have coordinates of: those that they name, and those that
+    join the link on which a wheel turns to its carrier."""
+    named = {name for section in couplings.values() for name in _joints_of(section)}
+    found = named & joints.keys()
+    if fields.error_count:  # axes may be none
+        return found
+    for section in couplings.values():
+        wheels = [joints[name] for name in _joints_of(section) if name in joints]
+        if len(wheels) != 2 or not all(wheel.type.is_bearing for wheel in wheels):
+            continue
+        pair = on_one_carrier(wheels[0], wheels[1], joints)
+        if pair is not None:
+            found |= {name for turning in pair[1:] for name, _ in turning.way}
+    return found
 
 
 def _joints_of(section: AnyCoupling) -> Iterable[str]:

@@ -4,7 +4,7 @@ belts, screws, differentials.
 All coordinates are zero in the home drawing, so a coupling is drawn as it meshes.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import (
     Limits,
@@ -15,6 +15,15 @@ from mechkin_cli.schema.base import (
     by_word,
     each_once,
     refuse,
+)
+from mechkin_cli.schema.coupling_words import (
+    BELT_KEYS,
+    CHAIN_KEYS,
+    FUNCTION_KEYS,
+    GEAR_KEYS,
+    LINEAR_KEYS,
+    RACK_KEYS,
+    TABLE_KEYS,
 )
 from mechkin_cli.schema.motion import LAWS, Law, law_tag
 from mechkin_cli.schema.scalars import (
@@ -51,6 +60,8 @@ TwoJoints = Annotated[
 class LinearCoupling(Section):
     """The sum of some coordinates, each with its factor, is constant."""
 
+    advice: ClassVar[dict[str, str]] = LINEAR_KEYS
+
     type: Literal["linear"]
     terms: dict[Coordinate, AnyDimension]
     """Coordinates and their factors; the factor of the first is a number, those of the others
@@ -70,6 +81,8 @@ CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("Coordi
 
 class FunctionCoupling(Section):
     """A coordinate is a function of another one: a cam and its follower, a Scotch yoke."""
+
+    advice: ClassVar[dict[str, str]] = FUNCTION_KEYS
 
     type: Literal["function"]
     of: Coordinate
@@ -97,6 +110,8 @@ class FunctionCoupling(Section):
 
 class TableCoupling(JoinedTable):
     """A coordinate is a tabulated function of another one."""
+
+    advice: ClassVar[dict[str, str]] = TABLE_KEYS
 
     type: Literal["table"]
     table: CsvPath
@@ -133,6 +148,8 @@ class GearCoupling(Toothed):
     """Two wheels that mesh, on one carrier: with parallel axes; bevel wheels, whose axes meet; or
     crossed helical wheels, such as a worm and its wheel, whose axes pass each other."""
 
+    advice: ClassVar[dict[str, str]] = GEAR_KEYS
+
     type: Literal["gear"]
     joints: TwoJoints
     """The R or C joints of the two wheels, which turn on one link, the carrier; where a wheel turns
@@ -163,6 +180,8 @@ class GearCoupling(Toothed):
 class RackCoupling(Toothed):
     """A pinion that rolls on a rack."""
 
+    advice: ClassVar[dict[str, str]] = RACK_KEYS
+
     type: Literal["rack"]
     joints: TwoJoints
     """The R or C joint of the pinion and the P joint of the rack, both on one link."""
@@ -186,6 +205,8 @@ class Strands(Section):
 class BeltCoupling(Strands):
     """A belt over two pulleys that does not slip."""
 
+    advice: ClassVar[dict[str, str]] = BELT_KEYS
+
     type: Literal["belt"]
     radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)]
     """Radii of the pulleys to the middle of the belt, in the order of the joints."""
@@ -195,6 +216,8 @@ class BeltCoupling(Strands):
 
 class ChainCoupling(Strands):
     """A chain over two wheels."""
+
+    advice: ClassVar[dict[str, str]] = CHAIN_KEYS
 
     type: Literal["chain"]
     teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)]

@@ -25,6 +25,7 @@ from mechkin_cli.schema.base import (
     fields_of,
     tagged,
 )
+from mechkin_cli.schema.coupling_words import BELT, COUPLING_ADVICE, ELSEWHERE
 from mechkin_cli.schema.scalars import FORMS
 
 
@@ -273,9 +274,10 @@ def advice_for_key(section: str, key: str) -> str | None:
 
 
 def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
-    """What to do instead of a type that `loads` or `joints` do not have."""
+    """What to do instead of a type that `loads`, `joints` or `couplings` do not have."""
     joints = PLANE_JOINT_ADVICE if in_plane else JOINT_ADVICE
-    return {"loads": LOAD_ADVICE, "joints": joints}.get(section, {}).get(word.casefold())
+    tables = {"loads": LOAD_ADVICE, "joints": joints, "couplings": {**OUTSIDE, **COUPLING_ADVICE}}
+    return tables.get(section, {}).get(word.casefold())
 
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
@@ -283,18 +285,6 @@ CONTACT = (
     "mechkin has no contact: bodies that stay in touch are a joint (in a plane Ps, a pin in a "
     "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
     "where they would meet (stop:)"
-)
-RATIO = (
-    "wheels and racks are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
-    "teeth: [20, 40]}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
-)
-BELT = (
-    "belts and chains over two pulleys are couplings: couplings: {K: {type: belt, joints: [A, B], "
-    "radii: [30 mm, 50 mm]}}, or {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}"
-)
-CAM = (
-    "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "
-    "the cam's angle}"
 )
 RIGID = "links are rigid; put a spring between two of them: {type: spring, joint: A, ...}"
 CONTROL = (
@@ -372,7 +362,6 @@ LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spr
 _MISSING: Final = {
     **dict.fromkeys(("ratchet", "pawl", "escapement", "clutch", "freewheel", "bumper"), CONTACT),
     **dict.fromkeys(("rope", "ropes", "cable", "cables", "tendon", "winch", "string"), ROPE),
-    **dict.fromkeys(("roller_chain", "chains", "sprocket", "sprockets"), BELT),
     "wire": ROPE,
     **dict.fromkeys(("geneva", "maltese", "geneva_drive", "maltese_cross"), GENEVA),
     **dict.fromkeys(("curved_groove", "curved_slot", "groove_curve", "slot_curve"), GROOVE),
@@ -393,10 +382,7 @@ _MISSING: Final = {
 OUTSIDE: Final = {
     **_MISSING,
     **dict.fromkeys(("contact", "contacts", "collision", "impact", "clearance"), CONTACT),
-    **dict.fromkeys(("gear", "gears", "gearing", "rack"), RATIO),
-    **dict.fromkeys(("cam", "cams", "follower"), CAM),
-    **dict.fromkeys(("gearbox", "reducer", "worm"), RATIO),
-    **dict.fromkeys(("belt", "pulley", "pulleys", "timing_belt", "chain_drive"), BELT),
+    **ELSEWHERE,
     **dict.fromkeys(("wheel", "wheels", "tyre", "tire"), ROLLING),
     **dict.fromkeys(("cylinder", "cylinders"), CYLINDER),
     **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
@@ -456,6 +442,7 @@ TOP_KEYS: Final = {
 """Keys of the file."""
 
 JOINT_KEYS: Final = {
+    **ELSEWHERE,
     "friction": FRICTION,
     "damping": "a damper is a load: loads: [{type: damper, joint: A, coordinate: theta, ...}]",
     "stiffness": "a spring is a load: loads: [{type: spring, joint: A, coordinate: theta, ...}]",
@@ -537,6 +524,7 @@ RESPONSE_KEYS: Final = {
 """Keys of a response."""
 
 MOTION_KEYS: Final = {
+    **ELSEWHERE,
     "driven": "in the sweep they are inputs:; driven: belongs to a response",
     "efforts": "in the sweep efforts follow from the motion; as given they belong to a response",
     "start": RESPONSE,
