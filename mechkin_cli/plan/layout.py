@@ -226,10 +226,11 @@ class Layout:
         for name, relation in self.mechanism.couplings.items():
             for extent in relation.extents:
                 value = np.full(states.shape[1], float(extent.drawn))
-                for joint, coordinate, factor in extent.terms:
-                    freedom = joint.freedom_number(coordinate)
-                    state = states[self.state(self.edge_number[joint.name], freedom)]
-                    value += float(factor) * joint.unit_of(coordinate, self.length) * state
+                for term in extent.terms:
+                    freedom = term.joint.freedom_number(term.coordinate)
+                    state = states[self.state(self.edge_number[term.joint.name], freedom)]
+                    unit = term.joint.unit_of(term.coordinate, self.length)
+                    value += float(term.factor) * unit * state
                 yield name, extent, value
 
     def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
