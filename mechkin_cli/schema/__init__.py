@@ -30,8 +30,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling FunctionCoupling GearCoupling LinearCoupling RackCoupling "
-        "TableCoupling",
+        "couplings": "AnyCoupling FollowerSection FunctionCoupling GearCoupling LinearCoupling "
+        "RackCoupling TableCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
