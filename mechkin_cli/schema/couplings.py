@@ -64,7 +64,7 @@ class LinearCoupling(Section):
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
 
 
-CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("CoordinateLaw")]
+CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag)]
 
 
 class FunctionCoupling(Section):

@@ -227,6 +227,13 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
     ("FollowingInput", "with"): "2*O1.theta",
+    ("FunctionCoupling", "law"): {
+        "law": "cycloidal",
+        "from": 0,
+        "to": "20 mm",
+        "duration": "60 deg",
+    },
+    ("FunctionCoupling", "value"): "20 mm*(1 - cos(theta))",
     ("Kept", "of"): "O1.effort",
     ("Kept", "at"): "90 deg",
     ("Kept", "label"): "largest torque",
