@@ -285,6 +285,62 @@ def test_laws_of_cams_over_an_angle(name: str) -> None:
         np.testing.assert_allclose(result[f"B.{word}"], moves[order], atol=1e-13 * scale)
 
 
+SEGMENTS = """law: {law: sequence, start: 0.5, segments: [
+      {for: 60 deg, to: 20 mm, law: cycloidal}, {for: 90 deg, law: dwell},
+      {for: 120 deg, to: 0 m, law: 3-4-5}, {for: 90 deg, law: dwell}]}"""
+
+
+def cam(x: Any) -> Any:
+    """Its lift in m, over any turn."""
+    u = (x - mp.mpf("0.5")) / mp.pi * 180 % 360
+    if u < 60:
+        return mp.mpf("0.02") * RISES["cycloidal"](u / 60)
+    if u < 150:
+        return mp.mpf("0.02")
+    return mp.mpf("0.02") * (1 - RISES["3-4-5"]((u - 150) / 120)) if u < 270 else mp.mpf(0)
+
+
+def test_a_cam_whose_segments_span_a_turn_lifts_in_every_turn() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    model = mk.loads(text.replace("from: 0.1, to: 12.7", "from: -9.1, to: 12.7"))
+    assert [str(d) for d in model.diagnostics if d.code != "unused-parameter"] == []
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(-9.1, 12.7, 64)
+    moves = expected(cam, turn, (10.0, 3.0, 7.0))
+    for order, word in enumerate(("s", "s_dot", "s_ddot", "s_dddot")):
+        scale = np.abs(moves[order]).max()
+        np.testing.assert_allclose(result[f"B.{word}"], moves[order], atol=2e-13 * scale)
+    by_turn = np.array([float(mp.diff(cam, mp.mpf(x))) for x in turn])
+    effort = 0.5 * 3.0 + (2.0 * moves[2] - 5.0) * by_turn
+    np.testing.assert_allclose(result["A.effort"], effort, atol=1e-11 * np.abs(effort).max())
+    assert set(model.certify().status) == {"proven"}
+
+
+def test_what_jumps_between_the_segments_of_a_cam_is_said() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    said = [str(d) for d in mk.loads(text.replace("cycloidal", "constant-rate")).diagnostics]
+    (warning,) = (line for line in said if "warning" in line)
+    # 20 mm over 60 deg from where the sequence begins to where it dwells
+    assert "the rate of this sequence jumps at 0.5 rad, the largest of 2 such jumps" in warning
+    assert f"{0.02 / (np.pi / 3):.6g} m/rad" in warning
+
+
+def test_a_cam_that_is_left_open_is_refused() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    with pytest.raises(InvalidFile, match=r"does not end where it began: 0\.01 m"):
+        mk.loads(text.replace("to: 0 m,", "to: 10 mm,"))
+
+
+def test_a_law_as_an_expression_is_the_value() -> None:
+    law = 'law: {law: expression, value: "r*(1 - cos(A.theta))"}'
+    text = YOKE + TURNING
+    found = mk.loads(text.replace('value: "r*(1 - cos(theta))"', law)).analyze()
+    alike = mk.loads(text).analyze()
+    np.testing.assert_array_equal(found["B.s_dddot"], alike["B.s_dddot"])
+    np.testing.assert_array_equal(found["K.force"], alike["K.force"])
+
+
 def test_a_textbooks_digits_of_a_rise() -> None:
     """Cycloidal, h = 20 mm, beta = 60 deg, 5 deg behind its begin."""
     law = "law: {law: cycloidal, from: 0 m, to: 20 mm, duration: 60 deg}"
