@@ -30,8 +30,8 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
-    FollowerSection,
     ExpressionLaw,
+    FollowerSection,
     FrictionAtJoint,
     FunctionCoupling,
     GearCoupling,
@@ -238,8 +238,9 @@ def _law(
     law = read_law(fields, path, section.law, dimensions[1], over)
     if fields.error_count > errors:
         return None
-    note_bends(fields, path, section.law, dimensions[1], over)
     assert isinstance(law, PiecewiseLaw)  # no expression
+    if not law.is_recorded:  # else noted when the file was read
+        note_bends(fields, path, section.law, dimensions[1], over)
     return CoordinateLaw(law.at)
 
 

@@ -100,6 +100,11 @@ class PiecewiseLaw:
         parts = zip(self._starts.tolist(), self.pieces[1:], strict=True)
         return [start for start, piece in parts if not piece.goes_on]
 
+    @property
+    def is_recorded(self) -> bool:
+        """Whether some of its numbers are recorded ones."""
+        return any(isinstance(number, Recorded) for column in self._columns for number in column)
+
     def jumps(self) -> list[tuple[float, Floats]]:
         """Where pieces meet that are not one function, and by how much each order (4,) jumps there;
         what is rounding is 0. Of a law that repeats itself its start is such a place, too."""

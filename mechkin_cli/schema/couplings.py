@@ -83,11 +83,11 @@ class FollowerSection(Section):
     """How far right of the cam's axis the line of a translating follower passes, as it rises
     upward; of an oscillating one with a flat face, how far that lies below its pivot."""
     arm: Length | None = None
-    """Of an oscillating follower, from its pivot to the roller's centre or the edge; left out, none, of
+    """Of an oscillating follower, from its pivot to the roller or the edge; left out, none, of
     another follower."""
     distance: Length | None = None
-    """Of an oscillating follower, from the cam's axis to its pivot; left out, none, of a translating
-    one."""
+    """Of an oscillating follower, from the cam's axis to its pivot; left out, none, of a
+    translating one."""
 
     def check(self) -> None:
         """What the contact and the motion need is there, and nothing else."""
@@ -149,6 +149,13 @@ class TableCoupling(JoinedTable):
     """The coordinate of the second column."""
     follower: FollowerSection | None = None
     """The follower of a cam, for `mechkin cam`; left out, none."""
+
+    def check(self) -> None:
+        """The slope does not jump."""
+        super().check()
+        if self.interpolation == "linear":
+            text = "the slope of a linear table jumps at its points, where forces would be infinite"
+            raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
 
 
 class Toothed(Section):
