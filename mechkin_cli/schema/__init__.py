@@ -32,8 +32,9 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FunctionCoupling "
-        "GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling TableCoupling",
+        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FollowerSection "
+        "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
+        "TableCoupling",
         "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
