@@ -13,6 +13,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import *
     from mechkin_cli.schema.couplings import *
+    from mechkin_cli.schema.curves import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
     from mechkin_cli.schema.links_joints import *
@@ -32,6 +33,7 @@ __getattr__, __dir__ = lazy_names(
         "base": "fields_of section_of",
         "couplings": "AnyCoupling FunctionCoupling GearCoupling LinearCoupling RackCoupling "
         "TableCoupling",
+        "curves": "Curve Surface",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
