@@ -9,6 +9,7 @@ from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.mechanism import Joint, Limit, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
+from mechkin_cli.units import DIMENSIONLESS
 
 
 def build_limits(
@@ -53,4 +54,13 @@ def _limits(
             text = f"the limits of {name} leave it no room"
             fields.error("no-room", (*path, high), text, hint)
             continue
-        yield Limit(joint, coordinate, ends[0], ends[1], fields.document.key_place(path))
+        restitution = None
+        if isinstance(written, LimitSection) and written.restitution is not None:
+            place = (*path, "restitution")
+            restitution = fields.number(place, written.restitution, DIMENSIONLESS)
+            if not (restitution >= 0.0 and restitution <= 1.0):
+                text = "a restitution is a number from 0 to 1"
+                fields.error("no-restitution", place, text, "write the part of the rate")
+                continue
+        here = fields.document.key_place(path)
+        yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)

@@ -230,6 +230,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Cylinder", "rod"): "28 mm",
     ("Cylinder", "stroke"): ["0.6 m", "1 m"],
     ("Cylinder", "to"): "Q",
+    ("LimitSection", "restitution"): 0.6,
     ("Crossing", "value"): "O1.theta - O2.theta",
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("FollowingInput", "with"): "2*O1.theta",
