@@ -29,8 +29,10 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
+from mechkin_cli.response.impacts import ImpactAt, impact_notes, joined, touched_limit
 from mechkin_cli.response.integration import (
     Beginning,
+    Impact,
     MotionEnd,
     MotionRows,
     WatchedStop,
@@ -47,6 +49,8 @@ from mechkin_cli.sweep import (
     at_once,
     first_assembly,
     judge_condition,
+    judge_limits,
+    limited,
     lost_rates,
     rest_on_reactions,
     row_notes,
@@ -354,7 +358,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            results[number] = rows_of(variants[number], rows)
+            results[number] = _rebounding(variants[number], rows, packing)
     return [results[number] for number in range(len(variants))]
 
 
@@ -394,6 +398,41 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         straight=first.chosen.problem.assembly.straight,
         packing=packing,
     )
+
+
+def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
+    """The rows with those behind impacts at limits that have a restitution."""
+    result = rows_of(one, moved)
+    impacts: list[Impact] = []
+    while (stop := touched_limit(one.response, moved)) is not None:
+        touch = ImpactAt(result, stop)
+        rebound = touch.rebound()
+        times = one.response.moments.values[moved.report.rows :]
+        if rebound is None or not times.size or len(impacts) == tolerances.MOST_IMPACTS:
+            break
+        impacts.append(rebound.impact)
+        (later,) = integrate(
+            [(one.free.plan, rebound.begun)],
+            rebound.impact.time,
+            np.array([rebound.impact.time, *times]),
+            stops=[watched_stop(each) for each in one.response.stops],
+            driven=one.driven,
+            tolerance=one.response.tolerance,
+            fixed_step=one.response.fixed_step,
+            straight=one.chosen.problem.assembly.straight,
+            packing=packing,
+        )
+        if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
+            impacts[-1] = impacts[-1]._replace(rests=True)
+            break
+        moved = joined(moved, later, rebound.work)
+        result = rows_of(one, moved)
+    if impacts:
+        result.impacts = tuple(impacts)
+        if impacts[-1].rests and stop is not None and stop.limit is not None:
+            result.events = (*result.events[:-1], f"{stop.limit.name} rests at its limit")
+        result.row_states.diagnostics += impact_notes(result, impacts)
+    return result
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
@@ -462,8 +501,8 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
     requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]
     rows = result.row_states
     if rows.reached.any():
-        energies = [known[name] for name in ENERGIES]
-        wanted, demand = at_once(result.session, [*requested, *energies], verdicts=True)
+        judging = [*(known[name] for name in ENERGIES), *limited(result.problem)]
+        wanted, demand = at_once(result.session, [*requested, *judging], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
         ask = Ask(demand, result.session.readout(wanted) if wanted else None)
@@ -476,5 +515,6 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         judge_condition(result.session, rows, batch)
         result.keep(batch, ask)
         result.read(requested)
+        judge_limits(result)
     on_reactions = rest_on_reactions(result.problem, requested)
     rows.diagnostics += row_notes(result, requested, rests_on_reactions=on_reactions)

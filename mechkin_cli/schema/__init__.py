@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from mechkin_cli.schema.base import *
     from mechkin_cli.schema.couplings import *
     from mechkin_cli.schema.curves import *
+    from mechkin_cli.schema.cylinders import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
+    from mechkin_cli.schema.limits import *
     from mechkin_cli.schema.links_joints import *
     from mechkin_cli.schema.loads import *
     from mechkin_cli.schema.motion import *
@@ -34,8 +36,10 @@ __getattr__, __dir__ = lazy_names(
         "couplings": "AnyCoupling FunctionCoupling GearCoupling LinearCoupling RackCoupling "
         "TableCoupling",
         "curves": "Curve Surface",
+        "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
+        "limits": "LimitSection",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
         "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
         "SphereGrooveJoint SpherePlaneJoint TwoTurnJoint UniversalJoint WeldJoint",
