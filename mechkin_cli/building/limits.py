@@ -7,6 +7,7 @@ from math import inf
 
 from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.tracks import track_ends
 from mechkin_cli.mechanism import Joint, Limit, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
 from mechkin_cli.units import DIMENSIONLESS
@@ -15,8 +16,8 @@ from mechkin_cli.units import DIMENSIONLESS
 def build_limits(
     fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:` and the strokes of cylinders; errors are noted in
-    `fields`."""
+    """Where coordinates end, by `limits:`, the strokes of cylinders and the ends of curves and
+    surfaces; errors are noted in `fields`."""
     every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
         name: (("limits", name), written) for name, written in file.limits.items()
     }
@@ -29,7 +30,13 @@ def build_limits(
             fields.key_error("two-choices", ("limits", name), text, "keep one of the two")
             continue
         every[name] = ("cylinders", cylinder, "stroke"), section.stroke
-    return tuple(_limits(fields, every, joints))
+    written = {limit.name: limit for limit in _limits(fields, every, joints)}
+    for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
+        own = Limit(joint, coordinate, low, high, fields.document.key_place(path))
+        other = written.get(own.name, own)
+        ends = max(low, other.low), min(high, other.high)
+        written[own.name] = other._replace(low=ends[0], high=ends[1])
+    return tuple(written.values())
 
 
 def _limits(

@@ -20,7 +20,7 @@ from mechkin_cli.mechanism import (
     ELEMENTARY,
     ZERO,
     Curve as Spline,
-    Ends,
+    Ends as SplineEnds,
     Joint,
     Part,
     Track,
@@ -38,7 +38,7 @@ from mechkin_cli.mechanism import (
     upright,
 )
 from mechkin_cli.record import replace
-from mechkin_cli.schema import Curve, Surface
+from mechkin_cli.schema import Curve, MechanismFile, Surface
 from mechkin_cli.tape import Recorded, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
@@ -89,6 +89,33 @@ def _drawn_at(track: Track, point: Vector) -> tuple[float, ...]:
     if any(isinstance(number, Recorded) for number in numbers):
         return middle
     return track.nearest(point)
+
+
+TrackEnds = Mapping[tuple[str, str], tuple[Path, float, float]]
+
+
+def track_ends(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]) -> TrackEnds:
+    """Where curves and surfaces end, by joint and coordinate, with the place in the file."""
+    found: dict[tuple[str, str], tuple[Path, float, float]] = {}
+    for name, section in file.joints.items():
+        if name not in joints:
+            continue
+        joint = joints[name]
+        curve = getattr(section, "curve", None)
+        path: Path = ("joints", name, "surface" if curve is None else "curve")
+        if curve is not None and curve.line is not None and not fields.error_count:
+            ends = line_ends(fields, path, curve)
+            assert ends is not None
+            along = unit(subtract(ends[1], ends[0]))
+            low, high = (as_recorded(dot(subtract(e, joint.on_second.o), along)) for e in ends)
+            found[name, "s"] = path, low, high
+        for part in joint.parts:
+            if part.track is not None:
+                own = zip(part.track.names, part.track.ends, part.track.bounded, strict=True)
+                for coordinate, (low, high), bounded in own:
+                    if bounded:
+                        found[name, coordinate] = path, low, high
+    return found
 
 
 def along_line(fields: Fields, path: Path, section: Any) -> Vector:
@@ -161,17 +188,42 @@ def _circle(fields: Fields, path: Path, section: Curve, point: Vector) -> Track:
     center, axis = _round(fields, path, section, section.center, "center")
     x, drawn = _across(fields, path, center, axis, point)
     radius = _radius(fields, path, section.radius, drawn)
-    return Track(((-pi, pi),), (True,), _turning(center, x, cross(axis, x), radius))
+    numbers = _round_numbers(center, x, cross(axis, x), radius)
+    return Track(((-pi, pi),), (True,), _on_circle, numbers=numbers)
 
 
-def _turning(center: Vector, x: Vector, y: Vector, radius: float) -> Callable[[Any], list[Any]]:
-    across, along = scale(radius, x), scale(radius, y)
+def _round_numbers(center: Vector, x: Vector, y: Vector, radius: float) -> tuple[Any, ...]:
+    """The centre, and the radii across and along."""
+    return (*center, *scale(radius, x), *scale(radius, y))
 
-    def places(u: Any) -> list[Any]:
-        c, s = cos(u), sin(u)
-        return [c * across[k] + s * along[k] + center[k] for k in range(3)]
 
-    return places
+def _on_circle(*given: Any) -> list[Any]:
+    center, across, along, (u,) = given[:3], given[3:6], given[6:9], given[9:]
+    c, s = cos(u), sin(u)
+    return [c * across[k] + s * along[k] + center[k] for k in range(3)]
+
+
+def _on_cylinder(*given: Any) -> list[Any]:
+    *round_numbers, ax, ay, az, u, v = given
+    around = _on_circle(*round_numbers, u)
+    return [at + v * a for at, a in zip(around, (ax, ay, az), strict=True)]
+
+
+def _on_torus(*given: Any) -> list[Any]:
+    """Of a centre, three directions, the radius of the circle and that of the tube."""
+    center, x, y, axis = given[:3], given[3:6], given[6:9], given[9:12]
+    radius, tube, u, v = given[12:]
+    far, up = cos(v) * tube + radius, sin(v) * tube
+    across, along = far * cos(u), far * sin(u)
+    return [across * x[k] + along * y[k] + up * axis[k] + center[k] for k in range(3)]
+
+
+def _on_sphere(*given: Any) -> list[Any]:
+    """Of a centre, three directions and the radius."""
+    center, x, y, axis, (radius, u, v) = given[:3], given[3:6], given[6:9], given[9:12], given[12:]
+    far, up = cos(v) * radius, sin(v) * radius
+    across, along = far * cos(u), far * sin(u)
+    return [across * x[k] + along * y[k] + up * axis[k] + center[k] for k in range(3)]
 
 
 def _arc(fields: Fields, path: Path, section: Sequence[Any]) -> Track | None:
@@ -198,9 +250,9 @@ def _arc(fields: Fields, path: Path, section: Sequence[Any]) -> Track | None:
     y = cross(axis, x)
     last = subtract(c, center)
     end = float(functions.atan2(as_recorded(dot(last, y)), as_recorded(dot(last, x))))
-    return Track(
-        ((0.0, end if end > 0.0 else end + 2.0 * pi),), (False,), _turning(center, x, y, radius)
-    )
+    turn = end if end > 0.0 else end + 2.0 * pi
+    numbers = _round_numbers(center, x, y, radius)
+    return Track(((0.0, turn),), (False,), _on_circle, numbers=numbers)
 
 
 def _spline(fields: Fields, path: Path, section: Curve) -> Track | None:
@@ -223,7 +275,7 @@ def _spline(fields: Fields, path: Path, section: Curve) -> Track | None:
     u = [0.0]
     for chord in chords:
         u.append(u[-1] + chord)
-    ends: Ends = "periodic" if section.closed else "not-a-knot"
+    ends: SplineEnds = "periodic" if section.closed else "not-a-knot"
     knots = tuple(smooth_curve(u, list(values), ends) for values in zip(*numbers, strict=True))
     if not section.closed:
         knots = tuple(_prolonged(curve, u[-1]) for curve in knots)
@@ -359,25 +411,19 @@ def _surface(fields: Fields, path: Path, section: Surface, point: Vector) -> Tra
     y = cross(axis, x)
     radius = _radius(fields, path, section.radius, drawn)
     if section.cylinder is not None:
-        around = _turning(center, x, y, radius)
-
-        def on_cylinder(u: Any, v: Any) -> list[Any]:
-            return [at + v * axis[k] for k, at in enumerate(around(u))]
-
-        reach = 1.0e3 * radius
-        return Track(((-pi, pi), (-reach, reach)), (True, False), on_cylinder)
+        # along its axis it has no end; searches start about as far off as the drawing is
+        reach = 10.0 * as_recorded(radius + abs(dot(subtract(point, center), axis)))
+        numbers = (*_round_numbers(center, x, y, radius), *axis)
+        ends = ((-pi, pi), (-reach, reach))
+        return Track(ends, (True, False), _on_cylinder, endless=("v",), numbers=numbers)
     assert section.tube is not None
     tube = fields.number((*path, "tube"), section.tube, LENGTH)
     if not 0.0 < as_recorded(tube) < as_recorded(radius):
         text = "the tube of a torus is thinner than its circle"
         fields.error("no-torus", (*path, "tube"), text, "give a smaller positive radius")
 
-    def on_torus(u: Any, v: Any) -> list[Any]:
-        far, up = cos(v) * tube + radius, sin(v) * tube
-        across, along = far * cos(u), far * sin(u)
-        return [across * x[k] + along * y[k] + up * axis[k] + center[k] for k in range(3)]
-
-    return Track(((-pi, pi), (-pi, pi)), (True, True), on_torus)
+    numbers = (*center, *x, *y, *axis, radius, tube)
+    return Track(((-pi, pi), (-pi, pi)), (True, True), _on_torus, numbers=numbers)
 
 
 def _sphere(fields: Fields, path: Path, section: Surface, point: Vector) -> Track:
@@ -393,9 +439,7 @@ def _sphere(fields: Fields, path: Path, section: Surface, point: Vector) -> Trac
     x, _ = _across(fields, path, center, axis, point)
     y = cross(axis, x)
 
-    def on_sphere(u: Any, v: Any) -> list[Any]:
-        far, up = cos(v) * radius, sin(v) * radius
-        across, along = far * cos(u), far * sin(u)
-        return [across * x[k] + along * y[k] + up * axis[k] + center[k] for k in range(3)]
-
-    return Track(((-pi, pi), (-0.5 * pi, 0.5 * pi)), (True, False), on_sphere)
+    # beyond a pole it goes on along the other side
+    ends = ((-pi, pi), (-0.5 * pi, 0.5 * pi))
+    numbers = (*center, *x, *y, *axis, radius)
+    return Track(ends, (True, False), _on_sphere, endless=("v",), numbers=numbers)

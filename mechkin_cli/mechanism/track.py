@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 Places = Callable[..., Sequence[Any]]
-"""Coordinates x, y, z of a place (m) by parameters, which may be any kind of number."""
+"""Coordinates x, y, z of a place (m) by `Track.numbers` and parameters, of any kind of number."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,40 +29,54 @@ class Track:
     """A curve, or a surface.
 
     `places`: a formula of the parameters, or `knots`: of a curve, the three coordinates over u.
-    `ends`: of each parameter; `closed`: whether it comes back to its begin there, so that the ends
-    bound nothing.
+    `ends`: of each parameter; `closed`: whether it comes back to its begin there. These ends bound
+    nothing, nor do those of `endless` parameters, which only say where searches start. `numbers`
+    are those of the drawing that a formula takes before its parameters: what is computed must not
+    depend on their values, such as zeros.
     """
 
     ends: tuple[tuple[float, float], ...]
     closed: tuple[bool, ...]
     places: Places | None = None
     knots: tuple[Curve, ...] = ()
+    endless: tuple[str, ...] = ()
+    numbers: tuple[Any, ...] = ()
+
+    @property
+    def bounded(self) -> tuple[bool, ...]:
+        """Of each parameter, whether nothing is beyond its ends."""
+        pairs = zip(self.names, self.closed, strict=True)
+        return tuple(not closed and name not in self.endless for name, closed in pairs)
 
     @property
     def names(self) -> tuple[str, ...]:
         """The parameters: `("u",)` or `("u", "v")`."""
         return ("u", "v")[: len(self.ends)]
 
-    def jets(self, at: Sequence[Any], along: Sequence[float]) -> list[Sequence[Any]]:
+    def jets(
+        self, at: Sequence[Any], along: Sequence[float], numbers: Sequence[Any]
+    ) -> list[Sequence[Any]]:
         """Value and three derivatives of the coordinates x, y, z, along a line of parameters."""
         if self.knots:
             return self._of_knots(at[0])
         assert self.places is not None
         moving = [JetNumber([x, a, 0.0, 0.0]) for x, a in zip(at, along, strict=True)]
-        return [orders_of(coordinate) for coordinate in self.places(*moving)]
+        return [orders_of(coordinate) for coordinate in self.places(*numbers, *moving)]
 
     def _of_knots(self, at: Any) -> list[Sequence[Any]]:
         u = np.asarray(self.wrapped((at,))[0], dtype=np.float64).reshape(1)
         return [[float(x) for x in curve.evaluate(u)[:, 0]] for curve in self.knots]
 
-    def orders(self, at: Sequence[Any]) -> tuple[list[Any], ...]:
+    def orders(
+        self, at: Sequence[Any], numbers: Sequence[Any] | None = None
+    ) -> tuple[list[Any], ...]:
         """The place, then its first, second and third derivatives: x, y, z by u; or by u, v; uu,
-        uv, vv; uuu, uuv, uvv, vvv."""
+        uv, vv; uuu, uuv, uvv, vvv. `numbers` take the place of its own."""
+        numbers = self.numbers if numbers is None else numbers
         if len(self.ends) == 1:
-            return _derivatives_of_one(self.jets(at, (1.0,)))
-        return _derivatives_of_two(
-            [self.jets(at, along) for along in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0))]
-        )
+            return _derivatives_of_one(self.jets(at, (1.0,), numbers))
+        lines = ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0))
+        return _derivatives_of_two([self.jets(at, along, numbers) for along in lines])
 
     def place(self, at: Sequence[float]) -> Vector:
         """Where parameters lead."""
@@ -85,9 +99,9 @@ class Track:
         """Which columns of parameters (parameters, rows) lie between the ends that bound them, as
         far as rounding leaves it open."""
         inside = np.ones(at.shape[1], dtype=bool)
-        for x, (low, high), closed in zip(at, self.ends, self.closed, strict=True):
+        for x, (low, high), bounded in zip(at, self.ends, self.bounded, strict=True):
             slack = TABLE_END * (high - low)
-            inside &= closed | ((x >= low - slack) & (x <= high + slack))
+            inside &= (not bounded) | ((x >= low - slack) & (x <= high + slack))
         return inside
 
     def places_at(self, at: Floats) -> list[Floats]:
@@ -97,7 +111,7 @@ class Track:
             return [curve.evaluate(u)[0] for curve in self.knots]
         assert self.places is not None
         with np.errstate(all="ignore"):
-            jets = self.places(*(JetNumber([x, 0.0, 0.0, 0.0]) for x in at))
+            jets = self.places(*self.numbers, *(JetNumber([x, 0.0, 0.0, 0.0]) for x in at))
         rows = at.shape[1]
         return [np.broadcast_to(as_recorded(orders_of(jet)[0]), (rows,)) for jet in jets]
 
@@ -111,8 +125,10 @@ class Track:
         for _ in range(_STEPS):
             step = self._towards(at, point)
             moved = tuple(
-                x + dx if closed else min(max(x + dx, low), high)
-                for x, dx, (low, high), closed in zip(at, step, self.ends, self.closed, strict=True)
+                min(max(x + dx, low), high) if bounded else x + dx
+                for x, dx, (low, high), bounded in zip(
+                    at, step, self.ends, self.bounded, strict=True
+                )
             )
             now = _square(subtract(self.place(moved), point))
             if not now < least:

@@ -161,7 +161,8 @@ def track_record(track: Track, origin: Vector) -> PlanRecord:
     if track.knots:
         return _knots_record(track, origin)
     recorder = RowRecorder(count)
-    orders = track.orders([recorder.number(k) for k in range(count)])
+    numbers = [recorder.number(register(recorder, number)) for number in track.numbers]
+    orders = track.orders([recorder.number(k) for k in range(count)], numbers)
     values = [[a - b for a, b in zip(orders[0], origin, strict=True)], *orders[1:]]
     return _of_orders(count, [], recorder, values)
 
