@@ -7,15 +7,17 @@ from math import inf
 
 from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.tracks import track_ends
 from mechkin_cli.mechanism import Joint, Limit, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
+from mechkin_cli.units import DIMENSIONLESS
 
 
 def build_limits(
     fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:` and the strokes of cylinders; errors are noted in
-    `fields`."""
+    """Where coordinates end, by `limits:`, the strokes of cylinders and the ends of curves and
+    surfaces; errors are noted in `fields`."""
     every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
         name: (("limits", name), written) for name, written in file.limits.items()
     }
@@ -28,7 +30,13 @@ def build_limits(
             fields.key_error("two-choices", ("limits", name), text, "keep one of the two")
             continue
         every[name] = ("cylinders", cylinder, "stroke"), section.stroke
-    return tuple(_limits(fields, every, joints))
+    written = {limit.name: limit for limit in _limits(fields, every, joints)}
+    for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
+        own = Limit(joint, coordinate, low, high, fields.document.key_place(path))
+        other = written.get(own.name, own)
+        ends = max(low, other.low), min(high, other.high)
+        written[own.name] = other._replace(low=ends[0], high=ends[1])
+    return tuple(written.values())
 
 
 def _limits(
@@ -53,4 +61,13 @@ def _limits(
             text = f"the limits of {name} leave it no room"
             fields.error("no-room", (*path, high), text, hint)
             continue
-        yield Limit(joint, coordinate, ends[0], ends[1], fields.document.key_place(path))
+        restitution = None
+        if isinstance(written, LimitSection) and written.restitution is not None:
+            place = (*path, "restitution")
+            restitution = fields.number(place, written.restitution, DIMENSIONLESS)
+            if not (restitution >= 0.0 and restitution <= 1.0):
+                text = "a restitution is a number from 0 to 1"
+                fields.error("no-restitution", place, text, "write the part of the rate")
+                continue
+        here = fields.document.key_place(path)
+        yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)

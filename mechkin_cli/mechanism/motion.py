@@ -68,13 +68,15 @@ class Moments(NamedTuple):
 
 class Limit(NamedTuple):
     """Where a coordinate ends (rad, m): its least and its largest value, infinite where there is
-    none; `place` in the file."""
+    none; `place` in the file. A response rebounds there by the `restitution`, where there is one,
+    else it ends."""
 
     joint: str
     coordinate: str
     low: float
     high: float
     place: Place
+    restitution: float | None = None
 
     @property
     def name(self) -> str:

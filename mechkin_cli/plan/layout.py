@@ -37,7 +37,7 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation
+    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation, Track
     from mechkin_cli.show import Bools, Floats
 
 
@@ -215,6 +215,12 @@ class Layout:
         return sum(c.part.type.states for c in self.carriers)
 
     @cached_property
+    def carried(self) -> tuple[tuple[int, Track], ...]:
+        """The kernel joints that go along a curve or over a surface, with that."""
+        tracks = ((k, carrier.part.track) for k, carrier in enumerate(self.carriers))
+        return tuple((k, track) for k, track in tracks if track is not None)
+
+    @cached_property
     def functions(self) -> tuple[CoordinateLaw, ...]:
         """The functions of the plan, in order."""
         relations = self.mechanism.couplings.values()
@@ -313,6 +319,9 @@ def coordinate_axis(joint: Joint, coordinate: str) -> tuple[bool, Attached, Atta
     z1 . z2.
     """
     known = joint.type.coordinate[coordinate]
+    if joint.type.chain[known.freedom].motion == "carriage":
+        # the kernel knows the slope of the course
+        return False, Attached(joint.second, ZERO), Attached(joint.second, ZERO)
     if known.axis is not None:
         return not known.is_angle, joint.drawn(known.axis), Attached(joint.second, ZERO)
     axes = Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)
@@ -331,6 +340,8 @@ def home_state(layout: Layout) -> Floats:
     for carrier in layout.carriers:
         if carrier.part.type.is_ball:
             state[carrier.state] = 1.0
+        elif carrier.part.track is not None:
+            state[carrier.state : carrier.state + len(carrier.part.at)] = carrier.part.at
         elif carrier.part.drawn != 0.0:
             state[carrier.state] = carrier.part.drawn / layout.length
     return state
