@@ -27,7 +27,7 @@ __getattr__, __dir__ = lazy_names(
         "dead_centre": "lost_rates",
         "following": "follow_rows",
         "friction": "unfounded_in_motion",
-        "limits": "beyond judge_limits limited",
+        "limits": "judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
         "rows": "SweepRows has_turns",
