@@ -224,7 +224,7 @@ class _SweepRun:
         length = resolve.reading.variation.layout.length
         for wanted, limit in limited(self.problem).items():
             values = np.asarray(resolve(wanted.name).value).reshape(codes.shape)
-            codes[(np.abs(beyond(limit, values, length)) > 0.0) & has_forces(codes)] = int(
+            codes[(np.abs(limit.beyond(values, length)) > 0.0) & has_forces(codes)] = int(
                 Status.beyond_limit
             )
 
