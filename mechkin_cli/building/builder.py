@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
 from mechkin_cli.assembly import is_home_singular
-from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
+from mechkin_cli.building.couplings import (
+    build_couplings,
+    coupled_joints,
+    refuse_friction,
+    refuse_tied_friction,
+)
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -38,7 +43,7 @@ from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
     build_tables,
-    quantities_of,
+    problem_of,
     runs_of,
     used_quantities,
 )
@@ -263,6 +268,7 @@ def build_problem(
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
+    refuse_tied_friction(fields, file.loads, problem)
     if not (file.responses and responses):
         return problem
     from mechkin_cli.building.responses import build_responses
@@ -394,7 +400,7 @@ def _define(fields: Fields, name: str, expression: Expression) -> None:
 def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> None:
     """Notes the error of a quantity that has one in every run of the file, at its place;
     expressions that use it get no message of their own."""
-    samples = [ColumnSample(fields, quantities_of(problem, run), run) for run in runs_of(file)]
+    samples = [ColumnSample(fields, problem_of(problem, run), run) for run in runs_of(file)]
     values: list[dict[str, Quantity]] = [{} for _ in samples]
     for name in fields.definitions.named:
         expression = parse(file.quantities[name])

@@ -6,7 +6,7 @@ What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `be
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 
 import numpy as np
@@ -17,7 +17,7 @@ from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, rea
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
-from mechkin_cli.mechanism import CoordinateLaw, Joint, Relation, Term, dimension_of
+from mechkin_cli.mechanism import CoordinateLaw, Joint, Problem, Relation, Term, dimension_of
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
@@ -106,6 +106,16 @@ def refuse_friction(
             text = "with friction in joints the force that pushes wheels apart is not computed"
             hint = "leave out pressure_angle, or the friction"
             fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)
+
+
+def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Problem) -> None:
+    """Notes friction at inputs that are tied: it depends on what transmits the tie, which is not
+    said."""
+    for i, load in enumerate(loads):
+        if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
+            text = f"{problem.tied[load.joint]}, and how that loads {load.joint} is not said"
+            hint = "write the tie as a coupling, or leave out the friction"
+            fields.error("rubbing", ("loads", i), text, hint)
 
 
 def _linear(

@@ -470,6 +470,9 @@ def response_graph(
     except UnsolvableGraph as error:
         if error.missing:
             return _too_few(response, error)._replace(place=place)
+        for extra in reversed(response.independent):
+            if _is_solvable(mechanism, [one for one in driven if one != extra]):
+                return _too_many(response, extra)._replace(place=place)
         return error.diagnostic._replace(place=place)
     if not is_redundant(graph) and response.independent:
         return graph
@@ -485,6 +488,14 @@ def response_graph(
         if moving and not any(moving):
             return _too_many(response, extra)._replace(place=place)
     return graph
+
+
+def _is_solvable(mechanism: Mechanism, driven: Sequence[tuple[str, str]]) -> bool:
+    try:
+        solver_graph(mechanism, driven)
+    except UnsolvableGraph:
+        return False
+    return True
 
 
 def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:

@@ -23,6 +23,7 @@ from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import (
     Clusters,
     Within,
+    counted_turns,
     first_of_each,
     most_turn,
     pose_keys,
@@ -466,7 +467,12 @@ def _closed(
     keep = batch.good & (batch.condition < tolerances.SEARCH_CONDITION)
     states = batch.states[:, keep]
     _wrap_angles(layout, states)
-    chosen = first_of_each(pose_keys(layout, states))
+    # of the same pose the one next to the drawing
+    turned = np.zeros(states.shape[1])
+    for number in counted_turns(layout):
+        turned = turned + np.abs(states[number])
+    ahead = np.argsort(turned, kind="stable")
+    chosen = np.sort(ahead[first_of_each(pose_keys(layout, states[:, ahead]))])
     return states[:, chosen], batch.residual[keep][chosen], batch.condition[keep][chosen]
 
 
