@@ -13,25 +13,38 @@ import numpy as np
 
 from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.law_reading import Over, read_law
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
-from mechkin_cli.mechanism import CoordinateLaw, Joint, Problem, Relation, Term, dimension_of
+from mechkin_cli.mechanism import (
+    CoordinateLaw,
+    ExpressionOf,
+    Follower,
+    Joint,
+    Problem,
+    Relation,
+    Term,
+    dimension_of,
+)
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
+    FollowerSection,
     FrictionAtJoint,
     FunctionCoupling,
     GearCoupling,
+    JoinedTable,
     LinearCoupling,
     RackCoupling,
     ScrewCoupling,
     TableCoupling,
+    TableLaw,
 )
 from mechkin_cli.tape import is_traced, plain
 from mechkin_cli.tolerances import TABLE_END
-from mechkin_cli.units import ANGLE, LENGTH
+from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 
 def coupled_joints(
@@ -167,33 +180,111 @@ def _followed(
         hint = "name a coordinate of another joint"
         fields.error("one-freedom", (*path, "gives"), text, hint)
         return None
-    law = (
-        _expression_law(fields, path, section)
-        if isinstance(section, FunctionCoupling)
-        else _table_law(fields, path, section)
-    )
+    dimensions = dimension_of(coordinate), dimension_of(follows)
+    law = _law(fields, path, section, dimensions)
     if law is None:
         return None
     terms = (Term(second, follows, 1.0), Term(first, coordinate, -1.0, law))
-    return Relation(terms, dimension_of(follows) == LENGTH)
+    follower = None
+    if section.follower is not None:
+        follower = _follower(fields, (*path, "follower"), section.follower, dimensions)
+    return Relation(terms, dimensions[1] == LENGTH, follower=follower)
 
 
-def _expression_law(fields: Fields, path: Path, section: FunctionCoupling) -> CoordinateLaw | None:
-    path, argument = (*path, "value"), section.of
-    try:
-        expression = fields.definitions.parse(section.value)
-        law = CoordinateLaw(
-            argument, dimension_of(argument.rpartition(".")[2]), expression, fields.parameters
+def _follower(
+    fields: Fields, path: Path, section: FollowerSection, dimensions: tuple[Dimension, Dimension]
+) -> Follower | None:
+    """The follower of a cam; None where errors are noted."""
+    errors = fields.error_count
+    swings = section.type == "oscillating"
+    for is_right, text, hint in (
+        (dimensions[0] == ANGLE, "a cam turns, this one slides", "leave out follower"),
+        (
+            (dimensions[1] == ANGLE) == swings,
+            f"a {section.type} follower has {'an angle' if swings else 'a length'} as coordinate",
+            f"write type: {'translating' if swings else 'oscillating'}",
+        ),
+    ):
+        if not is_right:
+            fields.error("follower", path, text, hint)
+            return None
+    base, offset = (
+        fields.number((*path, key), text, LENGTH)
+        for key, text in (("base_radius", section.base_radius), ("offset", section.offset))
+    )
+    radius, arm, distance = (
+        0.0 if text is None else fields.number((*path, key), text, LENGTH)
+        for key, text in (
+            ("radius", section.radius),
+            ("arm", section.arm),
+            ("distance", section.distance),
         )
-        dimension, sample = dimension_of(section.gives.rpartition(".")[2]), np.ones(1)
-        scalar(expression.in_doubles, dimension, fields.units, _sampled(law.resolve(sample)))
+    )
+    if fields.error_count > errors:
+        return None
+    for key, value in (("base_radius", base), ("radius", radius), ("arm", arm)):
+        if getattr(section, key) is not None and not value > 0.0:
+            text, hint = f"{key} is positive", f"write a positive {key}"
+            measured = fields.units.text(value, LENGTH)
+            fields.error("follower", (*path, key), text, hint, measured=measured)
+            return None
+    if not _reaches(section, base + radius, offset, arm, distance):
+        text = "the follower does not reach the base circle"
+        hint = "change offset" if not swings else "change arm or distance"
+        fields.error("follower", path, text, hint)
+        return None
+    return Follower(swings, section.contact, base, radius, offset, arm, distance)
+
+
+def _reaches(
+    section: FollowerSection, prime: float, offset: float, arm: float, distance: float
+) -> bool:
+    """Whether the follower can touch the base circle, with the centre of its roller or its edge on
+    a circle of radius `prime`."""
+    if section.type == "translating":
+        return section.contact == "flat" or abs(offset) < prime
+    if section.contact == "flat":
+        return abs(prime + offset) < distance
+    return abs(distance - arm) < prime < distance + arm
+
+
+def _law(
+    fields: Fields,
+    path: Path,
+    section: FunctionCoupling | TableCoupling,
+    dimensions: tuple[Dimension, Dimension],
+) -> CoordinateLaw | None:
+    """How the second coordinate follows the first, of these dimensions; None where errors are
+    noted."""
+    if isinstance(section, TableCoupling):
+        return _by_table(fields, (*path, "table"), section.table, section, dimensions)
+    if section.value is not None:
+        return _by_expression(fields, (*path, "value"), section.of, section.value, dimensions)
+    assert section.law is not None
+    path = (*path, "law")
+    if isinstance(section.law, TableLaw):
+        return _by_table(fields, (*path, "file"), section.law.file, section.law, dimensions)
+    errors = fields.error_count
+    over = Over(dimensions[0], 0.0, None, in_si=True)
+    law = read_law(fields, path, section.law, dimensions[1], over)
+    return None if fields.error_count > errors else CoordinateLaw(law.at)
+
+
+def _by_expression(
+    fields: Fields, path: Path, argument: str, text: str, dimensions: tuple[Dimension, Dimension]
+) -> CoordinateLaw | None:
+    try:
+        expression = fields.definitions.parse(text)
+        of = ExpressionOf(expression, argument, dimensions[0], fields.parameters)
+        sample = _sampled(of.resolve(np.ones(1)))
+        scalar(expression.in_doubles, dimensions[1], fields.units, sample)
         if not expression.names - fields.parameters.keys():
             hint = f"write an expression of {argument}"
             raise ExpressionError("this value never changes", 0, hint)
     except ExpressionError as error:
         fields.expression_error(path, error)
         return None
-    return law
+    return CoordinateLaw(of)
 
 
 def _sampled(resolve: Resolve) -> Resolve:
@@ -206,10 +297,14 @@ def _sampled(resolve: Resolve) -> Resolve:
     return quantity
 
 
-def _table_law(fields: Fields, path: Path, section: TableCoupling) -> CoordinateLaw | None:
-    path = (*path, "table")
-    dimensions = [dimension_of(name.rpartition(".")[2]) for name in (section.over, section.gives)]
-    rows = read_rows(fields, path, section.table, *dimensions)
+def _by_table(
+    fields: Fields,
+    path: Path,
+    file: str,
+    joined: JoinedTable,
+    dimensions: tuple[Dimension, Dimension],
+) -> CoordinateLaw | None:
+    rows = read_rows(fields, path, file, *dimensions)
     if rows is None:
         return None
     x, y = (
@@ -219,14 +314,14 @@ def _table_law(fields: Fields, path: Path, section: TableCoupling) -> Coordinate
     span = x[-1] - x[0]
     turns = dimensions[0] == ANGLE and abs(span - 2.0 * pi) <= TABLE_END * span
     repeats = turns and rows[1][0] == rows[1][-1]
-    interpolation, ends = joining_of(section)
-    if repeats and section.ends is None:
+    interpolation, ends = joining_of(joined)
+    if repeats and joined.ends is None:
         ends = "periodic"
     curve = join(fields, path, x, y, interpolation, ends)
     if curve is None:
         return None
-    note_overshoot(fields, path, curve, (dimensions[0], dimensions[1]))
-    return CoordinateLaw(section.over, dimensions[0], curve=curve, period=span if repeats else 0.0)
+    note_overshoot(fields, path, curve, dimensions)
+    return CoordinateLaw(curve=curve, period=span if repeats else 0.0)
 
 
 def _freedom(term: Term) -> int:

@@ -34,7 +34,7 @@ from mechkin_cli.schema import (
     Rise345,
     Rise4567,
 )
-from mechkin_cli.tape import Recorded, TraceLost, as_recorded, cos, is_traced, sin
+from mechkin_cli.tape import JetNumber, Recorded, TraceLost, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import COURSE_SAME
 
 if TYPE_CHECKING:
@@ -142,6 +142,20 @@ class PiecewiseLaw:
         # + 0 makes zeros of either sign one
         return np.stack([np.broadcast_to(order, x.shape) for order in found]) + 0.0
 
+    def at(self, x: JetNumber) -> Any:
+        """The value at x, a number with its derivatives, in whichever piece it lies: those of all
+        pieces, of which one is chosen."""
+        if self.period is not None:
+            start, period = x.beside(self.pieces[1].start), x.beside(self.period)
+            x = x - period * ((x - start) / period - 0.5).apply("WHOLE")
+        near = COURSE_SAME * float(self._starts[-1] - self._starts[0]) if self._starts.size else 0.0
+        found = _of_piece(self.pieces[0], x)
+        for piece in self.pieces[1:]:
+            begin = x.beside(piece.start)
+            begun = x >= begin - near if piece.moves else x > begin + near
+            found = begun.choose(_of_piece(piece, x), found)
+        return found
+
     def recorded(self, rows: ExactRows, x: Any, at: Floats) -> Orders:
         """As `orders`, of a recorded number x of the rows; doubles `at` (rows,) tell its pieces."""
         turns = self._turns(at)
@@ -207,6 +221,21 @@ class PiecewiseLaw:
             found.append(total)
             used += 1 + size
         return found
+
+
+def _of_piece(piece: Piece, x: JetNumber) -> Any:
+    """The value of one piece at x."""
+    anchor = x.beside(piece.anchor)
+    if not piece.moves:
+        return anchor
+    w = (x - x.beside(piece.origin)) / x.beside(piece.length) - x.beside(piece.shift)
+    *lower, total = map(x.beside, piece.polynomials[0] or (0.0,))
+    for coefficient in lower[::-1]:
+        total = total * w + coefficient
+    if not _is_zero(piece.turns):
+        sine, _ = _half_turns(x.beside(piece.turns) * w + x.beside(piece.phase))
+        total = total + x.beside(piece.waves[0]) * sine
+    return anchor + total
 
 
 def _is_zero(number: Any) -> bool:

@@ -42,9 +42,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint InputConstraint Mesh PairConstraint Relation "
-        "Tension Term",
-        "curve": "CoordinateLaw Curve Ends Interpolation LoadLaw joined_curve",
+        "constraint": "Constraint DistanceConstraint Follower InputConstraint Mesh "
+        "PairConstraint Relation Tension Term",
+        "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation LoadLaw joined_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",

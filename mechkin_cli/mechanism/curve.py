@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from mechkin_cli.diagnostics import Place
-from mechkin_cli.expressions import Expression, Quantity, UnknownName
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.tape import JetNumber, of_numbers, orders_of, plain
 from mechkin_cli.tolerances import TABLE_END
 from mechkin_cli.units import Dimension
@@ -270,33 +270,45 @@ def _at_end(h0: float, h1: float, rise0: float, rise1: float) -> float:
     return slope
 
 
-@dataclass(frozen=True, eq=False)
-class CoordinateLaw:
-    """A number as a function of a coordinate, both in SI: an `expression` of it, or a `curve` over
-    it, which repeats itself with a `period` unless that is 0.
+@dataclass(frozen=True)
+class ExpressionOf:
+    """An expression as a function of the coordinate `argument` in SI, which it calls by its name,
+    such as `A.theta`, or by the last word of that."""
 
-    An expression calls the coordinate by its name, such as `A.theta`, or by the last word of that.
-    """
-
+    expression: Expression
     argument: str
     dimension: Dimension
-    expression: Expression | None = None
-    parameters: Mapping[str, Quantity] = field(default_factory=dict)
-    curve: Curve | None = None
-    period: float = 0.0
+    parameters: Mapping[str, Quantity]
+
+    def __call__(self, value: Any) -> Any:
+        """The expression in SI where the coordinate is a value of any kind."""
+        return self.expression.evaluate(self.resolve(value)).value
 
     def resolve(self, value: Any) -> Callable[[str], Quantity]:
-        """What the names in the expression are where the coordinate is a value (of any kind)."""
+        """What the names in the expression are there."""
         words = (self.argument, self.argument.rpartition(".")[2])
 
         def quantity(name: str) -> Quantity:
             if name == self.argument or (name in words and name not in self.parameters):
                 return Quantity(value, self.dimension)
             if name in self.parameters:
-                return self.parameters[name]
+                parameter = self.parameters[name]
+                if not isinstance(value, JetNumber) or isinstance(parameter.value, Vector):
+                    return parameter
+                return replace(parameter, value=value.beside(parameter.value))
             raise UnknownName(name, [*words, *self.parameters])
 
         return quantity
+
+
+@dataclass(frozen=True, eq=False)
+class CoordinateLaw:
+    """A number as a function of a coordinate, both in SI: of `value`, which takes numbers of any
+    kind, or by a `curve`, which repeats itself with a `period` unless that is 0."""
+
+    value: Callable[[Any], Any] | None = None
+    curve: Curve | None = None
+    period: float = 0.0
 
     def orders(self, at: Floats) -> Floats:
         """Value and first three derivatives at places (rows,), shape (4, rows); nan outside of a
@@ -308,10 +320,10 @@ class CoordinateLaw:
             slack = TABLE_END * (last - first)
             inside = (at >= first - slack) & (at <= last + slack)
             return np.where(inside, self.curve.evaluate(np.clip(at, first, last)), np.nan)
-        assert self.expression is not None
+        assert self.value is not None
         with np.errstate(all="ignore"):
-            found = self.expression.evaluate(self.resolve(JetNumber([at, 1.0, 0.0, 0.0])))
-        return np.stack([np.broadcast_to(order, at.shape) for order in orders_of(found.value)])
+            found = orders_of(self.value(JetNumber([at, 1.0, 0.0, 0.0])))
+        return np.stack([np.broadcast_to(order, at.shape) for order in found])
 
 
 class LoadLaw(NamedTuple):

@@ -149,9 +149,8 @@ def function_record(law: CoordinateLaw) -> PlanRecord:
     if law.curve is not None:
         orders: Sequence[Any] = [number(1 + order) for order in ORDERS]
     else:
-        assert law.expression is not None
-        moving = JetNumber([number(0), 1.0, 0.0, 0.0])
-        orders = orders_of(law.expression.evaluate(law.resolve(moving)).value)
+        assert law.value is not None
+        orders = orders_of(law.value(JetNumber([number(0), 1.0, 0.0, 0.0])))
     outputs = [register(recorder, order) for order in orders]
     parts = recorder.listed_in_turn([outputs[: order + 1] for order in ORDERS])
     ends = [order + 1 for order in ORDERS]

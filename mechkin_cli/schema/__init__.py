@@ -30,8 +30,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling BeltCoupling ChainCoupling FunctionCoupling GearCoupling "
-        "LinearCoupling RackCoupling ScrewCoupling TableCoupling",
+        "couplings": "AnyCoupling BeltCoupling ChainCoupling FollowerSection FunctionCoupling "
+        "GearCoupling LinearCoupling RackCoupling ScrewCoupling TableCoupling",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "

@@ -102,11 +102,12 @@ class RowRecorder(Recorder):
         """The program of registers, of which a part after the other is asked for, each with those
         before: constants, operations, operands, how many operations each part needs, and the
         numbers of the last part's registers."""
-        needed: list[int] = []
+        found: dict[int, None] = {}
         counts = []
         for part in outputs:
-            needed += [r for r in self._needed(part) if r not in needed]
-            counts.append(sum(r in self._written for r in needed))
+            found |= dict.fromkeys(r for r in self._needed(part) if r not in found)
+            counts.append(sum(r in self._written for r in found))
+        needed = list(found)
         constants = [r for r in needed if r in self.constants]
         leaves = [*range(len(self.inputs)), *constants]
         operations, operands, number = self._renumbered(leaves, needed)
@@ -143,6 +144,15 @@ class JetNumber(Recorded):
 
     def __init__(self, orders: Sequence[Any]) -> None:
         self.orders = tuple(orders)
+
+    def beside(self, constant: Any) -> Any:
+        """A number that does not move, on the recording of this one if there is one: what is
+        computed with it is then recorded alike whatever it is, also zero."""
+        value = self.orders[0]
+        if not isinstance(value, RowNumber):
+            return constant
+        recorder: Any = value.recorder
+        return JetNumber([recorder.number(recorder.constant(constant)), 0.0, 0.0, 0.0])
 
     def compared(self, relation: Callable[[Any, Any], Any], other: Any) -> JetCondition:
         """Whether a relation holds of the values."""
@@ -225,8 +235,12 @@ def _over(one: JetNumber, other: JetNumber) -> JetNumber:
 
 
 def _chosen(condition: Any, a: Any, b: Any) -> Any:
+    if _is_zero(a) and _is_zero(b):
+        return a
+    if isinstance(condition, np.ndarray):
+        return np.where(condition, a, b)
     if isinstance(condition, Undecided):
-        return a if _is_zero(a) and _is_zero(b) else condition.choose(a, b)
+        return condition.choose(a, b)
     return a if condition else b
 
 

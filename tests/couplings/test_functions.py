@@ -252,3 +252,62 @@ def test_what_is_wrong_is_told_at_its_place(before: str, after: str, words: str)
     assert len(errors) == 1
     assert words in str(errors[0])
     assert errors[0].place is not None
+
+
+RISES = {
+    "harmonic": lambda u: (1 - mp.cos(mp.pi * u)) / 2,
+    "cycloidal": lambda u: u - mp.sin(2 * mp.pi * u) / (2 * mp.pi),
+    "3-4-5": lambda u: 10 * u**3 - 15 * u**4 + 6 * u**5,
+    "4-5-6-7": lambda u: 35 * u**4 - 84 * u**5 + 70 * u**6 - 20 * u**7,
+}
+
+
+@pytest.mark.parametrize("name", RISES)
+def test_laws_of_cams_over_an_angle(name: str) -> None:
+    """Rest before and after; a rise of 20 mm over 60 deg, with the rates of the cam's."""
+    law = f"law: {{law: {name}, from: 0 m, to: 20 mm, start: 30 deg, duration: 60 deg}}"
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', law)
+    text = text.replace("from: 0.1, to: 12.7", "from: -1.3, to: 3.25")
+    result = mk.loads(text).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(-1.3, 3.25, 64)
+
+    def rise(x: Any) -> Any:
+        u = (x - mp.pi / 6) / (mp.pi / 3)
+        return mp.mpf("0.02") * RISES[name](u)
+
+    rising = (turn > np.pi / 6) & (turn < np.pi / 2)
+    moves = np.zeros((4, 64))
+    moves[:, rising] = expected(rise, turn[rising], (10.0, 3.0, 7.0))
+    moves[0, turn > np.pi / 2] = 0.02
+    for order, word in enumerate(("s", "s_dot", "s_ddot", "s_dddot")):
+        scale = np.abs(moves[order]).max()
+        np.testing.assert_allclose(result[f"B.{word}"], moves[order], atol=1e-13 * scale)
+
+
+def test_a_textbooks_digits_of_a_rise() -> None:
+    """Cycloidal, h = 20 mm, beta = 60 deg, 5 deg behind its begin."""
+    law = "law: {law: cycloidal, from: 0 m, to: 20 mm, duration: 60 deg}"
+    text = YOKE.replace('value: "r*(1 - cos(theta))"', law)
+    motion = "motion: {inputs: {A.theta: {at: 5 deg, rate: 1 rad/s}}}"
+    result = mk.loads(text + motion).analyze()
+    found = [1000.0 * float(result[f"B.{word}"][0]) for word in ("s", "s_dot", "s_ddot")]
+    np.testing.assert_allclose(found, [0.0751172, 2.558726, 57.2957795], rtol=1e-6)
+
+
+def test_a_law_is_recorded_alike_whatever_its_numbers_are() -> None:
+    """Proofs and variants record anew what was built with a zero."""
+    laws = (
+        'value: "lift + r*(1 - cos(theta))"',
+        "law: {law: cycloidal, from: lift, to: 0.3 m, start: 0, duration: 2}",
+        "law: {law: polynomial, coefficients: [lift, 0 m/rad, 1 m/rad^2]}",
+    )
+    for law in laws:
+        text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', law)
+        model = mk.loads(text.replace("{r: 0.2 m}", "{r: 0.2 m, lift: 0 m}"))
+        assert set(model.certify().status) == {"proven"}
+        table = model.vary({"lift": ["0 m", "0.1 m"]}, ["B.s", "B.s_ddot"])
+        for number, lift in enumerate(("0 m", "0.1 m")):
+            alone = model.with_parameters({"lift": lift}).analyze()
+            np.testing.assert_array_equal(table["B.s"][number], alone["B.s"])
+            np.testing.assert_array_equal(table["B.s_ddot"][number], alone["B.s_ddot"])
