@@ -17,11 +17,12 @@ from math import frexp, sqrt
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism import CellKind
+from mechkin_cli.mechanism import CellKind, Course
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import CONDITIONS, Operation, Tape, compiled
 from mechkin_cli.tolerances import (
+    COURSE_JUMP,
     COURSE_REST,
     COURSE_SAME,
     COURSE_SAMPLES,
@@ -146,6 +147,31 @@ def cells_of(formula: Formula, at: Floats) -> Cells:
         np.array([cell.ways for cell, _, _ in found]).reshape(len(found), -1),
         np.array([powers for _, _, powers in found], dtype=np.int64),
     )
+
+
+def jumps_of(course: Course) -> Floats:
+    """By how much the inputs and their rates by the parameter jump at the inner edges of its cells
+    (edges, inputs, 2), in SI; what is rounding is 0."""
+    native, count = compiled(course.tape), course.edges.size - 2
+
+    def sides(first: int) -> Floats:
+        """Values and rates on the cells from `first` on, one for each inner edge."""
+        found = np.empty((count, course.values.shape[0], 2))
+        for k in range(count):
+            given = np.array([course.edges[k + 1], *course.constants[k + first]])[:, None]
+            ways = np.ascontiguousarray(course.ways[k + first : k + first + 1])
+            found[k] = native.jets(given, ways[0])[0, :, :2]
+        return found
+
+    before, behind = sides(0), sides(1)
+    jumps = behind - before
+    fastest = np.max(np.abs([before, behind])[..., 1], axis=(0, 1), initial=0.0)
+    # at least that of going once through all values
+    fastest += np.ptp(course.values, axis=1) / (course.edges[-1] - course.edges[0])
+    limits = np.stack(
+        [COURSE_JUMP * (1.0 + np.max(np.abs(course.values), axis=1)), COURSE_REST * fastest], axis=1
+    )
+    return np.where(np.abs(jumps) > limits, jumps, 0.0)
 
 
 def _samples(cell: _Cell, density: float) -> Floats:
