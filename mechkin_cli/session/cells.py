@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from math import frexp, sqrt
+from math import frexp, inf, sqrt
 
 import numpy as np
 
@@ -303,13 +303,15 @@ class _Speed:
 
     def rests(self, at: Floats) -> list[float]:
         """Where all stand still at once."""
-        speed = self.of(at)
-        least = (speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])
-        # next to a zero; where the rates are even nothing rests
-        inner = np.flatnonzero(least & (speed[1:-1] < COURSE_SLOW)) + 1
+        speed, last = self.of(at), at.size - 1
+        beside = np.concatenate([[inf], speed, [inf]])
+        least = (speed <= beside[:-2]) & (speed <= beside[2:])
+        # at an end of the cell it may rest; what it rests next to is sought beside one alone
+        least[[0, last]] &= speed[[0, last]] > COURSE_REST
         found = []
-        for k in inner:
-            low, high = float(at[k - 1]), float(at[k + 1])
+        # next to a zero; where the rates are even nothing rests
+        for k in np.flatnonzero(least & (speed < COURSE_SLOW)).tolist():
+            low, high = float(at[max(k - 1, 0)]), float(at[min(k + 1, last)])
             for _ in range(16):
                 near = low + (high - low) * np.linspace(0.0, 1.0, 33)
                 best = int(np.argmin(self.of(near)))
