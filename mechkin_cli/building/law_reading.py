@@ -292,13 +292,13 @@ _JUMPS: tuple[tuple[str, Literal["warning", "note"], str, str], ...] = (
 
 def _note_jumps(reading: _Reading, law: PiecewiseLaw) -> None:
     """Notes where the rate or else the acceleration jumps between two segments, of each the first
-    place and how many there are."""
+    of the largest jumps and how many there are. A response refuses rates that jump, of any law."""
     fields, over = reading.fields, reading.over
     met = over.met or (-inf, inf)
     found = [(at, jump) for at, jump in law.jumps() if met[0] < at < met[1]]
     for order, (code, severity, word, hint) in enumerate(_JUMPS, start=1):
         jumping = [(at, jump) for at, jump in found if jump[order] and not jump[1:order].any()]
-        if not jumping:
+        if not jumping or (order == 1 and reading.path[0] == "responses"):
             continue
         most = max(abs(jump[order]) for _, jump in jumping)
         at, jump = next(one for one in jumping if abs(one[1][order]) >= most * (1.0 - COURSE_JUMP))

@@ -42,7 +42,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import AssemblySection, TimeSection, responses as written
-from mechkin_cli.session import left_free, solver_graph
+from mechkin_cli.session import jumps_of, left_free, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, is_redundant, listed
 from mechkin_cli.units import DIMENSIONLESS, TIME
 
@@ -289,6 +289,7 @@ class _ResponseBuilder:
             self.fields, (*path, "driven"), section.driven, self.joints, self.per_row, clock
         ) or MotionInputs((), 1)
         self._check_ties(path, driven)
+        self._check_jumps(path, driven)
         efforts = self._efforts(path, section, name)
         mechanism, laws, numbers = self.loads.of_run(name, self.problem.mechanism)
         start = build_start(self.fields, path, section, self.joints)
@@ -350,6 +351,34 @@ class _ResponseBuilder:
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
+
+    def _check_jumps(self, path: Path, driven: MotionInputs) -> None:
+        """Refuses driven coordinates that jump, or whose rates do: the rates of what is free would
+        jump with them."""
+        course, fields = driven.course, self.fields
+        if course is None:
+            return
+        jumps = jumps_of(course)
+        for number, item in enumerate(driven.inputs):
+            found = np.flatnonzero(jumps[:, number].any(axis=1))
+            if not found.size:
+                continue
+            first = int(found[0])
+            order = 0 if jumps[first, number, 0] else 1
+            size = float(jumps[first, number, order])
+            if order:
+                size /= float(fields.units.to_si(1.0, TIME))
+            dimension = dimension_of(item.coordinate, order)
+            moment = f"{course.edges[first + 1]:.6g} {fields.units.label(TIME)}"
+            word = "the rate of " if order else ""
+            fields.error(
+                "driven-jump",
+                (*path, "driven", item.name),
+                f"{word}{item.name} jumps at {moment}, where forces would be infinite",
+                "join the stretches by a rise, such as law: cycloidal, or move time beyond it",
+                measured=f"{fields.units.from_si(size, dimension):.6g} "
+                f"{fields.units.label(dimension)}",
+            )
 
     def _check_ties(self, path: Path, driven: MotionInputs) -> None:
         """Notes ties of the sweep's inputs that the response would leave out."""

@@ -68,6 +68,10 @@ class Polynomial(Section):
 class ExpressionLaw(Section):
     """x as an expression of `time`; its rates are exact."""
 
+    advice: ClassVar[dict[str, str]] = dict.fromkeys(
+        ("expression", "formula", "function", "x", "f", "of"), "write value: 20 mm*time/(1 s)"
+    )
+
     law: Literal["expression"]
     value: AnyDimension
     """The value as an expression of `time` and parameters: `20 deg*sin(360 deg*time/(1 s))`."""
@@ -75,6 +79,12 @@ class ExpressionLaw(Section):
 
 class Rise(Section):
     """x = from + (to - from) * s(u), with u from 0 to 1 over the duration and s as the law says."""
+
+    advice: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("begin", "t0", "delay"), "write start: 0.1 s"),
+        **dict.fromkeys(("end", "stop", "for", "time", "beta"), "write duration: 0.5 s"),
+        **dict.fromkeys(("rise", "lift", "height", "h", "stroke"), "write from: 0, to: 20 mm"),
+    }
 
     if TYPE_CHECKING:
         law: str
@@ -131,6 +141,12 @@ class ModifiedTrapezoid(Rise):
 class Sine(Section):
     """x = offset + amplitude * sin(2*pi*frequency*t + phase), with t from the first moment of
     `time`."""
+
+    advice: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("omega", "w", "speed", "rate", "rpm", "f", "hz"), "write frequency: 2 Hz"),
+        **dict.fromkeys(("at", "mean", "center", "bias", "value"), "write offset: 5 deg"),
+        **dict.fromkeys(("stroke", "range"), "write amplitude: half of it"),
+    }
 
     law: Literal["sine"]
     amplitude: AngleOrLength

@@ -25,7 +25,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "assembled_places": "Coordinate Structure left_free solver_graph",
-        "cells": "Formula cells_of",
+        "cells": "Formula cells_of jumps_of",
         "double_double": "Precise PreciseInputs ShiftingPrecise precise_inputs",
         "followers": "InputPath angle_slots followers_of input_path input_rest",
         "following": "Ending Followed Runaway follow step_limits",

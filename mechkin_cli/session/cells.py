@@ -12,16 +12,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
-from math import frexp, sqrt
+from math import frexp, inf, sqrt
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
-from mechkin_cli.mechanism import CellKind
+from mechkin_cli.mechanism import CellKind, Course
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import CONDITIONS, Operation, Tape, compiled
 from mechkin_cli.tolerances import (
+    COURSE_JUMP,
     COURSE_REST,
     COURSE_SAME,
     COURSE_SAMPLES,
@@ -146,6 +147,31 @@ def cells_of(formula: Formula, at: Floats) -> Cells:
         np.array([cell.ways for cell, _, _ in found]).reshape(len(found), -1),
         np.array([powers for _, _, powers in found], dtype=np.int64),
     )
+
+
+def jumps_of(course: Course) -> Floats:
+    """By how much the inputs and their rates by the parameter jump at the inner edges of its cells
+    (edges, inputs, 2), in SI; what is rounding is 0."""
+    native, count = compiled(course.tape), course.edges.size - 2
+
+    def sides(first: int) -> Floats:
+        """Values and rates on the cells from `first` on, one for each inner edge."""
+        found = np.empty((count, course.values.shape[0], 2))
+        for k in range(count):
+            given = np.array([course.edges[k + 1], *course.constants[k + first]])[:, None]
+            ways = np.ascontiguousarray(course.ways[k + first : k + first + 1])
+            found[k] = native.jets(given, ways[0])[0, :, :2]
+        return found
+
+    before, behind = sides(0), sides(1)
+    jumps = behind - before
+    fastest = np.max(np.abs([before, behind])[..., 1], axis=(0, 1), initial=0.0)
+    # at least that of going once through all values
+    fastest += np.ptp(course.values, axis=1) / (course.edges[-1] - course.edges[0])
+    limits = np.stack(
+        [COURSE_JUMP * (1.0 + np.max(np.abs(course.values), axis=1)), COURSE_REST * fastest], axis=1
+    )
+    return np.where(np.abs(jumps) > limits, jumps, 0.0)
 
 
 def _samples(cell: _Cell, density: float) -> Floats:
@@ -277,13 +303,15 @@ class _Speed:
 
     def rests(self, at: Floats) -> list[float]:
         """Where all stand still at once."""
-        speed = self.of(at)
-        least = (speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])
-        # next to a zero; where the rates are even nothing rests
-        inner = np.flatnonzero(least & (speed[1:-1] < COURSE_SLOW)) + 1
+        speed, last = self.of(at), at.size - 1
+        beside = np.concatenate([[inf], speed, [inf]])
+        least = (speed <= beside[:-2]) & (speed <= beside[2:])
+        # at an end of the cell it may rest; what it rests next to is sought beside one alone
+        least[[0, last]] &= speed[[0, last]] > COURSE_REST
         found = []
-        for k in inner:
-            low, high = float(at[k - 1]), float(at[k + 1])
+        # next to a zero; where the rates are even nothing rests
+        for k in np.flatnonzero(least & (speed < COURSE_SLOW)).tolist():
+            low, high = float(at[max(k - 1, 0)]), float(at[min(k + 1, last)])
             for _ in range(16):
                 near = low + (high - low) * np.linspace(0.0, 1.0, 33)
                 best = int(np.argmin(self.of(near)))

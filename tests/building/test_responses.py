@@ -295,3 +295,61 @@ def test_units_do_not_matter() -> None:
     assert one.start == other.start
     assert one.stops[0].at == other.stops[0].at  # type: ignore[union-attr]
     assert one.mechanism.loads == other.mechanism.loads
+
+
+CART = """format: 1
+units: {angle: rad, time: ms}
+links:
+  cart: {mass: 1, center_of_mass: [0, 0, 0]}
+  bob: {mass: 0.7, center_of_mass: [0, -0.3, 0], inertia: {xx: 0.02, yy: 0.02, zz: 0.03}}
+joints:
+  D: {type: P, links: [ground, cart], point: [0, 0, 0], axis: [1, 0, 0]}
+  E: {type: R, links: [cart, bob], point: [0, 0, 0], axis: [0, 0, 1]}
+responses:
+  run:
+    start: {E.theta: 0.1}
+    driven: {D.s: LAW}
+    time: {from: 0, to: 1000, step: 250}
+"""
+
+JUMPS = [
+    ('{with: "1 m/s*abs(time - 0.37 s)"}', "the rate of D.s jumps at 370 ms", "0.002 m/ms"),
+    (
+        '{law: expression, value: "max(0 m, 2 m/s*(time - 0.6 s))"}',
+        "the rate of D.s jumps at 600 ms",
+        "0.002 m/ms",
+    ),
+    (
+        "{law: sequence, segments: [{for: 500, to: 1, law: constant-rate}, "
+        "{for: 300, to: 2, law: cycloidal}]}",
+        "the rate of D.s jumps at 500 ms",
+        "-0.002 m/ms",
+    ),
+    ('{with: "if(time < 0.37 s, 0 m, 0.1 m)"}', "D.s jumps at 370 ms", "0.1 m"),
+]
+
+
+@pytest.mark.parametrize(("law", "words", "size"), JUMPS)
+def test_driven_coordinates_that_jump_are_refused(law: str, words: str, size: str) -> None:
+    """The bob would be struck; told 0 it would hang as before, with status ok."""
+    with pytest.raises(mk.InvalidFile) as caught:
+        mk.loads(CART.replace("LAW", law))
+    (error,) = caught.value.diagnostics
+    assert error.code == "driven-jump"
+    assert error.place is not None
+    assert error.place.line == 12
+    assert f"{words}, where forces would be infinite: {size}; join" in str(error)
+
+
+SMOOTH = [
+    "{law: harmonic, from: 0, to: 1, start: 300, duration: 200}",
+    "{law: sequence, segments: [{for: 370, to: 1, law: harmonic}, {for: 100, to: 0, law: 3-4-5}]}",
+    '{with: "1 m*abs(time - 0.37 s)*(time - 0.37 s)/(1 s^2)"}',
+    "{law: constant-rate, at: 0, rate: 0.001}",
+]
+
+
+@pytest.mark.parametrize("law", SMOOTH)
+def test_driven_coordinates_whose_acceleration_jumps_are_followed(law: str) -> None:
+    model = mk.loads(CART.replace("LAW", law))
+    assert set(model.respond("run")["row.status"]) == {"ok"}

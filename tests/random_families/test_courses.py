@@ -17,9 +17,51 @@ Written = tuple[str, Motion]
 RAD = np.pi / 180.0
 
 
+def modified_sine(u: Numbers) -> Numbers:
+    """R. L. Norton, Cam Design and Manufacturing Handbook, chapter 3."""
+    over = np.pi / (4.0 + np.pi)
+    quick = over * (u - np.sin(4.0 * np.pi * u) / (4.0 * np.pi))
+    slow = (2.0 + np.pi * u - 2.25 * np.sin(np.pi / 3.0 + 4.0 * np.pi * u / 3.0)) / (4.0 + np.pi)
+    last = (4.0 + np.pi * u - 0.25 * np.sin(4.0 * np.pi * u)) / (4.0 + np.pi)
+    return np.where(u < 0.125, quick, np.where(u < 0.875, slow, last))
+
+
+RISES: dict[str, Motion] = {
+    "harmonic": lambda u: (1.0 - np.cos(np.pi * u)) / 2.0,
+    "cycloidal": lambda u: u - np.sin(2.0 * np.pi * u) / (2.0 * np.pi),
+    "3-4-5": lambda u: u**3 * (10.0 - 15.0 * u + 6.0 * u * u),
+    "modified-sine": modified_sine,
+}
+
+
+def segments(rng: random.Random, duration: float) -> Written:
+    """A sequence of rises and rests over s = t/duration, zero at first."""
+    at, value, words = 0.0, 0.0, []
+    rises: list[tuple[float, float, float, float, str]] = []
+    for _ in range(rng.randint(2, 5)):
+        length = rng.uniform(0.05, 0.5)
+        if rng.random() < 0.3:
+            words.append(f"{{for: {length * duration!r}, law: dwell}}")
+        else:
+            name, to = rng.choice(list(RISES)), rng.uniform(-150, 150)
+            words.append(f"{{for: {length * duration!r}, to: {to!r}, law: {name}}}")
+            rises.append((at, length, value, to, name))
+            value = to
+        at += length
+
+    def motion(s: Numbers) -> Numbers:
+        total = 0.0 * s
+        for begin, length, low, high, name in rises:
+            total = total + (high - low) * RISES[name](np.clip((s - begin) / length, 0.0, 1.0))
+        return total
+
+    return f"{{law: sequence, segments: [{', '.join(words)}]}}", motion
+
+
 def law(rng: random.Random, duration: float) -> Written:
     """A law over s = t/duration, zero at first."""
-    kind, amount = rng.choice(["rate", "fast", "power", "rise", "rise"]), rng.uniform(-200, 200)
+    kinds = ["rate", "fast", "power", "rise", "rise", "sequence", "sine"]
+    kind, amount = rng.choice(kinds), rng.uniform(-200, 200)
     unit = "deg/s"
     if kind == "rate":
         text = f"{{law: constant-rate, at: 0, rate: {amount / duration!r} {unit}}}"
@@ -38,15 +80,23 @@ def law(rng: random.Random, duration: float) -> Written:
         words += [f"{c / duration**k!r} deg/s^{k}" for k, c in enumerate(terms, start=first)]
         text = f"{{law: polynomial, coefficients: [{', '.join(words)}]}}"
         return text, lambda s: sum(c * s**k for k, c in enumerate(terms, start=first))
+    if kind == "sequence":
+        return segments(rng, duration)
+    if kind == "sine":
+        periods, phase = rng.uniform(0.2, 3.0), rng.uniform(-180, 180)
+        offset = -amount * float(np.sin(phase * RAD))
+        text = (
+            f"{{law: sine, amplitude: {amount!r}, period: {duration / periods!r}, "
+            f"phase: {phase!r} deg, offset: {offset!r}}}"
+        )
+        turn = 2.0 * np.pi * periods
+        return text, lambda s: amount * np.sin(turn * s + phase * RAD) + offset
     start, length = rng.choice([(0.0, 1.0), (rng.uniform(0, 0.5), rng.uniform(0.2, 0.9))])
-    name = rng.choice(["harmonic", "cycloidal"])
+    name = rng.choice(list(RISES))
     times = f"start: {start * duration!r}, duration: {length * duration!r}"
 
     def rise(s: Numbers) -> Numbers:
-        u = np.clip((s - start) / length, 0.0, 1.0)
-        if name == "harmonic":
-            return amount * (1.0 - np.cos(np.pi * u)) / 2.0
-        return amount * (u - np.sin(2.0 * np.pi * u) / (2.0 * np.pi))
+        return amount * RISES[name](np.clip((s - start) / length, 0.0, 1.0))
 
     return f"{{law: {name}, from: 0, to: {amount!r}, {times}}}", rise
 

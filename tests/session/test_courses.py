@@ -83,6 +83,26 @@ def test_inputs_that_rest_together(laws: tuple[str, str], count: int) -> None:
     assert found["B.theta"] == pytest.approx(way.angle[way.rows], abs=1e-9)
 
 
+@pytest.mark.parametrize("turn", [0.9993, 0.9999, 0.0007, 0.0001])
+def test_inputs_that_turn_back_next_to_the_first_or_last_row(turn: float) -> None:
+    """Both rest at once a moment after the motion begins, or before it ends."""
+    # the angle goes from 0 and is largest at the turn
+    phase = 90.0 - 360.0 * 2.0 * turn
+    start = -120.0 * float(np.sin(np.radians(phase)))
+    law = f"{{law: sine, amplitude: 120, frequency: 2, phase: {phase!r}, offset: {start!r}}}"
+    found = run(timed(1.0, 5, law, '{with: "-0.4 rad*sin(A.theta)"}'))
+    assert set(found["row.status"]) == {"ok"}
+
+    def a(s: Any) -> Any:
+        return 120.0 * np.sin(np.radians(720.0 * s + phase)) + start
+
+    def e(s: Any) -> Any:
+        return -np.degrees(0.4 * np.sin(np.radians(a(s))))
+
+    way = FULL.along(a, e, 5)
+    assert found["B.theta"] == pytest.approx(way.angle[way.rows], abs=1e-9)
+
+
 def test_a_dead_centre_is_named_with_its_time() -> None:
     """A crank that swings to 170 degrees between rows 1 s apart."""
     law = "{law: harmonic, from: 0, to: 170}"
