@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
 from mechkin_cli.assembly import is_home_singular
-from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
+from mechkin_cli.building.cables import build_cables
+from mechkin_cli.building.couplings import (
+    build_couplings,
+    coupled_joints,
+    refuse_friction,
+    refuse_tied_friction,
+)
+from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -25,6 +32,7 @@ from mechkin_cli.building.fields import (
     read_units,
 )
 from mechkin_cli.building.joints import build_linkage
+from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
 from mechkin_cli.building.responses import (
@@ -38,12 +46,13 @@ from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
     build_tables,
-    quantities_of,
+    problem_of,
     runs_of,
     used_quantities,
 )
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
 from mechkin_cli.expressions import (
+    Definitions,
     ExpressionError,
     Move,
     Name,
@@ -194,11 +203,11 @@ def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[An
 
 
 def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
-    if file.view is None:
+    if file.view is None and not file.couplings:
         return None
     from mechkin_cli.building.view import build_view
 
-    return build_view(fields, file.view, problem.mechanism)
+    return build_view(fields, file.view, file.couplings, problem.mechanism)
 
 
 def read_fields(
@@ -216,6 +225,7 @@ def read_fields(
     read_parameters(fields, file.parameters, given, moved)
     if datum != ZERO:
         fields.datum = Datum(datum, file.parameters, given, units)
+    define_cylinders(fields, file)
     if file.quantities:
         read_quantities(fields, file.quantities)
     return fields
@@ -233,9 +243,12 @@ def build_problem(
     is not built again, nor are the motions in time of `moving` responses."""
     points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
-    for coupled in coupled_joints(file.couplings) & joints.keys():
+    telescopes, slides = build_cylinders(fields, file.cylinders, points)
+    links, joints = links | telescopes, joints | slides
+    for coupled in coupled_joints(fields, file.couplings, joints):
         joints[coupled] = counted(joints[coupled])
-    couplings = build_couplings(fields, file.couplings, joints)
+    cable_links, cable_joints, cables = build_cables(fields, file.couplings, joints, points)
+    couplings = build_couplings(fields, file.couplings, joints, cables)
     refuse_friction(fields, file.loads, couplings)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
@@ -243,11 +256,13 @@ def build_problem(
         if is_link(fields, ("directions", name, "link"), d.link, links)
     }
     guide_links, guide_joints = point_guides(fields, file.motion, points)
-    links, joints = links | guide_links, joints | guide_joints
+    links = links | guide_links | cable_links
+    joints = joints | guide_joints | cable_joints
     per_row = numbers_per_row(file, joints)
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
+    limits = build_limits(fields, file, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
     mechanism = Mechanism(
@@ -255,6 +270,7 @@ def build_problem(
     )
     mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
+    problem = replace(problem, limits=limits)
     # rows of responses have a time
     swept = problem.quantities()
     timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
@@ -263,6 +279,7 @@ def build_problem(
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
+    refuse_tied_friction(fields, file.loads, problem)
     if not (file.responses and responses):
         return problem
     from mechkin_cli.building.responses import build_responses
@@ -394,10 +411,13 @@ def _define(fields: Fields, name: str, expression: Expression) -> None:
 def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> None:
     """Notes the error of a quantity that has one in every run of the file, at its place;
     expressions that use it get no message of their own."""
-    samples = [ColumnSample(fields, quantities_of(problem, run), run) for run in runs_of(file)]
+    samples = [ColumnSample(fields, problem_of(problem, run), run) for run in runs_of(file)]
     values: list[dict[str, Quantity]] = [{} for _ in samples]
-    for name in fields.definitions.named:
-        expression = parse(file.quantities[name])
+    named = fields.definitions.named
+    # of what is no quantity of the file nothing is known here: it stands for what it is
+    others = Definitions({n: one for n, one in named.items() if n not in file.quantities})
+    for name in filter(file.quantities.__contains__, named):
+        expression = others.expanded(parse(file.quantities[name]))
         uses = {node.text.partition(".")[0] for node in expression.nodes if isinstance(node, Name)}
         if uses & fields.refused:
             fields.refused.add(name)

@@ -11,8 +11,9 @@ that are followed; and the idle freedoms of a built problem.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -21,12 +22,14 @@ from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_co
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, has_too_many_rows, spaced_moments
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import (
     Assembly,
     CrossingEnd,
     DeadCentreEnd,
     Joint,
     JointLoad,
+    LoadLaw,
     Moments,
     MotionInputs,
     Problem,
@@ -300,12 +303,23 @@ class _ResponseBuilder:
             driven=driven.inputs,
             course=driven.course,
             moments=clock.time,
-            stops=stops.build(path, section.stop),
+            stops=(*stops.build(path, section.stop), *self._limits()),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, clock.time),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
+
+    def _limits(self) -> Iterator[CrossingEnd]:
+        """The stops at the limits of coordinates."""
+        directions: tuple[Literal["down", "up"], ...] = ("down", "up")
+        for limit in self.problem.limits:
+            for direction, at in zip(directions, (limit.low, limit.high), strict=True):
+                if isfinite(at):
+                    dimension = dimension_of(limit.coordinate)
+                    words = f"{limit.name} at its limit {self.fields.units.text(at, dimension)}"
+                    law = LoadLaw((limit.name,), limit.place, parse(limit.name))
+                    yield CrossingEnd(words, limit.place, law, dimension, at, direction, 1)
 
     def recorded(
         self, name: str, section: written.Response, known: ResponseProblem
@@ -470,6 +484,9 @@ def response_graph(
     except UnsolvableGraph as error:
         if error.missing:
             return _too_few(response, error)._replace(place=place)
+        for extra in reversed(response.independent):
+            if _is_solvable(mechanism, [one for one in driven if one != extra]):
+                return _too_many(response, extra)._replace(place=place)
         return error.diagnostic._replace(place=place)
     if not is_redundant(graph) and response.independent:
         return graph
@@ -487,6 +504,14 @@ def response_graph(
     return graph
 
 
+def _is_solvable(mechanism: Mechanism, driven: Sequence[tuple[str, str]]) -> bool:
+    try:
+        solver_graph(mechanism, driven)
+    except UnsolvableGraph:
+        return False
+    return True
+
+
 def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
     free = len(response.independent) + error.missing
     return Diagnostic(
@@ -502,12 +527,8 @@ def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
 def _undetermined(
     response: ResponseProblem, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
 ) -> Diagnostic:
-    names = [
-        f"{joint.name}.{name}"
-        for joint in mechanism.joints.values()
-        for name in joint.type.coordinates
-        if (joint.name, name) not in driven
-    ]
+    places = {".".join(place) for place in driven}
+    names = [name for name in mechanism.coordinates if name not in places]
     return Diagnostic(
         "start-count",
         "error",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_told, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pair_type import Attached
@@ -434,7 +434,7 @@ def _of_advantages(
     mechanism: Mechanism, inputs: Sequence[tuple[str, str]], leading: str
 ) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        for coordinate in joint.type.coordinates:
+        for coordinate in joint.type.coordinates if is_told(joint.name) else ():
             if (joint.name, coordinate) not in inputs:
                 name = f"{joint.name}.{coordinate}.mechanical_advantage"
                 dimension = dimension_of(leading) / dimension_of(coordinate)
@@ -446,7 +446,7 @@ def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -
     driven = {joint for joint, _ in inputs}
     for joint in mechanism.joints.values():
         driver = driving_joint(mechanism, joint)
-        if driver is not None and driver.name not in driven:
+        if driver is not None and driver.name not in driven and is_told(joint.name):
             for coordinate in joint.type.coordinates:
                 for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():
                     name = f"{joint.name}.{coordinate}.{kind}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from mechkin_cli.exact import TURN
 from mechkin_cli.mechanism.pair_type import (
     FIRST,
@@ -30,6 +32,12 @@ GROUND_NAME = "ground"
 def is_written(name: str) -> bool:
     """Whether a link or joint stands in the file: names of what guides a point have a dot."""
     return "." not in name
+
+
+def is_told(name: str) -> bool:
+    """Whether users see the coordinates of a joint: the name of one that stands for a part of
+    something else, as of a cable's stretch, has a blank."""
+    return " " not in name
 
 
 class Joint(NamedTuple):
@@ -144,6 +152,11 @@ class Joint(NamedTuple):
         if self.type.parameter == "from axis to pin":
             return -dot(self.axis.vector, self.on_first.y)
         return 0.0
+
+
+def told_coordinates(joints: Iterable[Joint]) -> tuple[str, ...]:
+    """Full names of the coordinates of some joints that users see."""
+    return tuple(name for joint in joints if is_told(joint.name) for name in joint.coordinates)
 
 
 def frame_on(joint: Joint, link: str) -> Frame:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from mechkin_cli.diagnostics import Place
     from mechkin_cli.mechanism.constraint import InputConstraint
     from mechkin_cli.show import Floats
     from mechkin_cli.tape import ExactRows, Tape
@@ -63,6 +64,22 @@ class Moments(NamedTuple):
 
     values: Floats
     written: Floats
+
+
+class Limit(NamedTuple):
+    """Where a coordinate ends (rad, m): its least and its largest value, infinite where there is
+    none; `place` in the file."""
+
+    joint: str
+    coordinate: str
+    low: float
+    high: float
+    place: Place
+
+    @property
+    def name(self) -> str:
+        """The coordinate's full name, `O1.theta`."""
+        return f"{self.joint}.{self.coordinate}"
 
 
 class MotionInputs(NamedTuple):

@@ -102,6 +102,7 @@ Kind = Literal[
     "coupling_torque",
     "coupling_power",
     "tooth_force",
+    "tension",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

@@ -47,6 +47,8 @@ from mechkin_cli.sweep import (
     at_once,
     first_assembly,
     judge_condition,
+    judge_limits,
+    limited,
     lost_rates,
     rest_on_reactions,
     row_notes,
@@ -462,8 +464,8 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
     requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]
     rows = result.row_states
     if rows.reached.any():
-        energies = [known[name] for name in ENERGIES]
-        wanted, demand = at_once(result.session, [*requested, *energies], verdicts=True)
+        judging = [*(known[name] for name in ENERGIES), *limited(result.problem)]
+        wanted, demand = at_once(result.session, [*requested, *judging], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
         ask = Ask(demand, result.session.readout(wanted) if wanted else None)
@@ -476,5 +478,6 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         judge_condition(result.session, rows, batch)
         result.keep(batch, ask)
         result.read(requested)
+        judge_limits(result)
     on_reactions = rest_on_reactions(result.problem, requested)
     rows.diagnostics += row_notes(result, requested, rests_on_reactions=on_reactions)

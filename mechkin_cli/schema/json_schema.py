@@ -187,6 +187,8 @@ BY_KEY: Final[dict[str, Any]] = {
     "paths": ["coupler_point"],
     "pin": [1, 0, 0],
     "plot": {"x": "theta", "y": ["torque"]},
+    "cylinders": {"C": {"from": "P", "to": "Q", "stroke": ["0.6 m", "1 m"]}},
+    "limits": {"A.theta": ["-30 deg", "60 deg"], "S.s": {"max": "200 mm"}},
     "points": {"P": {"link": "crank", "at": ["r", 0, 0]}},
     "published": "published/table_3.csv",
     "quantities": {"gap": "norm(P.position - Q.position)"},
@@ -223,6 +225,11 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
     ("Column", "value"): "norm(O1.force)",
+    ("Cylinder", "bore"): "50 mm",
+    ("Cylinder", "from"): "P",
+    ("Cylinder", "rod"): "28 mm",
+    ("Cylinder", "stroke"): ["0.6 m", "1 m"],
+    ("Cylinder", "to"): "Q",
     ("Crossing", "value"): "O1.theta - O2.theta",
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
@@ -310,6 +317,22 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("GearCoupling", "joints"): ["A", "B"],
     ("GearCoupling", "module"): "2 mm",
     ("GearCoupling", "pressure_angle"): "20 deg",
+    ("BeltCoupling", "joints"): ["A", "B"],
+    ("BeltCoupling", "radii"): ["30 mm", "50 mm"],
+    ("BeltCoupling", "crossed"): True,
+    ("BeltCoupling", "pretension"): "200 N",
+    ("ChainCoupling", "joints"): ["A", "B"],
+    ("ChainCoupling", "teeth"): [17, 38],
+    ("ChainCoupling", "pitch"): "12.7 mm",
+    ("ChainCoupling", "pretension"): "20 N",
+    ("CableCoupling", "path"): ["P", {"pulley": "A", "radius": "50 mm", "side": "left"}, "Q"],
+    ("PathPart", "drum"): "D",
+    ("PathPart", "point"): "P",
+    ("PathPart", "pulley"): "A",
+    ("PathPart", "radius"): "50 mm",
+    ("PathPart", "side"): "left",
+    ("ScrewCoupling", "joints"): ["A", "S"],
+    ("ScrewCoupling", "lead"): "5 mm",
     ("Plot", "x"): "theta",
     ("Plot", "y"): ["torque"],
     ("Polynomial", "coefficients"): [0, "10 deg/s", "2 deg/s^2"],
@@ -387,7 +410,9 @@ STUDY_IDENTITY: Final = "urn:mechkin:schema:study:1"
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = "$schema $id title description $ref type const enum required".split()  # noqa: SIM905
-_NAMED_SECTIONS = ("parameters", "links", "joints", "couplings", "points", "directions")
+_NAMED_SECTIONS = (
+    *("parameters", "links", "joints", "couplings", "cylinders", "points", "directions"),
+)
 _BY_NAME = ("properties", "patternProperties", "$defs")
 _JSON_TYPES = {str: "string", int: "integer", bool: "boolean"}
 # JSON Schema has no flag for ignoring case
@@ -404,8 +429,8 @@ def json_schema() -> Schema:
     """
     definitions: Schema = {"ReservedName": {"enum": sorted(RESERVED)}}
     space, plane = (_file(form, definitions) for form in (MechanismFile, PlaneFile))
-    space["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
-    plane["anyOf"] = [_non_empty("joints", "minProperties")]
+    plane["anyOf"] = [_non_empty(key, "minProperties") for key in ("joints", "cylinders")]
+    space["anyOf"] = [*plane["anyOf"], _non_empty("chain", "minItems")]
     # offered while writing; where it stands the other form is meant
     space["properties"]["plane"] = plane["properties"]["plane"]
     definitions |= {form.__name__: s for form, s in ((MechanismFile, space), (PlaneFile, plane))}

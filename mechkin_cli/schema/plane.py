@@ -295,7 +295,7 @@ class PlaneFile(AnyFile):
     advice: ClassVar[dict[str, str]] = {
         "chain": "rows of Denavit and Hartenberg are spatial: write the joints under joints: as "
         "{type: R, links: [crank, rod], point: [x, y]}; a chain over two wheels is a coupling: "
-        "couplings: {K: {type: linear, terms: {A.theta: 2, B.theta: -1}}}",
+        "couplings: {K: {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}}",
         "coefficients": "they are six equations a link: leave it out; A.force and A.moment are "
         "unique in a plane",
         "idle": _LEFT_OUT + "no link spins about its own line",
@@ -318,8 +318,8 @@ class PlaneFile(AnyFile):
     """Gravity, forces, torques, springs, dampers and friction; left out, none."""
 
     def check(self) -> None:
-        """There is a joint, and no two tables are written to the same files."""
-        if not self.joints:
+        """There is a joint or a cylinder, and no two tables are written to the same files."""
+        if not self.joints and not self.cylinders:
             raise refuse("no-joints", "the file has no joints", "add joints:")
         super().check()
 

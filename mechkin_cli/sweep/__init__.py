@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.dead_centre import *
     from mechkin_cli.sweep.following import *
     from mechkin_cli.sweep.friction import *
+    from mechkin_cli.sweep.limits import *
     from mechkin_cli.sweep.messages import *
     from mechkin_cli.sweep.result import *
     from mechkin_cli.sweep.rows import *
@@ -25,7 +26,8 @@ __getattr__, __dir__ = lazy_names(
         "branch_end": "passed_straight_on",
         "dead_centre": "lost_rates",
         "following": "follow_rows",
-        "friction": "unfounded_in_motion",
+        "friction": "is_slack slack_quantities unfounded_in_motion",
+        "limits": "beyond judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
         "rows": "SweepRows has_turns",
