@@ -226,7 +226,7 @@ class Layout:
         for name, relation in self.mechanism.couplings.items():
             for extent in relation.extents:
                 value = np.full(states.shape[1], float(extent.drawn))
-                for joint, coordinate, factor in extent.terms:
+                for joint, coordinate, factor, _ in extent.terms:
                     freedom = joint.freedom_number(coordinate)
                     state = states[self.state(self.edge_number[joint.name], freedom)]
                     value += float(factor) * joint.unit_of(coordinate, self.length) * state
