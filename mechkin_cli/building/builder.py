@@ -262,7 +262,7 @@ def build_problem(
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
-    limits = build_limits(fields, file, joints)
+    limits = build_limits(fields, file, joints, couplings)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
     mechanism = Mechanism(

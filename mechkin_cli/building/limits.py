@@ -8,16 +8,19 @@ from math import inf
 from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.tracks import track_ends
-from mechkin_cli.mechanism import Joint, Limit, dimension_of
+from mechkin_cli.mechanism import Joint, Limit, Relation, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
 from mechkin_cli.units import DIMENSIONLESS
 
 
 def build_limits(
-    fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
+    fields: Fields,
+    file: MechanismFile,
+    joints: Mapping[str, Joint],
+    couplings: Mapping[str, Relation],
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:`, the strokes of cylinders and the ends of curves and
-    surfaces; errors are noted in `fields`."""
+    """Where coordinates end, by `limits:`, the strokes of cylinders, the ends of curves and surfaces
+    and the tables of couplings; errors are noted in `fields`."""
     every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
         name: (("limits", name), written) for name, written in file.limits.items()
     }
@@ -30,13 +33,30 @@ def build_limits(
             fields.key_error("two-choices", ("limits", name), text, "keep one of the two")
             continue
         every[name] = ("cylinders", cylinder, "stroke"), section.stroke
-    written = {limit.name: limit for limit in _limits(fields, every, joints)}
+    limits = {limit.name: limit for limit in _limits(fields, every, joints)}
+    for limit in (*_of_tracks(fields, file, joints), *_of_tables(fields, couplings)):
+        other = limits.get(limit.name, limit)
+        limits[limit.name] = other._replace(
+            low=max(other.low, limit.low), high=min(other.high, limit.high)
+        )
+    return tuple(limits.values())
+
+
+def _of_tracks(
+    fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
+) -> Iterator[Limit]:
+    """The ends of curves and surfaces."""
     for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
-        own = Limit(joint, coordinate, low, high, fields.document.key_place(path))
-        other = written.get(own.name, own)
-        ends = max(low, other.low), min(high, other.high)
-        written[own.name] = other._replace(low=ends[0], high=ends[1])
-    return tuple(written.values())
+        yield Limit(joint, coordinate, low, high, fields.document.key_place(path))
+
+
+def _of_tables(fields: Fields, couplings: Mapping[str, Relation]) -> Iterator[Limit]:
+    """The ends of tables that do not repeat themselves."""
+    for name, relation in couplings.items():
+        for term in relation.terms:
+            if term.law is not None and term.law.curve is not None and term.law.period == 0.0:
+                place, curve = fields.document.place(("couplings", name)), term.law.curve
+                yield Limit(term.joint.name, term.coordinate, curve.first, curve.last, place)
 
 
 def _limits(

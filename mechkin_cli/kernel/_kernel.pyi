@@ -241,9 +241,7 @@ class PlanBuilder:
     def add_function(
         self,
         arguments: int,
-        curves: Sequence[
-            tuple[int, float, float, float, Sequence[tuple[float, float, float, float, float]]]
-        ],
+        curves: Sequence[tuple[int, float, Sequence[tuple[float, float, float, float, float]]]],
         constants: Sequence[float],
         operations: Sequence[int],
         operands: Sequence[tuple[int, int, int]],

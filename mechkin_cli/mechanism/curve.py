@@ -19,7 +19,6 @@ from mechkin_cli.diagnostics import Place
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.tape import JetNumber, of_numbers, orders_of, plain
-from mechkin_cli.tolerances import TABLE_END
 from mechkin_cli.units import Dimension
 
 if TYPE_CHECKING:
@@ -311,15 +310,17 @@ class CoordinateLaw:
     period: float = 0.0
 
     def orders(self, at: Floats) -> Floats:
-        """Value and first three derivatives at places (rows,), shape (4, rows); nan outside of a
-        table."""
+        """Value and first three derivatives at places (rows,), shape (4, rows); straight beyond the
+        ends of a table."""
         if self.curve is not None:
             first, last = self.curve.first, self.curve.last
             if self.period > 0.0:
                 at = at - self.period * np.rint((at - 0.5 * (first + last)) / self.period)
-            slack = TABLE_END * (last - first)
-            inside = (at >= first - slack) & (at <= last + slack)
-            return np.where(inside, self.curve.evaluate(np.clip(at, first, last)), np.nan)
+            inner = np.clip(at, first, last)
+            orders = self.curve.evaluate(inner)
+            orders[0] += orders[1] * (at - inner)
+            orders[2:] = np.where(at == inner, orders[2:], 0.0)
+            return orders
         assert self.value is not None
         with np.errstate(all="ignore"):
             found = orders_of(self.value(JetNumber([at, 1.0, 0.0, 0.0])))

@@ -142,8 +142,8 @@ def function_record(law: CoordinateLaw) -> PlanRecord:
     """The record of a function of a coordinate, with its derivatives (`plan/functions.hpp`)."""
     curves = []
     if law.curve is not None:
-        over, low, high, knots = _curve(law.curve, 0)
-        curves.append((over, low, high, law.period, knots))
+        *_, knots = _curve(law.curve, 0)
+        curves.append((0, law.period, knots))
     recorder = RowRecorder(1 + len(ORDERS) * len(curves))
     number = recorder.number
     if law.curve is not None:

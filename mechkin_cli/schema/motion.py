@@ -268,7 +268,7 @@ LAWS: Final = {
 
 def law_tag(mapping: dict[str, Any]) -> str | None:
     """The tag of a mapping with a key `law`; None where the word is not a law."""
-    word = mapping["law"]
+    word = mapping.get("law")
     return f"({word})" if isinstance(word, str) and word in LAWS else None
 
 

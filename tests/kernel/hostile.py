@@ -116,8 +116,7 @@ class Hostile:
 
     def function(self, builder: Any) -> None:
         knots = [[float(k), *(self.number() for _ in range(4))] for k in range(2)]
-        range_of = [self.number() for _ in range(3)]
-        curves = [(self.index(0, 1), *range_of, knots)] * self.random.randint(0, 1)
+        curves = [(self.index(0, 1), self.number(), knots)] * self.random.randint(0, 1)
         size = self.random.randint(0, 4)
         operations = [self.index(0, 27) for _ in range(size)]
         operands = [(self.index(0, 4), self.index(0, 4), self.index(0, 4)) for _ in range(size)]

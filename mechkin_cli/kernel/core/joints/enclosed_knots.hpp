@@ -51,6 +51,11 @@ inline void piece_values(const Knot* const* piece, const Pack& at, Pack* value) 
   value[3] = Pack(6.0) * d;
 }
 
+inline void straight_values(const Knot& end, const Pack& at, Pack* value) {
+  value[0] = Pack(end.y) + Pack(end.b) * (at - Pack(end.x));
+  value[1] = Pack(end.b), value[2] = Pack(0.0), value[3] = Pack(0.0);
+}
+
 // Takes in all pieces of the curve between its first and last knot that meet the argument; the lanes in which there are too many.
 inline Mask take_pieces(const Knot* first, int count, const Pack& at, Pack* out, Mask* known) {
   const Real least = least_of(at), most = most_of(at);
@@ -72,7 +77,7 @@ inline Mask take_pieces(const Knot* first, int count, const Pack& at, Pack* out,
   return all_lanes(false);
 }
 
-// Value and three derivatives of a function's curve; unknown where the argument may lie outside its range.
+// Value and three derivatives of a function's curve; unknown where the argument is too wide.
 inline void knots_at(const FunctionCurve& curve, const Knot* knot, const Pack& given, Pack* out) {
   const Knot* const first = knot + curve.begin;
   const int count = curve.end - curve.begin;
@@ -89,13 +94,13 @@ inline void knots_at(const FunctionCurve& curve, const Knot* knot, const Pack& g
     lost = lost | take_pieces(first, count, at - period, out, &known);
     lost = lost | take_pieces(first, count, at + period, out, &known);
   } else {
-    lost = (least_of(at) < Real(curve.low)) | (most_of(at) > Real(curve.high));
-    // beyond the ends, within the range, the value is the end's
-    Pack value[FUNCTION_ORDERS] = {Pack(first->y), Pack(0.0), Pack(0.0), Pack(0.0)};
+    // straight beyond the ends
+    Pack value[FUNCTION_ORDERS];
     const Mask before = least_of(at) < Real(first->x), behind = most_of(at) > Real(last.x);
+    straight_values(*first, at, value);
     take_in(out, value, before, known);
     known = known | before;
-    value[0] = Pack(last.y);
+    straight_values(last, at, value);
     take_in(out, value, behind, known);
     known = known | behind;
   }

@@ -33,25 +33,24 @@ struct PieceOfLanes {
   }
 };
 
-// Value and three derivatives of a function's curve; none outside its range.
+// Value and three derivatives of a function's curve.
 inline void knots_at(const FunctionCurve& curve, const Knot* knot, Pack at, Pack* out) {
   const Knot* const first = knot + curve.begin;
   const int count = curve.end - curve.begin;
+  const Pack start = first->x, end = first[count - 1].x, zero = 0.0;
   if (curve.period > 0.0) {
-    const Pack period = curve.period, middle = 0.5 * (curve.low + curve.high);
+    const Pack period = curve.period, middle = Pack(0.5) * (start + end);
     at = at - period * nearest_integer((at - middle) / period);
   }
-  const Pack start = first->x, end = first[count - 1].x, zero = 0.0;
-  const Mask inside = (at >= Pack(curve.low)) & (at <= Pack(curve.high)), before = at < start, after = at > end;
-  const Pack within = select(before, start, select(after, end, at));
+  const Mask before = at < start, straight = before | (at > end);
+  const Pack within = select(before, start, select(straight, end, at));
   const PieceOfLanes piece(first, count, within);
-  const Pack u = within - piece(&Knot::x), b = piece(&Knot::b), c = piece(&Knot::c), d = piece(&Knot::d);
-  const Mask flat = before | after;
-  const Pack unknown = select(inside, zero, Pack(__builtin_nan("")));
-  out[0] = piece(&Knot::y) + u * (b + u * (c + u * d)) + unknown;
-  out[1] = select(flat, zero, b + u * (Pack(2.0) * c + Pack(3.0) * u * d)) + unknown;
-  out[2] = select(flat, zero, Pack(2.0) * c + Pack(6.0) * u * d) + unknown;
-  out[3] = select(flat, zero, Pack(6.0) * d) + unknown;
+  const Pack u = at - piece(&Knot::x), b = piece(&Knot::b);
+  const Pack c = select(straight, zero, piece(&Knot::c)), d = select(straight, zero, piece(&Knot::d));
+  out[0] = piece(&Knot::y) + u * (b + u * (c + u * d));
+  out[1] = b + u * (Pack(2.0) * c + Pack(3.0) * u * d);
+  out[2] = Pack(2.0) * c + Pack(6.0) * u * d;
+  out[3] = Pack(6.0) * d;
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ bool are_ends(const std::vector<int>& ends, std::size_t whole) {
 Refusal check_curve(const FunctionCurveRecord& c, int arguments) {
   REQUIRE(c.over >= 0 && c.over < arguments, "a curve runs over an argument");
   REQUIRE(!c.knots.empty() && c.knots.size() < LONGEST, "a curve has points, and not too many");
-  const double range[] = {c.low, c.high, c.period};
-  REQUIRE(all_finite(range, 3) && c.period >= 0.0, "a curve's range is finite");
+  REQUIRE(std::isfinite(c.period) && c.period >= 0.0, "a curve's period is finite");
   for (std::size_t k = 0; k < c.knots.size(); ++k) {
     const Knot& at = c.knots[k];
     const double numbers[] = {at.x, at.y, at.b, at.c, at.d};
@@ -67,7 +66,7 @@ Result<int> FunctionStore::add(const FunctionRecord& r) {
   for (const FunctionCurveRecord& c : r.curves) {
     const int begin = (int)knot_.size();
     knot_.insert(knot_.end(), c.knots.begin(), c.knots.end());
-    curve_.push_back({c.over, begin, (int)knot_.size(), c.low, c.high, c.period});
+    curve_.push_back({c.over, begin, (int)knot_.size(), c.period});
   }
   constant_.insert(constant_.end(), r.constants.begin(), r.constants.end());
   operation_.insert(operation_.end(), r.operations.begin(), r.operations.end());

@@ -9,7 +9,7 @@
 
 struct FunctionCurveRecord {
   int over;
-  double low, high, period;
+  double period;
   std::vector<Knot> knots;  // x rising
 };
 struct FunctionRecord {

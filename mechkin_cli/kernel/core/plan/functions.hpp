@@ -9,12 +9,11 @@
 
 constexpr int FUNCTION_ORDERS = 4;  // value, and three derivatives
 
-// A curve of knots over an argument: four registers, its value and derivatives. Outside [low, high] it has no value, beyond its
-// ends within them the end's. With a period, which is its knots' span, arguments are taken into it first.
+// A curve of knots over an argument: four registers, its value and derivatives; straight beyond its ends. With a period, which
+// is its knots' span, arguments are taken into it first.
 struct FunctionCurve {
   int over;        // argument
   int begin, end;  // into FunctionTable::knot
-  double low, high;
   double period;   // 0: none
 };
 

@@ -141,8 +141,8 @@ Result<int> PlanBuilder::add_function(int arguments, const std::vector<FunctionC
                                       const std::vector<int>& output_ends) {
   CHECK(open());
   FunctionRecord record = {arguments, {}, constants, {}, {}, instructions, {outputs.begin(), outputs.end()}, output_ends};
-  for (const auto& [over, low, high, period, knots] : curves) {
-    record.curves.push_back({over, low, high, period, {}});
+  for (const auto& [over, period, knots] : curves) {
+    record.curves.push_back({over, period, {}});
     for (const auto& [x, y, b, c, d] : knots) record.curves.back().knots.push_back({x, y, b, c, d});
   }
   for (int o : operations) {

@@ -22,8 +22,8 @@ using TermTuple = std::tuple<int, double, int, int, int>;  // tree joint and sig
 // Register, range, and knots x, y, b, c, d.
 using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
 
-// Argument, range, period (0: none), and knots x, y, b, c, d.
-using FunctionCurveTuple = std::tuple<int, double, double, double, std::vector<std::array<double, 5>>>;
+// Argument, period (0: none), and knots x, y, b, c, d.
+using FunctionCurveTuple = std::tuple<int, double, std::vector<std::array<double, 5>>>;
 
 class PlanBuilder {
  public:
