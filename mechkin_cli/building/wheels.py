@@ -415,7 +415,11 @@ def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> _Turning:
         (*(t._replace(factor=sign * t.factor) for t in of_own), *of_base)
         for of_own, of_base in ((own.terms, with_base.terms), (own.slides, with_base.slides))
     )
-    return _Turning(terms, slides, with_base.axis, (*own.way, *with_base.way))
+    # the wheel is where its own joint is drawn, which the joint between them carries over
+    there, here = frame_on(between, base), frame_on(between, carrier)
+    place = add(here.o, here.vector(there.local(frame_on(wheel, base).o)))
+    axis = with_base.axis._replace(o=place)
+    return _Turning(terms, slides, axis, (*own.way, *with_base.way))
 
 
 def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
