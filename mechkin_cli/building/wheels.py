@@ -415,10 +415,10 @@ def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> Turning:
         (*(t._replace(factor=sign * t.factor) for t in of_own), *of_base)
         for of_own, of_base in ((own.terms, with_base.terms), (own.slides, with_base.slides))
     )
-    # the wheel is where its own joint's point is
-    on_wheel, on_base = frame_on(wheel, base), frame_on(between, base)
-    height = dot(subtract(on_wheel.o, on_base.o), on_base.z)
-    axis = with_base.axis._replace(o=add(with_base.axis.o, scale(height, with_base.axis.z)))
+    # the wheel is where its own joint is drawn, which the joint between them carries over
+    there, here = frame_on(between, base), frame_on(between, carrier)
+    place = add(here.o, here.vector(there.local(frame_on(wheel, base).o)))
+    axis = with_base.axis._replace(o=place)
     return Turning(terms, slides, axis, (*own.way, *with_base.way))
 
 

@@ -135,11 +135,81 @@ def lay_blocks(
                 if closing.has_coordinates
             ]
             raise NothingSolved(connections, loops, equations)
-        start = len(laid)
-        laid.extend(some)
         solved.update(unknowns)
-        blocks.append(Block(tuple(range(start, len(laid))), unknowns, equations))
+        for own, freed in _with_couplings_apart(some, unknowns, edges):
+            start = len(laid)
+            laid.extend(own)
+            count = sum(closing.equations for closing, _ in own)
+            blocks.append(Block(tuple(range(start, len(laid))), freed, count))
     return laid, blocks, solved
+
+
+_Part = tuple[list[tuple[Constraint, Loop]], tuple[Freedom, ...]]
+"""Closings that are solved together, and for which freedoms."""
+
+
+def _with_couplings_apart(
+    closings: Sequence[tuple[Constraint, Loop]],
+    unknowns: tuple[Freedom, ...],
+    edges: Sequence[TreeEdge],
+) -> list[_Part]:
+    """The closings in parts, one after the other: a coupling that has one unknown left comes before
+    what goes by that, and one with an unknown that nothing else has comes behind.
+
+    What is left over is as regular as the whole, since the factor of that unknown is not zero. A
+    joint is placed where all its freedoms and those of the joints that carry it are known.
+    """
+    left, open_ = list(closings), set(unknowns)
+    if sum(closing.equations for closing, _ in left) != len(open_):
+        return [(left, unknowns)]
+    of = {closing.name: _freedoms_of(closing, loop, edges) for closing, loop in left}
+    ahead: list[_Part] = []
+    behind: list[_Part] = []
+
+    def take(one: tuple[Constraint, Loop], own: Freedom, parts: list[_Part]) -> None:
+        parts.append(([one], (own,)))
+        left.remove(one)
+        open_.remove(own)
+
+    moved = True
+    while moved:
+        moved = False
+        for one in [each for each in left if each[0].terms]:
+            name = one[0].name
+            own = of[name] & open_
+            used = {k for c, loop in left if c.name != name for k, _ in loop}
+            standing = {k for k, _ in one[1]} | _carrying(edges, (k for k, _ in one[1]))
+            alone = [(k, f) for k, f in sorted(own) if k not in used | _carrying(edges, used)]
+            if len(own) == 1 and own == {(k, f) for k, f in open_ if k in standing}:
+                take(one, own.pop(), ahead)
+            elif alone and len([1 for k, _ in open_ if k == alone[0][0]]) == 1:
+                take(one, alone[0], behind)
+            else:
+                continue
+            moved = True
+    rest = tuple(freedom for freedom in unknowns if freedom in open_)
+    return [*ahead, *([(left, rest)] if left else []), *reversed(behind)]
+
+
+def _freedoms_of(constraint: Constraint, loop: Loop, edges: Sequence[TreeEdge]) -> set[Freedom]:
+    """The freedoms (tree edge, number) that the equations of a constraint are between."""
+    if not constraint.terms:
+        return {(k, f) for k, _ in loop for f in range(edges[k].freedoms)}
+    number = {edges[k].joint.name: k for k, _ in loop}
+    places = [(number[term.joint.name], term.coordinate) for term in constraint.terms]
+    return {(k, edges[k].joint.freedom_number(coordinate)) for k, coordinate in places}
+
+
+def _carrying(edges: Sequence[TreeEdge], some: Iterable[int]) -> set[int]:
+    """The tree edges that carry some edges."""
+    carrier = {edge.child: k for k, edge in enumerate(edges)}
+    found: set[int] = set()
+    for k in some:
+        link = edges[k].parent
+        while link in carrier and carrier[link] not in found:
+            found.add(carrier[link])
+            link = edges[carrier[link]].parent
+    return found
 
 
 def spanning_tree(whole: Reduction, closing: Iterable[str]) -> list[TreeEdge] | None:

@@ -83,7 +83,7 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
     const ClosingJoint& j = p.closing[c];
     const Closure& k = w.closure[c];
     Twist a = zero_twist();
-    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+    for (int l = is_relation(j.type) ? j.loop_end : j.loop_begin; l < j.loop_end; ++l) {
       const TreeJoint& t = p.joints[p.loop[l].joint];
       const Pack sign = p.loop[l].sign;
       with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {

@@ -98,7 +98,7 @@ MECHKIN_INLINE void closing_equations(const Plan& p, Workspace& w, const Block& 
     const ClosingJoint& j = p.closing[c];
     unsigned axes = ALL_AXES;
     with_closing_joint(j.type, [&](auto entry) { axes = entry.axes; });
-    place_closure(p, w, c, axes);
+    if (!is_relation(j.type)) place_closure(p, w, c, axes);
     Pack* r = w.right + j.row;
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
       if constexpr (entry.is_relation) find_curves(p, j, w.q, 1, w.function, w.curve);

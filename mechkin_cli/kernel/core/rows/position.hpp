@@ -244,6 +244,25 @@ inline void take_step(const Plan& p, Closing& c, int index, const Request& r, in
   advance_block(p, w, index, w.right, ~c.done);
 }
 
+// Whether a block is relations between coordinates alone, which do not go by places.
+inline bool is_placeless(const Plan& p, const Block& b) {
+  for (int c = b.closing_begin; c < b.closing_end; ++c)
+    if (!is_relation(p.closing[c].type)) return false;
+  return !b.charts && b.rows == b.size;
+}
+
+// Newton's first step on relations alone, before anything is placed: it closes them where they are linear.
+inline void step_unplaced(const Plan& p, Closing& c, int index, const Request& r) {
+  Workspace& w = c.w;
+  const BlockMatrices at = matrices_of(p, w, index);
+  closing_equations(p, w, p.block[index], [](auto, const Pack*) {});
+  block_jacobian(p, w, index, at.jacobian);
+  at.factor_jacobian();
+  at.solve_equations(w.right);
+  c.residual.test = __builtin_inf();
+  take_step<false>(p, c, index, r, 0);
+}
+
 // Closes one block from the guesses in the packs' w.q, all of them through each stage of a step: they meet its
 // instructions in the cache, and one is begun while another waits for its results. With `AGAIN` factors serve two steps
 // where they are good enough, which pays where no condition is wanted of them.
@@ -257,6 +276,7 @@ inline void close_packs(const Plan& p, Closing* pack, int count, int index, cons
     for (Closing* c = pack; c < pack + count; ++c)
       if (!c->over) stage(*c);
   };
+  if (r.iterations > 0 && is_placeless(p, b)) each([&](Closing& c) { step_unplaced(p, c, index, r); });
   for (int iteration = 0;; ++iteration) {
     each([&](Closing& c) { iteration ? place_moving(p, c.w, b) : place_block(p, c.w, b); });
     bool over = true;
