@@ -203,3 +203,20 @@ def test_motion_that_the_count_allows_needs_no_exact_dimensions(at: tuple[float,
     assert found.verdict.endswith(
         "as Kutzbach's count says, though one constraint is redundant to first order"
     )
+
+
+def test_the_figure_of_the_dissertation_does_not_move() -> None:
+    """The six screws of PRPRRH as its file has them are independent, so that none can turn."""
+    model = mk.load(FILE_OF["prprrh"])
+    screws = []
+    for joint in model.problem.mechanism.joints.values():
+        z = np.array(joint.axis.vector)
+        moment = np.cross(joint.point.vector, z)
+        screws.append(
+            [*np.zeros(3), *z] if joint.letter == "P" else [*z, *(moment + joint.pitch * z)]
+        )
+    assert np.linalg.matrix_rank(np.array(screws)) == 6
+    found = model.mobility()
+    assert (found.count, found.mobility, found.redundant) == (0, 0, ())
+    assert set(found.fixed) == set(model.problem.mechanism.coordinates)
+    assert found.verdict.startswith("nothing can move")
