@@ -123,6 +123,24 @@ class ImpactAt:
             return None
         return Rebound(impact, begun, (work / unit, lost / unit))
 
+    @property
+    def may_rest(self) -> bool:
+        """Whether a rest is computed: of one freedom that nothing drives."""
+        return self.charts == 1 and not self.result.response.driven
+
+    def lever(self) -> float:
+        """The outward rate of the coordinate per that of the start's coordinate."""
+        ((joint, coordinate),) = self.result.response.independent
+        known = self.result.problem.quantities()
+        wanted = [known[f"{joint}.{coordinate}_dot"], self.rates_of[0]]
+        readout = self.session.readout(wanted)
+        batch = self.session.run(
+            self._rows(np.ones((1, 1))), Ask(Demand.VELOCITY, readout, iterations=0)
+        )
+        assert batch.outputs is not None
+        own, limited = (float(batch.outputs[readout.slots[one.name].start, 0]) for one in wanted)
+        return self.first.side * limited / own if own != 0.0 else 0.0
+
     def rests(self, rates: Floats, accelerations: Floats) -> bool:
         """Whether the coordinate does not come off its limit by more than what is still at it, by
         the chart's rates and accelerations (charts,) behind the impact."""
@@ -275,7 +293,9 @@ def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> 
     )
 
 
-def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diagnostic]:
+def impact_notes(
+    result: ResponseResult, impacts: Sequence[Impact], *, ended: bool
+) -> list[Diagnostic]:
     """How often each coordinate rebounds and with what impulse, and which comes to rest."""
     units, notes = result.units, []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
@@ -289,7 +309,8 @@ def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diag
         if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
             text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
         if rests:
-            text += f", and rests at it from {at[-1]} on: the response ends there"
+            text += f", and rests at it from {at[-1]} on"
+            text += ": the response ends there" if ended else ""
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)
