@@ -151,9 +151,17 @@ class ResponseProblem:
 
     @property
     def efforts_of(self) -> list[tuple[str, str]]:
-        """(joint, coordinate) whose effort is told: those with efforts, then the driven ones."""
+        """(joint, coordinate) whose effort is told: those with efforts, then the driven ones, then
+        those that limits push."""
         given = [one.acts_at for one in self.efforts]
-        return list(dict.fromkeys([*given, *((d.joint, d.coordinate) for d in self.driven)]))
+        return list(dict.fromkeys([*given, *self.driven_at, *self.rebounding]))
+
+    @cached_property
+    def rebounding(self) -> tuple[tuple[str, str], ...]:
+        """(joint, coordinate) that nothing drives and that have limits with a restitution."""
+        ends = (stop.limit for stop in self.stops if isinstance(stop, CrossingEnd))
+        found = [(end.joint, end.coordinate) for end in ends if end and end.restitution is not None]
+        return tuple(at for at in dict.fromkeys(found) if at not in self.driven_at)
 
 
 def _watched(stop: Stop) -> LoadLaw:

@@ -16,7 +16,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.mechanism import CrossingEnd, Limit, eliminated, is_angle
+from mechkin_cli.mechanism import ORDERS, CrossingEnd, Limit, eliminated, is_angle
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.response.integration import Beginning, Impact, MotionEnd, MotionRows
@@ -56,6 +56,44 @@ def touched_limit(response: ResponseProblem, moved: MotionRows) -> CrossingEnd |
     if not isinstance(stop, CrossingEnd) or stop.limit is None:
         return None
     return None if stop.limit.restitution is None else stop
+
+
+def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
+    """A motion that begins at a limit and would go beyond it, as one that the limit ends at once;
+    else the motion itself."""
+    for number, stop in enumerate(result.response.stops):
+        if not isinstance(stop, CrossingEnd) or stop.limit is None or stop.at is None:
+            continue
+        side = 1.0 if stop.direction == "up" else -1.0
+        value, rate, pushed = (
+            side * float(np.asarray(result.quantity(f"{stop.limit.name}{order}").value)[0])
+            for order in ORDERS[:3]
+        )
+        unit = 1.0 if is_angle(stop.limit.coordinate) else result.session.layout.length
+        still = tolerances.KINK_ROUNDING * unit
+        outward = rate > still or (abs(rate) <= still and pushed > still)
+        if abs(value - side * stop.at) > tolerances.AT_LIMIT * unit or not outward:
+            continue
+
+        def cut(array: NDArray[Any]) -> NDArray[Any]:
+            found = np.array(array)
+            found[..., 1] = found[..., 0]  # the stop's own place
+            if found.dtype == np.float64:
+                found[..., 2:] = np.nan
+            return found
+
+        report = moved.report._replace(
+            end=MotionEnd.STOPPED,
+            stop=number,
+            rows=1,
+            time=float(result.response.moments.values[0]),
+            crossings=[],
+            touches=[],
+        )
+        chart = Chart(*(cut(array) for array in moved.chart))
+        states, turns, work = (cut(array) for array in (moved.states, moved.turns, moved.work))
+        return MotionRows(report, states, chart, turns, work, cut(moved.flags))
+    return moved
 
 
 class ImpactAt:
@@ -122,6 +160,24 @@ class ImpactAt:
         if any(touch.limit.restitution is None for touch in self._pushing(numbers)):
             return None
         return Rebound(impact, begun, (work / unit, lost / unit))
+
+    @property
+    def may_rest(self) -> bool:
+        """Whether a rest is computed: of one freedom that nothing drives."""
+        return self.charts == 1 and not self.result.response.driven
+
+    def lever(self) -> float:
+        """The outward rate of the coordinate per that of the start's coordinate."""
+        ((joint, coordinate),) = self.result.response.independent
+        known = self.result.problem.quantities()
+        wanted = [known[f"{joint}.{coordinate}_dot"], self.rates_of[0]]
+        readout = self.session.readout(wanted)
+        batch = self.session.run(
+            self._rows(np.ones((1, 1))), Ask(Demand.VELOCITY, readout, iterations=0)
+        )
+        assert batch.outputs is not None
+        own, limited = (float(batch.outputs[readout.slots[one.name].start, 0]) for one in wanted)
+        return self.first.side * limited / own if own != 0.0 else 0.0
 
     def rests(self, rates: Floats, accelerations: Floats) -> bool:
         """Whether the coordinate does not come off its limit by more than what is still at it, by
@@ -210,6 +266,8 @@ class ImpactAt:
         made = [answer for answer in answers if answer is not None]
         outward = [float(row[0]) for row in rates]
         active = [k for k, rate in enumerate(outward) if rate > 0.0]
+        if not active:
+            return [0], [0.0], made[:1]  # it stands there, and may rest
         tried: list[list[int]] = []
         while active and active not in tried:
             tried.append(active)
@@ -275,7 +333,9 @@ def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> 
     )
 
 
-def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diagnostic]:
+def impact_notes(
+    result: ResponseResult, impacts: Sequence[Impact], *, ended: bool
+) -> list[Diagnostic]:
     """How often each coordinate rebounds and with what impulse, and which comes to rest."""
     units, notes = result.units, []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
@@ -289,7 +349,8 @@ def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diag
         if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
             text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
         if rests:
-            text += f", and rests at it from {at[-1]} on: the response ends there"
+            text += f", and rests at it from {at[-1]} on"
+            text += ": the response ends there" if ended else ""
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)

@@ -177,7 +177,10 @@ class ResponseResult(Result):
 
     def is_given(self, quantity: Wanted) -> bool:
         """Whether a quantity is one of the response's efforts."""
-        return quantity.kind == "effort" and bool(self._amounts(quantity))
+        if quantity.kind != "effort":
+            return False
+        at = (quantity.owner, quantity.coordinate)
+        return bool(self._amounts(quantity)) or at in self.response.rebounding
 
     @property
     def work(self) -> Floats:

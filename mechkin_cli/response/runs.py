@@ -29,7 +29,13 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
-from mechkin_cli.response.impacts import ImpactAt, impact_notes, joined, touched_limit
+from mechkin_cli.response.impacts import (
+    ImpactAt,
+    impact_notes,
+    joined,
+    stopped_at_start,
+    touched_limit,
+)
 from mechkin_cli.response.integration import (
     Beginning,
     Impact,
@@ -40,6 +46,15 @@ from mechkin_cli.response.integration import (
     ending,
     free_session,
     integrate,
+    with_loads,
+)
+from mechkin_cli.response.resting import (
+    Contact,
+    at_moments,
+    at_rest,
+    holding,
+    leaves,
+    with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, ResponseResult
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, input_unit, turn_count
@@ -401,38 +416,110 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
 
 
 def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
-    """The rows with those behind impacts at limits that have a restitution."""
+    """The rows with those behind impacts at limits that have a restitution, and of rests there."""
     result = rows_of(one, moved)
+    if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
+        moved = stopped_at_start(result, moved)
+        result = rows_of(one, moved)
     impacts: list[Impact] = []
-    while (stop := touched_limit(one.response, moved)) is not None:
+    contacts: list[Contact] = []
+    ended = ""
+    while (stop := touched_limit(one.response, moved)) is not None and stop.limit is not None:
         touch = ImpactAt(result, stop)
         rebound = touch.rebound()
         times = one.response.moments.values[moved.report.rows :]
         if rebound is None or not times.size or len(impacts) == tolerances.MOST_IMPACTS:
             break
         impacts.append(rebound.impact)
-        (later,) = integrate(
-            [(one.free.plan, rebound.begun)],
-            rebound.impact.time,
-            np.array([rebound.impact.time, *times]),
-            stops=[watched_stop(each) for each in one.response.stops],
-            driven=one.driven,
-            tolerance=one.response.tolerance,
-            fixed_step=one.response.fixed_step,
-            straight=one.chosen.problem.assembly.straight,
-            packing=packing,
-        )
+        later = _onward(one, rebound.begun, rebound.impact.time, times, packing)
+        work = rebound.work
         if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
             impacts[-1] = impacts[-1]._replace(rests=True)
-            break
-        moved = joined(moved, later, rebound.work)
+            lever = touch.lever() if touch.may_rest else 0.0
+            if lever == 0.0:
+                ended = f"{stop.limit.name} rests at its limit"
+                break
+            moved, contact = _rested(one, moved, touch, lever, work)
+            contacts.append(contact)
+            times = one.response.moments.values[moved.report.rows :]
+            if moved.report.end is MotionEnd.DONE:
+                break
+            begun = rebound.begun._replace(first=np.zeros(rebound.begun.first.shape))
+            later = _onward(one, begun, moved.report.time, times, packing)
+            work = (0.0, 0.0)
+        moved = joined(moved, later, work)
         result = rows_of(one, moved)
+    if contacts:
+        reached = one.response.moments.values
+        response = with_contacts(one.response, contacts, reached)
+        problem = replace(
+            one.free.problem,
+            mechanism=replace(
+                one.free.problem.mechanism,
+                loads=(
+                    *one.free.problem.mechanism.loads,
+                    *response.efforts[len(one.response.efforts) :],
+                ),
+            ),
+            load_laws=response.load_laws,
+            response=response,
+        )
+        held = with_loads(one.free, problem)
+        result = rows_of(replace(one, response=response, free=held), moved)
     if impacts:
         result.impacts = tuple(impacts)
-        if impacts[-1].rests and stop is not None and stop.limit is not None:
-            result.events = (*result.events[:-1], f"{stop.limit.name} rests at its limit")
-        result.row_states.diagnostics += impact_notes(result, impacts)
+        if ended:
+            result.events = (*result.events[:-1], ended)
+        result.row_states.diagnostics += impact_notes(result, impacts, ended=bool(ended))
     return result
+
+
+def _onward(
+    one: Prepared, begun: Beginning, time: float, times: Floats, packing: Packing
+) -> MotionRows:
+    """The motion from a moment on, its first row."""
+    (later,) = integrate(
+        [(one.free.plan, begun)],
+        time,
+        np.array([time, *times]),
+        stops=[watched_stop(each) for each in one.response.stops],
+        driven=one.driven,
+        tolerance=one.response.tolerance,
+        fixed_step=one.response.fixed_step,
+        straight=one.chosen.problem.assembly.straight,
+        packing=packing,
+    )
+    return later
+
+
+def _rested(
+    one: Prepared, moved: MotionRows, touch: ImpactAt, lever: float, work: tuple[float, float]
+) -> tuple[MotionRows, Contact]:
+    """The motion with the rows of a rest, up to the last or to where it leaves the limit; and the
+    limit's force."""
+
+    def push(times: Floats) -> Floats:
+        response = at_moments(one.response, one.free.problem, times)
+        still = at_rest(moved, times.size, times.size, times.size + 1)
+        return -holding(rows_of(replace(one, response=response), still)) / lever
+
+    begin, moments, first = moved.report.time, one.response.moments.values, moved.report.rows
+    times = moments[first:]
+    at = leaves(push, begin, times)
+    rows = times.size if at is None else int(np.searchsorted(times, at, side="right"))
+    # what began at rest does so in its first row, too
+    own = int(
+        first > 0 and moments[first - 1] == begin and not moved.chart.rates[:, first - 1].any()
+    )
+    count = 1 + own + rows
+    is_left = at is not None and rows < times.size
+    still = at_rest(moved, count, count + is_left, times.size + own + 2)
+    if at is not None and is_left:
+        still = replace(still, report=still.report._replace(time=at, end=MotionEnd.STOPPED))
+    before = replace(moved, report=moved.report._replace(rows=first - own))
+    limit, side = touch.first
+    held = moments[first - own : first + rows]
+    return joined(before, still, work), Contact(limit, held, -side * push(held))
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:

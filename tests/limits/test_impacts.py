@@ -68,13 +68,54 @@ def test_a_slide_rebounds_to_heights_by_the_square_of_the_restitution(e: float) 
 
 @pytest.mark.parametrize("e", [0.0, 0.5, 0.8])
 def test_a_slide_rests_in_finite_time(e: float) -> None:
-    result = mk.loads(SLIDE.format(e=e, to=20.0)).respond("fall")
+    result = mk.loads(SLIDE.format(e=e, to=7.0)).respond("fall")
     at = sqrt(0.4) * (1.0 + 2.0 * e / (1.0 - e))
     # a flight no higher than 1e-9 of the size is left out, which lasts 3e-5 s
-    assert result["time"][-1] == pytest.approx(at, abs=5e-4)
-    assert result["row.event"][-1] == "S.s rests at its limit"
-    assert result["S.s"][-1] == pytest.approx(-2.0, abs=1e-12)
+    assert impacts_of(result)[-1].time == pytest.approx(at, abs=5e-4)
+    assert impacts_of(result)[-1].rests
+    assert result["time"][-1] == 7.0
+    np.testing.assert_allclose(result["S.s"][result["time"] > at], -2.0, atol=1e-11)
+    np.testing.assert_allclose(result["S.effort"][result["time"] > at], 20.0, rtol=1e-12)
     assert "rests" in {d.code for d in result.diagnostics}
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_what_begins_at_a_limit_rests_there(e: float) -> None:
+    text = SLIDE.format(e=e, to=1.0).replace("{S.s: 0}", "{S.s: -2}")
+    result = mk.loads(text).respond("fall")
+    np.testing.assert_array_equal(result["S.s"], np.full(11, -2.0))
+    np.testing.assert_array_equal(result["S.s_ddot"], np.zeros(11))
+    np.testing.assert_allclose(result["S.effort"], 20.0, rtol=1e-13)
+    assert set(result["row.status"]) == {"ok"}
+
+
+def test_what_begins_at_a_limit_outwards_rebounds_or_ends_at_once() -> None:
+    text = SLIDE.format(e=0.5, to=0.5).replace("{S.s: 0}", "{S.s: -2, S.s_dot: -8}")
+    result = mk.loads(text).respond("fall")
+    time = result["time"][1:]
+    np.testing.assert_allclose(result["S.s"][1:], -2.0 + 4.0 * time - 5.0 * time**2, atol=1e-12)
+    assert impacts_of(result)[0].impulses[0] == pytest.approx(2.0 * 12.0, rel=1e-13)
+    ended = mk.loads(text.replace(", restitution: 0.5", "")).respond("fall")
+    assert ended["time"].tolist() == [0.0]
+    assert ended["row.event"][0] == "S.s at its limit -2 m"
+
+
+def test_what_begins_at_a_limit_inwards_goes() -> None:
+    text = SLIDE.format(e=0.5, to=0.5).replace("{S.s: 0}", "{S.s: -2, S.s_dot: 4}")
+    result = mk.loads(text).respond("fall")
+    time = result["time"]
+    np.testing.assert_allclose(result["S.s"], -2.0 + 4.0 * time - 5.0 * time**2, atol=1e-12)
+    assert not impacts_of(result)
+
+
+def test_of_several_freedoms_a_rest_ends_the_response() -> None:
+    start = "{A.theta: 0.9, B.theta: 0.3, A.theta_dot: 1, B.theta_dot: 3}"
+    bounds = "limits: {B.theta: {max: 0.8, restitution: 0}}\n"
+    run = f"responses: {{swing: {{start: {start}, time: {{from: 0, to: 9, step: 0.01}}}}}}\n"
+    torque = "loads: [{type: torque, joint: B, value: 20 N*m}]\n"
+    result = mk.loads(DOUBLE.partition("loads:")[0] + torque + bounds + run).respond("swing")
+    assert result["time"][-1] < 9.0
+    assert result["row.event"][-1] == "B.theta rests at its limit"
 
 
 def test_a_pendulum_between_stops_swings_with_the_energy_that_is_left() -> None:
@@ -255,3 +296,41 @@ def test_what_no_rebound_bears_is_refused(old: str, new: str, code: str) -> None
     with pytest.raises(mk.InvalidFile) as refused:
         mk.loads(SLIDE.format(e=0.5, to=1.0).replace(old, new))
     assert [d.code for d in refused.value.diagnostics] == [code]
+
+
+@pytest.mark.parametrize("e", [0.0, 0.3])
+def test_a_slide_rests_by_the_limits_force_and_leaves_where_it_would_pull(e: float) -> None:
+    effort = 'efforts: {S.s: "10 N*time/(1 s)"}, time: {from: 0, to: 2.6, step: 0.1}'
+    text = SLIDE.format(e=e, to=1.0).replace("time: {from: 0, to: 1.0, step: 0.1}", effort)
+    result = mk.loads(text).respond("fall")
+    time = result["time"]
+    at = impacts_of(result)[-1].time
+    resting = (time > at) & (time < 2.0)
+    assert resting.any()
+    np.testing.assert_allclose(result["S.s"][resting], -2.0, atol=1e-11)
+    assert (result["S.s_dot"][resting] == 0.0).all()
+    assert (result["S.s_ddot"][resting] == 0.0).all()
+    # the weight of 20 N, borne by the given force and the limit
+    np.testing.assert_allclose(result["S.effort"][resting], 20.0, rtol=1e-12)
+    # from 2 s on the given force is above the weight
+    after = time - 2.0
+    free = after > 1e-9
+    np.testing.assert_allclose(result["S.s"][free], -2.0 + 5.0 / 6.0 * after[free] ** 3, atol=1e-11)
+    np.testing.assert_allclose(result["S.s_dot"][free], 2.5 * after[free] ** 2, atol=1e-11)
+    np.testing.assert_allclose(result["S.effort"][free], 10.0 * time[free], rtol=1e-12)
+    assert len(time) == 27
+    assert set(result["row.status"]) == {"ok"}
+    assert np.nanmax(result["row.energy_error"]) < 1e-9
+
+
+def test_a_four_bar_rests_on_a_limit_of_its_rocker() -> None:
+    run = "responses: {swing: {start: {A.theta: 0}, time: {from: 0, to: 3, step: 0.1}}}\n"
+    text = f"{FOUR_BAR}limits: {{D.theta: {{min: -0.04, restitution: 0}}}}\n{run}"
+    result = mk.loads(text).respond("swing")
+    np.testing.assert_allclose(result["D.theta"][5:], -0.04, atol=1e-11)
+    sweep = "motion: {inputs: {D.theta: {values: [-0.039999, -0.040001]}}}\n"
+    away = mk.loads(f"{FOUR_BAR}assembly: {{near: {{A.theta: -0.2}}}}\n{sweep}")
+    potential = away.analyze(["row.potential_energy", "A.theta"])
+    slope = np.diff(potential["row.potential_energy"])[0] / -2e-6
+    np.testing.assert_allclose(potential["A.theta"], result["A.theta"][-1], atol=1e-4)
+    np.testing.assert_allclose(result["D.effort"][5:], slope, rtol=1e-7)
