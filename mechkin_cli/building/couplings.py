@@ -13,7 +13,8 @@ import numpy as np
 
 from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
-from mechkin_cli.building.law_reading import Over, read_law
+from mechkin_cli.building.law_reading import Over, note_bends, read_law
+from mechkin_cli.building.law_shapes import PiecewiseLaw
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
@@ -31,6 +32,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
+    ExpressionLaw,
     FollowerSection,
     FrictionAtJoint,
     FunctionCoupling,
@@ -264,10 +266,18 @@ def _law(
     path = (*path, "law")
     if isinstance(section.law, TableLaw):
         return _by_table(fields, (*path, "file"), section.law.file, section.law, dimensions)
+    if isinstance(section.law, ExpressionLaw):
+        text = section.law.value
+        return _by_expression(fields, (*path, "value"), section.of, text, dimensions)
     errors = fields.error_count
-    over = Over(dimensions[0], 0.0, None, in_si=True)
+    over = Over(dimensions[0], 0.0, in_si=True)
     law = read_law(fields, path, section.law, dimensions[1], over)
-    return None if fields.error_count > errors else CoordinateLaw(law.at)
+    if fields.error_count > errors:
+        return None
+    assert isinstance(law, PiecewiseLaw)  # no expression
+    if not law.is_recorded:  # else noted when the file was read
+        note_bends(fields, path, section.law, dimensions[1], over)
+    return CoordinateLaw(law.at)
 
 
 def _by_expression(

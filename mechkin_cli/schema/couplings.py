@@ -166,6 +166,13 @@ class TableCoupling(JoinedTable):
     follower: FollowerSection | None = None
     """The follower of a cam, for `mechkin cam`; left out, none."""
 
+    def check(self) -> None:
+        """The slope does not jump."""
+        super().check()
+        if self.interpolation == "linear":
+            text = "the slope of a linear table jumps at its points, where forces would be infinite"
+            raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
+
 
 class Toothed(Section):
     """Teeth that push on each other along their flanks."""
