@@ -108,8 +108,13 @@ class Status(IntEnum):
             "finite reactions hold them."
         ),
     )
-    slack = (
+    beyond_limit = (
         12,
+        "position, rates, forces",
+        "solved, but a coordinate is beyond its limit: the mechanism does not come here.",
+    )
+    slack = (
+        13,
         "position, rates, forces",
         "solved as if a strand that goes slack there pushed, which no belt, chain or cable does.",
     )
@@ -143,6 +148,11 @@ def has_solution(codes: NDArray[np.int8]) -> Bools:
 def has_rates(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_rates` of many rows, the same shape as the codes."""
     return _having(codes, lambda status: status.has_rates)
+
+
+def has_forces(codes: NDArray[np.int8]) -> Bools:
+    """`Status.has_forces` of many rows, the same shape as the codes."""
+    return _having(codes, lambda status: status.has_forces)
 
 
 def _having(codes: NDArray[np.int8], mark: Callable[[Status], bool]) -> Bools:

@@ -18,6 +18,7 @@ from mechkin_cli.building.couplings import (
     refuse_friction,
     refuse_tied_friction,
 )
+from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
     AlreadyRefused,
@@ -30,6 +31,7 @@ from mechkin_cli.building.fields import (
     read_units,
 )
 from mechkin_cli.building.joints import build_linkage
+from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
 from mechkin_cli.building.responses import (
@@ -49,6 +51,7 @@ from mechkin_cli.building.tables import (
 )
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number
 from mechkin_cli.expressions import (
+    Definitions,
     ExpressionError,
     Move,
     Name,
@@ -221,6 +224,7 @@ def read_fields(
     read_parameters(fields, file.parameters, given, moved)
     if datum != ZERO:
         fields.datum = Datum(datum, file.parameters, given, units)
+    define_cylinders(fields, file)
     if file.quantities:
         read_quantities(fields, file.quantities)
     return fields
@@ -238,6 +242,8 @@ def build_problem(
     is not built again, nor are the motions in time of `moving` responses."""
     points = read_points(fields, file)
     links, joints = build_linkage(fields, file)
+    telescopes, slides = build_cylinders(fields, file.cylinders, points)
+    links, joints = links | telescopes, joints | slides
     for coupled in coupled_joints(fields, file.couplings, joints):
         joints[coupled] = counted(joints[coupled])
     couplings = build_couplings(fields, file.couplings, joints)
@@ -253,6 +259,7 @@ def build_problem(
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
+    limits = build_limits(fields, file, joints)
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
     mechanism = Mechanism(
@@ -260,6 +267,7 @@ def build_problem(
     )
     mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
+    problem = replace(problem, limits=limits)
     # rows of responses have a time
     swept = problem.quantities()
     timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
@@ -402,8 +410,11 @@ def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> N
     expressions that use it get no message of their own."""
     samples = [ColumnSample(fields, problem_of(problem, run), run) for run in runs_of(file)]
     values: list[dict[str, Quantity]] = [{} for _ in samples]
-    for name in fields.definitions.named:
-        expression = parse(file.quantities[name])
+    named = fields.definitions.named
+    # of what is no quantity of the file nothing is known here: it stands for what it is
+    others = Definitions({n: one for n, one in named.items() if n not in file.quantities})
+    for name in filter(file.quantities.__contains__, named):
+        expression = others.expanded(parse(file.quantities[name]))
         uses = {node.text.partition(".")[0] for node in expression.nodes if isinstance(node, Name)}
         if uses & fields.refused:
             fields.refused.add(name)

@@ -495,8 +495,18 @@ def build_linkage(
     if chain:
         joints |= build_chain(fields, file.chain, chain)
     pairs = [(joint.links[0], joint.links[1]) for joint in file.joints.values()]
-    _check_connected(fields, links, [*pairs, *chain])
+    _check_connected(fields, links, [*pairs, *chain, *_joined_by_cylinders(file)])
     return links, joints
+
+
+def _joined_by_cylinders(file: MechanismFile) -> list[tuple[str, str]]:
+    """The links that each cylinder joins, as far as its points are known."""
+    ends = ((one.first, one.last) for one in file.cylinders.values())
+    return [
+        (file.points[first].link, file.points[last].link)
+        for first, last in ends
+        if first in file.points and last in file.points
+    ]
 
 
 def _check_connected(

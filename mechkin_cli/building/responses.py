@@ -11,8 +11,9 @@ that are followed; and the idle freedoms of a built problem.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -21,12 +22,14 @@ from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_co
 from mechkin_cli.building.load_laws import LoadLaws
 from mechkin_cli.building.motion import build_inputs, has_too_many_rows, spaced_moments
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
+from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import (
     Assembly,
     CrossingEnd,
     DeadCentreEnd,
     Joint,
     JointLoad,
+    LoadLaw,
     Moments,
     MotionInputs,
     Problem,
@@ -300,12 +303,37 @@ class _ResponseBuilder:
             driven=driven.inputs,
             course=driven.course,
             moments=clock.time,
-            stops=stops.build(path, section.stop),
+            stops=(*self._stops(path, section, stops), *self._limits()),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, clock.time),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
+
+    def _stops(
+        self, path: Path, section: written.Response, builder: StopBuilder
+    ) -> tuple[Stop, ...]:
+        """The stops that are written; none counts over impacts, at which a new motion begins."""
+        stops = builder.build(path, section.stop)
+        if all(limit.restitution is None for limit in self.problem.limits):
+            return stops
+        for i, stop in enumerate(section.stop):
+            if isinstance(stop, written.Turns) or stop.count > 1:
+                text = "with limits that have a restitution a stop does not count"
+                hint = "end at a value: {value: A.theta, at: 720 deg}; or leave out the restitution"
+                self.fields.error("counted-stop", (*path, "stop", i), text, hint)
+        return stops
+
+    def _limits(self) -> Iterator[CrossingEnd]:
+        """The stops at the limits of coordinates."""
+        directions: tuple[Literal["down", "up"], ...] = ("down", "up")
+        for limit in self.problem.limits:
+            for direction, at in zip(directions, (limit.low, limit.high), strict=True):
+                if isfinite(at):
+                    dimension = dimension_of(limit.coordinate)
+                    words = f"{limit.name} at its limit {self.fields.units.text(at, dimension)}"
+                    law = LoadLaw((limit.name,), limit.place, parse(limit.name))
+                    yield CrossingEnd(words, limit.place, law, dimension, at, direction, 1, limit)
 
     def recorded(
         self, name: str, section: written.Response, known: ResponseProblem

@@ -561,7 +561,10 @@ class Definitions:
     def _is_replaced(self, node: Node) -> bool:
         if isinstance(node, OperationNode):
             return node.symbol == "derivative" and self.differentiate is not None
-        return isinstance(node, Name) and node.text.partition(".")[0] in self.named
+        if not isinstance(node, Name):
+            return False
+        parts = (node.text, node.text.partition(".")[0], node.text.rpartition(".")[0])
+        return any(part in self.named for part in parts)
 
     def _replacement(self, name: Name) -> list[Node]:
         whole = self.named.get(name.text)

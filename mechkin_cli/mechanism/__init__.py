@@ -52,8 +52,8 @@ __getattr__, __dir__ = lazy_names(
         "joint": "GROUND_NAME Joint counted far_link frame_on is_written stop_of",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal without_effort",
-        "motion": "Assembly CellKind Course DrivenInput ExactMotion Moments MotionInputs ORDERS "
-        "Parameter",
+        "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
+        "ORDERS Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
         "FrictionLaw JointType Motion Part Rubbing SECOND Screw screws_at",
         "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES dimension_of guide_letter is_angle joint_type "

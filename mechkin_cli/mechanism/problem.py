@@ -31,7 +31,7 @@ from mechkin_cli.mechanism.derived import (
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME
 from mechkin_cli.mechanism.model import Mechanism, without_effort
-from mechkin_cli.mechanism.motion import Assembly, MotionInputs
+from mechkin_cli.mechanism.motion import Assembly, Limit, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
 from mechkin_cli.mechanism.wanted import Wanted
@@ -62,7 +62,8 @@ class Problem:
     """A mechanism, how it moves, how it is assembled, and the units of its file.
 
     Mechanism, motion and laws are those of the sweep; `responses` are the file's other runs, and
-    `response` is the one whose first moment this is (`mechanism.response.response_problem`).
+    `response` is the one whose first moment this is (`mechanism.response.response_problem`);
+    `limits` are where coordinates end.
     """
 
     mechanism: Mechanism
@@ -78,6 +79,7 @@ class Problem:
     follow: tuple[str, ...] | None = None
     responses: Mapping[str, ResponseProblem] = field(default_factory=dict)
     response: ResponseProblem | None = None
+    limits: tuple[Limit, ...] = ()
     _known: Mapping[str, Wanted] | None = field(default=None, init=False, repr=False, compare=False)
 
     @property

@@ -23,7 +23,7 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import JointLoad, Mechanism
-    from mechkin_cli.mechanism.motion import Assembly, Course
+    from mechkin_cli.mechanism.motion import Assembly, Course, Limit
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -50,7 +50,8 @@ class CrossingEnd:
     """Ends a response where the value of `law` passes `at` (SI) the `count`th time, rising (`up`),
     falling or either; without `at`, where the condition `law` holds the `count`th time.
 
-    `words` are what a row says of it: `O1.theta = 45 deg`.
+    `words` are what a row says of it: `O1.theta = 45 deg`. `limit`: that of a coordinate, where it
+    is one.
     """
 
     words: str
@@ -60,6 +61,7 @@ class CrossingEnd:
     at: float | None
     direction: Direction
     count: int
+    limit: Limit | None = None
 
 
 @dataclass(frozen=True)
@@ -149,9 +151,17 @@ class ResponseProblem:
 
     @property
     def efforts_of(self) -> list[tuple[str, str]]:
-        """(joint, coordinate) whose effort is told: those with efforts, then the driven ones."""
+        """(joint, coordinate) whose effort is told: those with efforts, then the driven ones, then
+        those that limits push."""
         given = [one.acts_at for one in self.efforts]
-        return list(dict.fromkeys([*given, *((d.joint, d.coordinate) for d in self.driven)]))
+        return list(dict.fromkeys([*given, *self.driven_at, *self.rebounding]))
+
+    @cached_property
+    def rebounding(self) -> tuple[tuple[str, str], ...]:
+        """(joint, coordinate) that nothing drives and that have limits with a restitution."""
+        ends = (stop.limit for stop in self.stops if isinstance(stop, CrossingEnd))
+        found = [(end.joint, end.coordinate) for end in ends if end and end.restitution is not None]
+        return tuple(at for at in dict.fromkeys(found) if at not in self.driven_at)
 
 
 def _watched(stop: Stop) -> LoadLaw:

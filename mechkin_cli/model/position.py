@@ -50,8 +50,8 @@ class Position(dict[str, "float | NDArray[np.float64]"]):
 
     Attributes:
         status: the verdict, as of a row: `ok`; `near-singular` or `dead-centre` close to a place
-            where rates grow without bound; `branch-lost` where the branch does not lead to the
-            inputs.
+            where rates grow without bound; `beyond-limit`; `branch-lost` where the branch does not
+            lead to the inputs.
     """
 
     __slots__ = ("status",)
@@ -126,7 +126,7 @@ class Solver:
         whole += [0.0] * len(self.held)
         full += self.held
         found = None if self.native is None else self.native.solve(values, whole, full)
-        if found is None or not rates_are_clear(found[1]):
+        if found is None or self.problem.limits or not rates_are_clear(found[1]):
             return self._judged(places, values)
         outputs = found[0]
         cells: dict[str, float | NDArray[np.float64]] = {}

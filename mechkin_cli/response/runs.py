@@ -29,8 +29,10 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
+from mechkin_cli.response.impacts import ImpactAt, impact_notes, joined, touched_limit
 from mechkin_cli.response.integration import (
     Beginning,
+    Impact,
     MotionEnd,
     MotionRows,
     WatchedStop,
@@ -38,6 +40,15 @@ from mechkin_cli.response.integration import (
     ending,
     free_session,
     integrate,
+    with_loads,
+)
+from mechkin_cli.response.resting import (
+    Contact,
+    at_moments,
+    at_rest,
+    holding,
+    leaves,
+    with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, ResponseResult
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, input_unit, turn_count
@@ -47,6 +58,8 @@ from mechkin_cli.sweep import (
     at_once,
     first_assembly,
     judge_condition,
+    judge_limits,
+    limited,
     lost_rates,
     rest_on_reactions,
     row_notes,
@@ -354,7 +367,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            results[number] = rows_of(variants[number], rows)
+            results[number] = _rebounding(variants[number], rows, packing)
     return [results[number] for number in range(len(variants))]
 
 
@@ -394,6 +407,102 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         straight=first.chosen.problem.assembly.straight,
         packing=packing,
     )
+
+
+def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
+    """The rows with those behind impacts at limits that have a restitution, and of rests there."""
+    result = rows_of(one, moved)
+    impacts: list[Impact] = []
+    contacts: list[Contact] = []
+    ended = ""
+    while (stop := touched_limit(one.response, moved)) is not None and stop.limit is not None:
+        touch = ImpactAt(result, stop)
+        rebound = touch.rebound()
+        times = one.response.moments.values[moved.report.rows :]
+        if rebound is None or not times.size or len(impacts) == tolerances.MOST_IMPACTS:
+            break
+        impacts.append(rebound.impact)
+        later = _onward(one, rebound.begun, rebound.impact.time, times, packing)
+        work = rebound.work
+        if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
+            impacts[-1] = impacts[-1]._replace(rests=True)
+            lever = touch.lever() if touch.may_rest else 0.0
+            if lever == 0.0:
+                ended = f"{stop.limit.name} rests at its limit"
+                break
+            moved, contact = _rested(one, moved, touch, lever, work)
+            contacts.append(contact)
+            times = one.response.moments.values[moved.report.rows :]
+            if moved.report.end is MotionEnd.DONE:
+                break
+            begun = rebound.begun._replace(first=np.zeros(rebound.begun.first.shape))
+            later = _onward(one, begun, moved.report.time, times, packing)
+            work = (0.0, 0.0)
+        moved = joined(moved, later, work)
+        result = rows_of(one, moved)
+    if contacts:
+        reached = one.response.moments.values
+        response = with_contacts(one.response, contacts, reached)
+        problem = replace(
+            one.free.problem,
+            mechanism=replace(
+                one.free.problem.mechanism,
+                loads=(
+                    *one.free.problem.mechanism.loads,
+                    *response.efforts[len(one.response.efforts) :],
+                ),
+            ),
+            load_laws=response.load_laws,
+            response=response,
+        )
+        held = with_loads(one.free, problem)
+        result = rows_of(replace(one, response=response, free=held), moved)
+    if impacts:
+        result.impacts = tuple(impacts)
+        if ended:
+            result.events = (*result.events[:-1], ended)
+        result.row_states.diagnostics += impact_notes(result, impacts, ended=bool(ended))
+    return result
+
+
+def _onward(
+    one: Prepared, begun: Beginning, time: float, times: Floats, packing: Packing
+) -> MotionRows:
+    """The motion from a moment on, its first row."""
+    (later,) = integrate(
+        [(one.free.plan, begun)],
+        time,
+        np.array([time, *times]),
+        stops=[watched_stop(each) for each in one.response.stops],
+        driven=one.driven,
+        tolerance=one.response.tolerance,
+        fixed_step=one.response.fixed_step,
+        straight=one.chosen.problem.assembly.straight,
+        packing=packing,
+    )
+    return later
+
+
+def _rested(
+    one: Prepared, moved: MotionRows, touch: ImpactAt, lever: float, work: tuple[float, float]
+) -> tuple[MotionRows, Contact]:
+    """The motion with the rows of a rest, up to the last or to where it leaves the limit; and the
+    limit's force."""
+
+    def push(times: Floats) -> Floats:
+        response = at_moments(one.response, one.free.problem, times)
+        still = at_rest(moved, times.size, times.size, times.size + 1)
+        return -holding(rows_of(replace(one, response=response), still)) / lever
+
+    begin, times = moved.report.time, one.response.moments.values[moved.report.rows :]
+    at = leaves(push, begin, times)
+    rows = times.size if at is None else int(np.searchsorted(times, at, side="right"))
+    places = 1 + rows + (at is not None and rows < times.size)
+    still = at_rest(moved, 1 + rows, places, times.size + 2)
+    if at is not None and rows < times.size:
+        still = replace(still, report=still.report._replace(time=at, end=MotionEnd.STOPPED))
+    limit, side = touch.first
+    return joined(moved, still, work), Contact(limit, times[:rows], -side * push(times[:rows]))
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
@@ -462,8 +571,8 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
     requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]
     rows = result.row_states
     if rows.reached.any():
-        energies = [known[name] for name in ENERGIES]
-        wanted, demand = at_once(result.session, [*requested, *energies], verdicts=True)
+        judging = [*(known[name] for name in ENERGIES), *limited(result.problem)]
+        wanted, demand = at_once(result.session, [*requested, *judging], verdicts=True)
         wanted = [q for q in wanted if not result.is_given(q)]
         wanted += result.friction.beside(result.problem, wanted, demand)
         ask = Ask(demand, result.session.readout(wanted) if wanted else None)
@@ -476,5 +585,6 @@ def read(result: ResponseResult, quantities: Iterable[str]) -> None:
         judge_condition(result.session, rows, batch)
         result.keep(batch, ask)
         result.read(requested)
+        judge_limits(result)
     on_reactions = rest_on_reactions(result.problem, requested)
     rows.diagnostics += row_notes(result, requested, rests_on_reactions=on_reactions)

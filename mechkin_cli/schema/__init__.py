@@ -13,8 +13,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import *
     from mechkin_cli.schema.couplings import *
+    from mechkin_cli.schema.cylinders import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
+    from mechkin_cli.schema.limits import *
     from mechkin_cli.schema.links_joints import *
     from mechkin_cli.schema.loads import *
     from mechkin_cli.schema.motion import *
@@ -32,8 +34,10 @@ __getattr__, __dir__ = lazy_names(
         "base": "fields_of section_of",
         "couplings": "AnyCoupling BeltCoupling ChainCoupling FollowerSection FunctionCoupling "
         "GearCoupling LinearCoupling RackCoupling ScrewCoupling TableCoupling",
+        "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",
+        "limits": "LimitSection",
         "links_joints": "AnyAxisJoint AnyJoint AxisJoint ChainRow CylinderPlaneJoint HelicalJoint "
         "Link LinkInertia PlanarJoint PointJoint SlottedSphereJoint SphereCylinderJoint "
         "SphereGrooveJoint SpherePlaneJoint TwoTurnJoint UniversalJoint WeldJoint",

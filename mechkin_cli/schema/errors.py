@@ -357,10 +357,7 @@ ACTUATORS = "coordinates at which efforts act: actuators: [leg1.s, leg2.s]"
 NOTE = "write name: and source:, or a comment behind #"
 TABLES = "what is written stands under tables: [{name: t, columns: [A.theta, A.effort]}]"
 PARAMETERS = "named values stand under parameters: {r: 40 mm}"
-LIMITS = (
-    "joints have no stops; a response may end where a coordinate comes to a value: stop: [{value: "
-    "A.theta, at: 45}]"
-)
+LIMITS = "ends of coordinates stand in a section of the file: limits: {A.theta: [-30 deg, 60 deg]}"
 LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spring, damper"
 
 _MISSING: Final = {
@@ -417,7 +414,7 @@ TOP_KEYS: Final = {
     **dict.fromkeys(("output", "outputs", "plot", "plots", "columns", "results"), TABLES),
     **dict.fromkeys(("variables", "constants", "variable", "constant"), PARAMETERS),
     **dict.fromkeys(("title", "description", "author", "comment", "notes"), NOTE),
-    **dict.fromkeys(("limit", "limits", "stops", "end_stops"), LIMITS),
+    **dict.fromkeys(("limit", "stops", "end_stops"), LIMITS),
     "version": "the version of the format stands in format: 1",
     "bodies": "bodies are links:",
     "body": "bodies are links:",

@@ -4,6 +4,8 @@ from typing import Annotated, Any, Literal
 
 from mechkin_cli.schema.base import NOTHING, Rule, Section, refuse
 from mechkin_cli.schema.couplings import Coupling
+from mechkin_cli.schema.cylinders import Cylinder
+from mechkin_cli.schema.limits import CoordinateLimit
 from mechkin_cli.schema.links_joints import ChainRow, Joint, Link
 from mechkin_cli.schema.loads import Load
 from mechkin_cli.schema.motion import AssemblySection, MotionSection
@@ -49,6 +51,11 @@ class AnyFile(Section):
     out, none."""
     couplings: dict[Name, Coupling] = NOTHING
     """Relations between coordinates of joints (gears, racks), by name; left out, none."""
+    cylinders: dict[Name, Cylinder] = NOTHING
+    """Links of variable length between two named points, by name; left out, none."""
+    limits: dict[Coordinate, CoordinateLimit] = NOTHING
+    """Where coordinates end, as [least, largest] or by min and max: a row beyond is not `ok`; left
+    out, nowhere."""
     motion: MotionSection | None = None
     """The driven coordinates and their values; left out, one row."""
     assembly: AssemblySection | None = None
@@ -103,7 +110,7 @@ class MechanismFile(AnyFile):
     left out, such loads are refused."""
 
     def check(self) -> None:
-        """There is a joint, and no two tables are written to the same files."""
-        if not self.joints and not self.chain:
+        """There is a joint or a cylinder, and no two tables are written to the same files."""
+        if not self.joints and not self.chain and not self.cylinders:
             raise refuse("no-joints", "the file has no joints", "add joints: (or chain:)")
         refuse_clashes(self.balances, (*self.tables, *self.coefficients))

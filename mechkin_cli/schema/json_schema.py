@@ -187,6 +187,8 @@ BY_KEY: Final[dict[str, Any]] = {
     "paths": ["coupler_point"],
     "pin": [1, 0, 0],
     "plot": {"x": "theta", "y": ["torque"]},
+    "cylinders": {"C": {"from": "P", "to": "Q", "stroke": ["0.6 m", "1 m"]}},
+    "limits": {"A.theta": ["-30 deg", "60 deg"], "S.s": {"max": "200 mm"}},
     "points": {"P": {"link": "crank", "at": ["r", 0, 0]}},
     "published": "published/table_3.csv",
     "quantities": {"gap": "norm(P.position - Q.position)"},
@@ -223,6 +225,12 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
     ("Column", "value"): "norm(O1.force)",
+    ("Cylinder", "bore"): "50 mm",
+    ("Cylinder", "from"): "P",
+    ("Cylinder", "rod"): "28 mm",
+    ("Cylinder", "stroke"): ["0.6 m", "1 m"],
+    ("Cylinder", "to"): "Q",
+    ("LimitSection", "restitution"): 0.6,
     ("Crossing", "value"): "O1.theta - O2.theta",
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
@@ -397,7 +405,9 @@ STUDY_IDENTITY: Final = "urn:mechkin:schema:study:1"
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 _FIRST_KEYS = "$schema $id title description $ref type const enum required".split()  # noqa: SIM905
-_NAMED_SECTIONS = ("parameters", "links", "joints", "couplings", "points", "directions")
+_NAMED_SECTIONS = (
+    *("parameters", "links", "joints", "couplings", "cylinders", "points", "directions"),
+)
 _BY_NAME = ("properties", "patternProperties", "$defs")
 _JSON_TYPES = {str: "string", int: "integer", bool: "boolean"}
 # JSON Schema has no flag for ignoring case
@@ -414,8 +424,8 @@ def json_schema() -> Schema:
     """
     definitions: Schema = {"ReservedName": {"enum": sorted(RESERVED)}}
     space, plane = (_file(form, definitions) for form in (MechanismFile, PlaneFile))
-    space["anyOf"] = [_non_empty("joints", "minProperties"), _non_empty("chain", "minItems")]
-    plane["anyOf"] = [_non_empty("joints", "minProperties")]
+    plane["anyOf"] = [_non_empty(key, "minProperties") for key in ("joints", "cylinders")]
+    space["anyOf"] = [*plane["anyOf"], _non_empty("chain", "minItems")]
     # offered while writing; where it stands the other form is meant
     space["properties"]["plane"] = plane["properties"]["plane"]
     definitions |= {form.__name__: s for form, s in ((MechanismFile, space), (PlaneFile, plane))}

@@ -318,8 +318,8 @@ class PlaneFile(AnyFile):
     """Gravity, forces, torques, springs, dampers and friction; left out, none."""
 
     def check(self) -> None:
-        """There is a joint, and no two tables are written to the same files."""
-        if not self.joints:
+        """There is a joint or a cylinder, and no two tables are written to the same files."""
+        if not self.joints and not self.cylinders:
             raise refuse("no-joints", "the file has no joints", "add joints:")
         super().check()
 

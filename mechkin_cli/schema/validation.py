@@ -51,6 +51,7 @@ _SECTIONS = (
     "links",
     "joints",
     "couplings",
+    "cylinders",
     "chain",
     "points",
     "directions",

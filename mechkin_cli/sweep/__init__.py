@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.dead_centre import *
     from mechkin_cli.sweep.following import *
     from mechkin_cli.sweep.friction import *
+    from mechkin_cli.sweep.limits import *
     from mechkin_cli.sweep.messages import *
     from mechkin_cli.sweep.result import *
     from mechkin_cli.sweep.rows import *
@@ -26,6 +27,7 @@ __getattr__, __dir__ = lazy_names(
         "dead_centre": "lost_rates",
         "following": "follow_rows",
         "friction": "is_slack slack_quantities unfounded_in_motion",
+        "limits": "judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
         "rows": "SweepRows has_turns",

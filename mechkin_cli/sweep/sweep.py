@@ -27,6 +27,7 @@ from mechkin_cli.record import replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows, followed_session
 from mechkin_cli.sweep.friction import judged_by, uncounted_notes
+from mechkin_cli.sweep.limits import judge_limits, limited
 from mechkin_cli.sweep.messages import (
     actuation_notes,
     condition_notes,
@@ -68,6 +69,7 @@ def question(
     problem, everything = session.problem, list(asked)
     everything += held_moments(problem, everything)
     everything += watched(problem, everything)
+    everything += limited(problem)
     wanted, demand = at_once(session, everything, verdicts)
     wanted += judged_by(problem, wanted, demand)
     ask = Ask(demand, session.readout(wanted) if wanted else None)
@@ -130,7 +132,7 @@ def analyze(
     known = session.problem.quantities() if names else {}
     asked = [known[name] for name in read_for(names, known)]
     if session.problem.follow is not None:
-        session = followed_session(session, asked)
+        session = followed_session(session, [*asked, *limited(session.problem)])
     session, start = first_assembly(session)
     if start.stuck:
         from mechkin_cli.sweep.branch_end import input_faults
@@ -139,6 +141,7 @@ def analyze(
     wanted, ask, rests_on_reactions = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, ask)
     result.read(wanted)
+    judge_limits(result)
     result.row_states.diagnostics += row_notes(
         result, wanted, rests_on_reactions=rests_on_reactions
     )
@@ -157,6 +160,7 @@ def closed_rows(
     wanted, ask, _ = question(session, tuple(asked), verdicts=verdicts)
     result = _closed(session, start, ask)
     result.read(wanted)
+    judge_limits(result)
     return result
 
 

@@ -47,6 +47,10 @@ TABLE_END: Final = 1e-9
 """Parts of a table's range by which a row may lie beyond its ends and still take the end's value:
 coordinates at an end are computed to 1e-12, and written numbers have nine digits and more."""
 
+AT_LIMIT: Final = 1e-9
+"""rad, and slides in parts of the mechanism's size: a coordinate so far beyond its limit is still
+at it; positions are right to 1e-12, and written numbers have nine digits and more."""
+
 # --- drawing -------------------------------------------------------------------------------------
 
 AXES_SQUARE: Final = 1e-9

@@ -31,7 +31,7 @@ from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
-from mechkin_cli.sweep import has_turns, is_slack, slack_quantities
+from mechkin_cli.sweep import has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.design import VariedDesign, base_of
 from mechkin_cli.variants.result import (
@@ -48,7 +48,7 @@ from mechkin_cli.variants.result import (
     varied_parameters,
 )
 from mechkin_cli.variants.variation import Runs, SessionVariation, VariantReadout, run_variants
-from mechkin_cli.verdict import SWEEP, Status, by_condition, rates_are_clear
+from mechkin_cli.verdict import SWEEP, Status, by_condition, has_forces, rates_are_clear
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -137,7 +137,8 @@ class _SweepRun:
             or (session.is_redundant and any(q.kind in REACTION_KINDS for q in self.wanted))
             or self._forces_are_judged(session)
             or self._led_by_rates()
-            or (variation.moving_inputs and inputs & {q.name for q in self.wanted})
+            or variation.moves_limits
+            or (variation.moving_inputs and inputs & {q.name for q in self._read_or_judged()})
         ):
             return None
         reading = variation.reading(self._computed())
@@ -161,10 +162,15 @@ class _SweepRun:
         forces = demand_of(self.problem.mechanism, self.wanted) & Demand.FORCES
         return bool(forces and self.problem.motion.constraints)
 
+    def _read_or_judged(self) -> list[Wanted]:
+        """What is asked for, and the coordinates whose limits judge the rows."""
+        return list(dict.fromkeys((*self.wanted, *limited(self.problem))))
+
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts but on friction, and no inputs."""
         inputs = self.prescribed()
-        computed = [q for q in self.wanted if q.owner != "row" and q.name not in inputs]
+        every = self._read_or_judged()
+        computed = [q for q in every if q.owner != "row" and q.name not in inputs]
         if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
             computed += friction_states(self.problem.mechanism)
             computed += slack_quantities(self.problem)
@@ -202,13 +208,24 @@ class _SweepRun:
             strands = [q.name for q in slack_quantities(self.problem) if q.name in reading.slots]
             slots = [reading.slots[name].start for name in strands]
             codes[begin : begin + count] = _verdicts(runs, states, slots)
-            found = self._evaluated(variation, reading, runs, values, codes[begin : begin + count])
+            own = codes[begin : begin + count]
+            self._judge_limits(_Resolver(self, variation, reading, runs, values, own), own)
+            found = self._evaluated(variation, reading, runs, values, own)
             # what may stand at a dead centre is judged as in a run of its own
             alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | _doubtful(runs))
         for number in alone:
             self._alone(values[:, number], int(begin + number), int(number), found, codes)
         places = None if self.along is None else found[self.along]
         return {t: reduced(t, found[t], self.reductions[t], places) for t in self.texts}
+
+    def _judge_limits(self, resolve: _Resolver, codes: NDArray[np.int8]) -> None:
+        """Gives the rows beyond limits of coordinates their status."""
+        length = resolve.reading.variation.layout.length
+        for wanted, limit in limited(self.problem).items():
+            values = np.asarray(resolve(wanted.name).value).reshape(codes.shape)
+            codes[(np.abs(limit.beyond(values, length)) > 0.0) & has_forces(codes)] = int(
+                Status.beyond_limit
+            )
 
     def _evaluated(
         self,

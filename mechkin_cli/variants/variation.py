@@ -184,6 +184,11 @@ class SessionVariation:
     def _plan_tape(self) -> _kernel.Tape:
         return self.tape([*self.constants, *self.moving_inputs])
 
+    @property
+    def moves_limits(self) -> bool:
+        """Whether the limits of coordinates depend on the parameters."""
+        return any(is_traced(end) for one in self.recorded.limits for end in (one.low, one.high))
+
     @cached_property
     def _parameter_tape(self) -> _kernel.Tape:
         return self.tape(q.value for q in self.recorded.parameters.values())
@@ -194,7 +199,8 @@ class SessionVariation:
 
     @cached_property
     def _mechanism(self) -> Filling:
-        return Filling((self.recorded.mechanism, self.recorded.assembly, self.recorded.motion))
+        problem = self.recorded
+        return Filling((problem.mechanism, problem.assembly, problem.motion, problem.limits))
 
     def parameters(self, values: Floats) -> Floats:
         """All parameters of the file (parameters, variants) in SI, in the file's order."""
@@ -210,12 +216,13 @@ class SessionVariation:
             )
         }
         leaves = replay(self._mechanism_tape, values[:, None])[0][0].tolist()
-        mechanism, assembly, motion = self._mechanism.fill(leaves)
+        mechanism, assembly, motion, limits = self._mechanism.fill(leaves)
         problem = replace(
             self.base.problem,
             mechanism=mechanism,
             assembly=assembly,
             motion=motion,
+            limits=limits,
             parameters=parameters,
         )
         return problem.with_quantities_of(self.base.problem)

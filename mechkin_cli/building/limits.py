@@ -1,0 +1,66 @@
+"""`limits:` to the ends of coordinates in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import inf
+
+from mechkin_cli.building.cylinders import SLIDE
+from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.mechanism import Joint, Limit, dimension_of
+from mechkin_cli.schema import LimitSection, MechanismFile
+from mechkin_cli.units import DIMENSIONLESS
+
+
+def build_limits(
+    fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
+) -> tuple[Limit, ...]:
+    """Where coordinates end, by `limits:` and the strokes of cylinders; errors are noted in
+    `fields`."""
+    every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
+        name: (("limits", name), written) for name, written in file.limits.items()
+    }
+    for cylinder, section in file.cylinders.items():
+        name = f"{cylinder}.{SLIDE}"
+        if section.stroke is None or cylinder not in joints:
+            continue
+        if name in every:
+            text = f"the limits of {name} are its stroke"
+            fields.key_error("two-choices", ("limits", name), text, "keep one of the two")
+            continue
+        every[name] = ("cylinders", cylinder, "stroke"), section.stroke
+    return tuple(_limits(fields, every, joints))
+
+
+def _limits(
+    fields: Fields,
+    every: Mapping[str, tuple[Path, tuple[str, ...] | LimitSection]],
+    joints: Mapping[str, Joint],
+) -> Iterator[Limit]:
+    for name, (path, written) in every.items():
+        if not is_coordinate(fields, path, name, joints):
+            continue
+        joint, _, coordinate = name.rpartition(".")
+        dimension = dimension_of(coordinate)
+        ends, errors = [], fields.error_count
+        low, high = ("min", "max") if isinstance(written, LimitSection) else (0, 1)
+        texts = (written.min, written.max) if isinstance(written, LimitSection) else written
+        for key, text, none in zip((low, high), texts, (-inf, inf), strict=True):
+            ends.append(none if text is None else fields.number((*path, key), text, dimension))
+        if fields.error_count > errors:
+            continue
+        if not ends[0] < ends[1]:
+            hint = "write the least value first, then the largest"
+            text = f"the limits of {name} leave it no room"
+            fields.error("no-room", (*path, high), text, hint)
+            continue
+        restitution = None
+        if isinstance(written, LimitSection) and written.restitution is not None:
+            place = (*path, "restitution")
+            restitution = fields.number(place, written.restitution, DIMENSIONLESS)
+            if not (restitution >= 0.0 and restitution <= 1.0):
+                text = "a restitution is a number from 0 to 1"
+                fields.error("no-restitution", place, text, "write the part of the rate")
+                continue
+        here = fields.document.key_place(path)
+        yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)

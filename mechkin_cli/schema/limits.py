@@ -1,0 +1,41 @@
+"""`limits:` - where coordinates end: ends of strokes, stops, the play of a joint."""
+
+from typing import Annotated, Any, ClassVar
+
+from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, refuse
+from mechkin_cli.schema.scalars import AngleOrLength, Dimensionless
+
+
+class LimitSection(Section):
+    """The least and the largest value of a coordinate."""
+
+    tag = "(limit)"
+    advice: ClassVar[dict[str, str]] = {
+        "from": "write min: for the least value",
+        "to": "write max: for the largest value",
+    }
+
+    min: AngleOrLength | None = None
+    """The least value; left out, none."""
+    max: AngleOrLength | None = None
+    """The largest value; left out, none."""
+    restitution: Dimensionless | None = None
+    """Part of its rate, 0 to 1, with which the coordinate rebounds from the limit in a response;
+    left out, the response ends there."""
+
+    def check(self) -> None:
+        """There is a limit."""
+        if self.min is None and self.max is None:
+            raise refuse("no-limit", "a limit has a least or a largest value", "add min: or max:")
+
+
+def _limit(value: Any) -> str:
+    return "(limit)" if isinstance(value, (dict, LimitSection)) else "(range)"
+
+
+CoordinateLimit = Annotated[
+    Annotated[Annotated[tuple[AngleOrLength, ...], Limits(min_length=2, max_length=2)], "(range)"]
+    | LimitSection,
+    FormChoice(_limit),
+    SchemaName("CoordinateLimit"),
+]

@@ -1,0 +1,234 @@
+"""Limits of coordinates: sweeps against the closed form of the four-bar, responses against that of
+free fall."""
+
+from __future__ import annotations
+
+import random
+from math import acos, atan2, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+import pytest
+
+import mechkin_cli as mk
+
+FOUR_BAR = """
+format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{crank: {{}}, rod: {{}}, rocker: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0]}}
+  B: {{type: R, links: [crank, rod], point: [{b[0]!r}, {b[1]!r}]}}
+  C: {{type: R, links: [rod, rocker], point: [{c[0]!r}, {c[1]!r}]}}
+  D: {{type: R, links: [ground, rocker], point: [{d!r}, 0]}}
+limits: {limits}
+motion: {{inputs: {{A.theta: {{from: 0, to: {turn!r}, count: 60}}}}}}
+"""
+SLIDE = """
+format: 1
+plane: xy
+units: {length: m, angle: rad}
+links: {block: {mass: 1, center_of_mass: [0, 0]}}
+joints:
+  S: {type: P, links: [ground, block], point: [0, 0], axis: [0, 1]}
+loads: [{type: gravity, g: [0, -10]}]
+"""
+
+
+class Drawn:
+    """A random four-bar, and how its rocker turns with its crank by the law of cosines."""
+
+    def __init__(self, seed: int) -> None:
+        rng = random.Random(seed)
+        crank, rod, rocker = (rng.uniform(0.3, 2.0) for _ in range(3))
+        self.d = rng.uniform(0.5, 2.0)
+        while True:
+            first = rng.uniform(-pi, pi)
+            self.b = (crank * cos(first), crank * sin(first))
+            away = hypot(self.b[0] - self.d, self.b[1])
+            if abs(rod - rocker) + 0.05 < away < rod + rocker - 0.05:
+                break
+            crank, rod, rocker = (rng.uniform(0.3, 2.0) for _ in range(3))
+        self.crank, self.rod, self.rocker, self.first = crank, rod, rocker, first
+        self.side = rng.choice((-1.0, 1.0))
+        self.start = self.angle(0.0)
+        assert self.start is not None
+        self.c = (self.d + rocker * cos(self.start), rocker * sin(self.start))
+        self.turn = rng.uniform(0.2, 2.0 * pi)
+        self.rng = rng
+
+    def angle(self, turn: float) -> float | None:
+        """The direction of the rocker where the crank has turned; None where it does not close."""
+        x = self.crank * cos(self.first + turn) - self.d
+        y = self.crank * sin(self.first + turn)
+        away = hypot(x, y)
+        cosine = (self.rocker**2 + away**2 - self.rod**2) / (2.0 * self.rocker * away)
+        return atan2(y, x) + self.side * acos(cosine) if abs(cosine) < 1.0 else None
+
+    def text(self, limits: str) -> str:
+        return FOUR_BAR.format(b=self.b, c=self.c, d=self.d, turn=self.turn, limits=limits)
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_no_row_beyond_a_limit_is_ok(seed: int) -> None:
+    drawn = Drawn(seed)
+    low, high = -drawn.rng.uniform(0.0, 0.6), drawn.rng.uniform(0.0, 0.6)
+    result = mk.loads(drawn.text(f"{{D.theta: [{low!r}, {high!r}]}}")).analyze()
+    expected, previous = [], 0.0
+    for turn in np.linspace(0.0, drawn.turn, 60):
+        there = drawn.angle(float(turn))
+        if there is None:
+            break
+        assert drawn.start is not None
+        value = there - drawn.start
+        value += 2.0 * pi * round((previous - value) / (2.0 * pi))
+        previous = value
+        expected.append(value)
+    told = result["row.status"][: len(expected)]
+    sure = np.abs(np.array([[v - low, v - high] for v in expected])).min(axis=1) > 1e-8
+    for value, word in zip(np.array(expected)[sure], told[sure], strict=True):
+        assert word == ("ok" if low < value < high else "beyond-limit")
+    beyond = any(value < low - 1e-8 or value > high + 1e-8 for value in expected)
+    assert beyond == any(d.code == "beyond-limit" for d in result.diagnostics)
+
+
+def test_a_row_at_the_limit_of_an_input_is_ok_and_the_message_says_what_is_beyond() -> None:
+    drawn = Drawn(3)
+    result = mk.loads(drawn.text(f"{{A.theta: {{max: {drawn.turn!r}}}}}")).analyze()
+    assert "beyond-limit" not in result["row.status"]
+    half = drawn.turn / 2.0
+    result = mk.loads(drawn.text(f"{{A.theta: {{max: {half!r}}}}}")).analyze()
+    assert set(result["row.status"][30:]) == {"beyond-limit"}
+    assert np.isfinite(result["D.theta"]).all()
+    (note,) = (d for d in result.diagnostics if d.code == "beyond-limit")
+    assert note.numbers[0].value == pytest.approx(drawn.turn)
+    assert note.numbers[0].limit == half
+    assert "rows 31 to 60" in note.message
+    assert "A.theta" in note.message
+
+
+def test_variants_go_by_their_own_limits() -> None:
+    drawn = Drawn(3)
+    text = drawn.text("{A.theta: {max: most}}") + "parameters: {most: 0.1 rad}\n"
+    model = mk.loads(text)
+    most = np.array([0.0, 0.5, 1.0]) * drawn.turn
+    found = model.vary({"most": [f"{x!r} rad" for x in most.tolist()]}, ["D.theta"])
+    turns = np.linspace(0.0, drawn.turn, 60)
+    for x, words in zip(most, found.status, strict=True):
+        assert [w == "beyond-limit" for w in words] == (turns > x + 1e-9).tolist()
+
+
+def test_variants_of_a_length_go_by_the_limit_as_each_alone_does() -> None:
+    drawn = Drawn(3)
+    text = drawn.text("{D.theta: [-0.2 rad, 0.1 rad], A.theta: {max: 1.7}}")
+    ground = f"point: [{drawn.d!r}, 0]"
+    assert ground in text
+    text = text.replace(ground, "point: [d, 0]") + f"parameters: {{d: {drawn.d!r} m}}\n"
+    model = mk.loads(text)
+    lengths = drawn.d * np.linspace(0.98, 1.02, 7)
+    found = model.vary({"d": lengths}, ["A.theta"])
+    assert "beyond-limit" in found.status
+    assert "ok" in found.status
+    for length, words in zip(lengths, found.status, strict=True):
+        alone = mk.loads(text.replace(f"d: {drawn.d!r} m", f"d: {float(length)!r} m")).analyze()
+        assert list(words) == list(alone["row.status"])
+
+
+def test_one_position_says_that_it_is_beyond() -> None:
+    drawn = Drawn(3)
+    model = mk.loads(drawn.text(f"{{A.theta: {{max: {drawn.turn / 2.0!r}}}}}"))
+    assert model.solve({"A.theta": 0.3 * drawn.turn}).status == "ok"
+    assert model.solve({"A.theta": 0.7 * drawn.turn}).status == "beyond-limit"
+
+
+def first_at(drawn: Drawn, ends: tuple[float, float], way: float) -> float | None:
+    """The turn of the crank at which the rocker first comes to an end, by bisection; None where a
+    whole turn or a dead centre is before it."""
+
+    def off(turn: float, before: float) -> float | None:
+        there = drawn.angle(turn)
+        if there is None:
+            return None
+        assert drawn.start is not None
+        value = there - drawn.start
+        return value + 2.0 * pi * round((before - value) / (2.0 * pi))
+
+    before, last = 0.0, 0.0
+    for turn in np.linspace(0.0, way * 2.0 * pi, 4001)[1:]:
+        value = off(float(turn), before)
+        if value is None:
+            return None
+        if not ends[0] <= value <= ends[1]:
+            low, high = last, float(turn)
+            for _ in range(80):
+                middle = 0.5 * (low + high)
+                found = off(middle, before)
+                assert found is not None
+                low, high = (middle, high) if ends[0] <= found <= ends[1] else (low, middle)
+            return high
+        before, last = value, float(turn)
+    return None
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_ranges_end_where_the_first_limit_is(seed: int) -> None:
+    drawn = Drawn(seed)
+    ends = -drawn.rng.uniform(0.05, 0.4), drawn.rng.uniform(0.05, 0.4)
+    model = mk.loads(drawn.text(f"{{D.theta: [{ends[0]!r}, {ends[1]!r}]}}"))
+    picked = model.modes().picked
+    found = model.ranges()
+    (own,) = (one for one in found.ranges if one.mode == picked)
+    sides = [first_at(drawn, ends, way) for way in (-1.0, 1.0)]
+    if sides == [None, None]:
+        assert "limit" not in (own.lower.kind, own.upper.kind)
+        return
+    for end, side in zip((own.lower, own.upper), sides, strict=True):
+        assert (end.kind == "limit") == (side is not None)
+        if side is not None:
+            assert end.value == pytest.approx(side, abs=1e-9)
+    assert sum(d.code == "range-at-limit" for d in found.diagnostics) >= 1
+
+
+def test_the_limit_of_the_input_ends_its_range_and_modes_beyond_one_are_named() -> None:
+    drawn = Drawn(3)
+    model = mk.loads(drawn.text("{A.theta: [-1, 2], D.theta: [-3, 0.3]}"))
+    notes = [d for d in model.modes().diagnostics if d.code == "mode-beyond-limit"]
+    assert [d.message for d in notes] == ["mode A stands beyond a limit of D.theta"]
+    model = mk.loads(drawn.text("{A.theta: [-1, 2]}"))
+    for one in model.ranges().ranges:
+        assert (one.lower.kind, one.upper.kind) == ("limit", "limit")
+        assert one.lower.value == pytest.approx(-1.0, abs=1e-12)
+        assert one.upper.value == pytest.approx(2.0, abs=1e-12)
+
+
+def test_a_fall_ends_at_the_limit() -> None:
+    responses = "responses: {fall: {start: {S.s: 0}, time: {from: 0, to: 1, step: 0.1}}}\n"
+    result = mk.loads(SLIDE + "limits: {S.s: [-2, 3]}\n" + responses).respond("fall")
+    assert result["time"][-1] == pytest.approx(sqrt(0.4), rel=1e-12)
+    assert result["S.s"][-1] == pytest.approx(-2.0, rel=1e-12)
+    assert result["row.event"][-1] == "S.s at its limit -2 m"
+    assert set(result["row.status"]) == {"ok"}
+
+
+def test_a_fall_from_beyond_the_limit_is_never_ok() -> None:
+    responses = "responses: {fall: {start: {S.s: -3}, time: {from: 0, to: 1, step: 0.1}}}\n"
+    result = mk.loads(SLIDE + "limits: {S.s: [-2, 3]}\n" + responses).respond("fall")
+    assert set(result["row.status"]) == {"beyond-limit"}
+
+
+@pytest.mark.parametrize(
+    ("limits", "code"),
+    [
+        ("{S.s: [3, -2]}", "no-room"),
+        ("{S.s: {min: 2, max: 2}}", "no-room"),
+        ("{S.s: {}}", "no-limit"),
+        ("{S.theta: [0, 1]}", "unknown-coordinate"),
+        ("{T.s: [0, 1]}", "unknown-coordinate"),
+        ("{S.s: [0 deg, 1]}", "expression"),
+        ("{S.s: [1]}", "wrong-length"),
+    ],
+)
+def test_limits_that_are_none_are_refused(limits: str, code: str) -> None:
+    with pytest.raises(mk.InvalidFile) as refused:
+        mk.loads(SLIDE + f"limits: {limits}\n")
+    assert [d.code for d in refused.value.diagnostics] == [code]
