@@ -8,10 +8,12 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.cams.cam import POINTS as POINTS, Cam as Cam, cam_of as cam_of
+    from mechkin_cli.cams.profile import profile_of as profile_of
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "cam": "Cam POINTS cam_of",
+        "profile": "profile_of",
     },
 )

@@ -17,6 +17,7 @@ between the walls of a groove; two turns are a cross of their axes.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from math import sqrt
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -36,6 +37,7 @@ from mechkin_cli.mechanism import (
     is_written,
 )
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.view.cams import DrawnCam, drawn_cams
 from mechkin_cli.view.joints import (
     HOME,
     Shape,
@@ -360,7 +362,7 @@ class _Scene:
 
     def marks(self) -> list[Mark]:
         """Everything from back to front."""
-        links = sorted([*self._shapes(), *self._wheels()], key=itemgetter(0))
+        links = sorted([*self._shapes(), *self._wheels(), *self._discs()], key=itemgetter(0))
         joints = sorted(self._symbols(), key=itemgetter(0))
         return [
             *self._feet(),
@@ -387,6 +389,7 @@ class _Scene:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
                 parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
         parts += [self._path(at.link, at.vector) for at in self._moving_points()]
+        parts += [self._placed(cam.link, cam.line) for cam in self._cams]
         for wheel in self._drawn_wheels():
             parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
@@ -445,7 +448,21 @@ class _Scene:
 
     def _drawn_wheels(self) -> list[DrawnWheel]:
         hidden = self.settings.hidden
-        return [one for one in self.settings.wheels if one.link not in hidden]
+        rollers = [cam.roller for cam in self._cams if cam.roller is not None]
+        wheels = (*self.settings.wheels, *rollers)
+        return [one for one in wheels if one.link not in hidden]
+
+    @cached_property
+    def _cams(self) -> list[DrawnCam]:
+        hidden = self.settings.hidden
+        return [cam for cam in drawn_cams(self.mechanism) if cam.link not in hidden]
+
+    def _discs(self) -> Iterator[Item]:
+        for cam in self._cams:
+            seen = self._placed(cam.link, cam.line)
+            places = tuple(self._on_picture(one) for one in seen)
+            near = round(float(seen[:, 2].mean()) / self.size, NEAR_DECIMALS)
+            yield near, [Stroke(places, self._ink(cam.link), 1.2, closed=True, filled=True)]
 
     def _wheels(self) -> Iterator[Item]:
         """Wheels and racks of couplings, in the colour of their link; rings are open."""

@@ -23,6 +23,7 @@ from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT
 from mechkin_cli.verdict import SWEEP, __version__
 from mechkin_cli.view.arrows import has_forces, reactions, tie_records
 from mechkin_cli.view.branch import BranchScene, table_record
+from mechkin_cli.view.cams import DrawnCam, drawn_cams
 from mechkin_cli.view.joints import (
     carried,
     drawn_joints,
@@ -160,6 +161,7 @@ class Scene:
             "points": self._points(),
             "wheels": self._wheels(),
             "belts": self._belts(),
+            "discs": self._discs(),
             "runs": [
                 self._run(run, branches)
                 for run, branches in zip(self.runs, self.branches, strict=True)
@@ -233,7 +235,8 @@ class Scene:
         """What couplings have on their links; of racks from where to where, about their place."""
         lengths, travels = self._lengths, self._travels()
         found: list[Plain] = []
-        for wheel in self.settings.wheels:
+        rollers = [cam.roller for cam in self._cams if cam.roller is not None]
+        for wheel in (*self.settings.wheels, *rollers):
             reach = None
             if wheel.slide is not None:
                 name, sense = wheel.slide
@@ -257,6 +260,25 @@ class Scene:
                 }
             )
         return found
+
+    @cached_property
+    def _cams(self) -> list[DrawnCam]:
+        return list(drawn_cams(self.problem.mechanism))
+
+    def _discs(self) -> list[Plain]:
+        """Discs of cams: corners in x and y of their frames."""
+        lengths = self._lengths
+        return [
+            {
+                "link": self.links.index(cam.link),
+                "centre": lengths.vector(cam.on.o),
+                "axis": list(cam.on.z),
+                "x": list(cam.on.x),
+                "outline": lengths.array(cam.outline).tolist(),
+                "width": lengths.one(cam.width),
+            }
+            for cam in self._cams
+        ]
 
     def _belts(self) -> list[Plain]:
         lengths = self._lengths

@@ -48,6 +48,8 @@ PLANAR = {
     "pendulum",
     "gearbox",
     "planetary",
+    "belt",
+    "cam",
 }
 IN_A_PLANE = {"R", "P", "W", "Ps"}
 
@@ -356,6 +358,49 @@ def test_the_planetary_gear_is_williss() -> None:
         assert off(found, tangential / np.cos(np.radians(20.0))) < 1e-9
     centrifugal = 0.14 * 30.0**2 * 37.5e-3
     assert off(rows["norm(P.force)"], np.hypot(2.0 * tangential, centrifugal)) < 1e-9
+
+
+def test_the_belts_strands() -> None:
+    """2 mN m of the fan's rate in rad/s squared, a factor 40/100 less at the motor; the strands
+    differ by that over 40 mm, about their pretension."""
+    rows = rows_of("belt")
+    torque = 0.4 * 2.0 * (0.4 * 150.0) ** 2
+    assert off(rows["B.theta"], 0.4 * rows["A.theta"]) < 1e-9
+    assert off(rows["A.effort"], torque) < 1e-9
+    assert off(rows["K.tight"], 120.0 + 0.5 * torque / 40.0) < 1e-10
+    assert off(rows["K.slack"], 120.0 - 0.5 * torque / 40.0) < 1e-10
+    sine = 60.0 / 350.0
+    pull = np.hypot(240.0 * np.sqrt(1.0 - sine * sine), torque / 40.0 * sine)
+    assert off(rows["norm(A.force)"], pull) < 1e-10
+
+
+def test_the_fan_starts_by_a_hyperbolic_tangent() -> None:
+    """J omega' = T - c omega^2 at the motor: omega = w tanh(t T/(J w)), w^2 = T/c."""
+    rows = mk.loads(template_text("belt")).respond("start")
+    inertia, torque, drag = 2.5e-3 + 0.16 * 90e-3, 4.0, 0.4**3 * 2e-3
+    final = np.sqrt(torque / drag)
+    omega = final * np.tanh(rows["time"] * torque / (inertia * final))
+    assert off(rows["A.theta_dot"], omega) < 1e-6
+    assert rows["K.slack"].min() > 0.0
+
+
+def test_the_cams_follower() -> None:
+    """A cycloid of 12 mm in 90 deg, and back; 0.25 kg, its weight and 200 N/m, pressed by 60 mm."""
+    rows = rows_of("cam")
+    theta = np.radians(rows["A.theta"])
+    x = theta / (np.pi / 2.0)
+    done = np.where(x < 1.0, x, np.where(x < 2.0, 2.0 - x, 0.0))
+    way = np.where(x < 1.0, 1.0, np.where(x < 2.0, -1.0, 0.0))
+    s = 12.0 * (done - np.sin(2.0 * np.pi * done) / (2.0 * np.pi))
+    slope = way * 12.0 / (np.pi / 2.0) * (1.0 - np.cos(2.0 * np.pi * done))
+    bend = 12.0 / (np.pi / 2.0) ** 2 * 2.0 * np.pi * np.sin(2.0 * np.pi * done)
+    assert off(rows["S.s"], s) < 1e-12
+    assert off(rows["S.s_dot"], 30.0 * slope) < 1e-9
+    assert off(rows["S.s_ddot"], 900.0 * np.abs(way) * bend) < 1e-8
+    contact = 0.25 * (0.9 * np.abs(way) * bend + 9.81) + 0.2 * (s + 60.0)
+    assert off(rows["lobe.force"], contact) < 1e-10
+    assert off(rows["A.effort"], contact * slope) < 1e-9
+    assert rows["lobe.force"].min() > 0.0
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

@@ -116,6 +116,16 @@ DATA = _object(
             reach=_or_null(_list(NUMBER, minItems=2, maxItems=2)),
         )
     ),
+    discs=_list(
+        _object(
+            link=INDEX,
+            centre=VECTOR,
+            axis=VECTOR,
+            x=VECTOR,
+            outline=_list(_list(NUMBER, minItems=2, maxItems=2), minItems=3),
+            width=LENGTH,
+        )
+    ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),
     runs=_list(
         _object(

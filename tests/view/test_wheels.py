@@ -12,6 +12,7 @@ from view.seen import data
 
 import mechkin_cli as mk
 from mechkin_cli.templates import template_text
+from mechkin_cli.view.cams import drawn_cams
 from mechkin_cli.view.joints import carried, link_poses
 from mechkin_cli.view.wheels import wheel_outlines
 
@@ -197,3 +198,52 @@ def test_pages_have_the_wheels(name: str) -> None:
     shown = data(model, modes=False)
     assert len(shown["wheels"]) == len(model.view_settings.wheels)
     assert shown["belts"] == []
+
+
+FOLLOWERS = {
+    "roller": (
+        "{type: P, links: [ground, arm], point: [0, 60], axis: [0, 1]}",
+        "S.s",
+        "8 mm*(1 - cos(A.theta))",
+        "{type: translating, contact: roller, radius: 9, base_radius: 40, offset: 7}",
+    ),
+    "downward": (
+        "{type: P, links: [arm, ground], point: [0, 60], axis: [1, 2]}",
+        "S.s",
+        "8 mm*(1 - cos(2*A.theta))",
+        "{type: translating, contact: roller, radius: 9, base_radius: 40}",
+    ),
+    "oscillating": (
+        "{type: R, links: [arm, ground], point: [60, 70]}",
+        "S.theta",
+        "0.1 rad*(1 - cos(A.theta))",
+        "{type: oscillating, contact: roller, radius: 9, base_radius: 40, arm: 70, distance: D}",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FOLLOWERS)
+def test_a_roller_lies_on_its_cam_in_every_row(name: str) -> None:
+    """The disc's outline, moved with the cam, is a radius from the roller's centre, moved with the
+    follower, and no nearer."""
+    joint, gives, law, follower = FOLLOWERS[name]
+    text = f"""{PLANE}parameters: {{D: sqrt((60 mm)^2 + (70 mm)^2)}}
+links: {{disc: {{}}, arm: {{}}}}
+joints:
+  A: {{type: R, links: [ground, disc], point: [0, 0]}}
+  S: {joint}
+couplings:
+  K: {{type: function, of: A.theta, gives: {gives}, value: "{law}", follower: {follower}}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 360, step: 30}}}}}}
+"""
+    result = mk.loads(text).analyze().result
+    (cam,) = drawn_cams(result.problem.mechanism)
+    roller = cam.roller
+    assert roller is not None
+    names = ["ground", *result.problem.mechanism.links]
+    poses = link_poses(result, names)
+    centres = carried(poses[:, names.index("arm")], roller.on.o)
+    disc = poses[:, names.index("disc")]
+    lines = np.stack([carried(disc, point) for point in cam.line], axis=1)
+    apart = np.linalg.norm(lines - centres[:, None], axis=2).min(axis=1)
+    assert apart == pytest.approx(0.009, abs=2e-5)

@@ -56,13 +56,8 @@ view:
     two: {{kind: wheel, radius: 30}}
     three: {{kind: wheel, radius: 30}}
 """
-CAM = f"""{_slide("[20, 0]")}view:
-  shapes:
-    one: {{kind: wheel, points: [[-20, 0, 0]], radius: 40}}
-    bar: {{kind: plate, points: [[20, -40, 0], [20, 40, 0], [26, 40, 0], [70, 0, 0],
-      [26, -40, 0]]}}
+CAM = f"""{_slide("[48, 0]")}points: {{end: {{link: bar, at: [110, 0]}}}}
 """
-"""An eccentric disc that a flat face lies on."""
 
 PICTURES: Final[dict[str, tuple[str, str, str]]] = {
     "spur": (
@@ -114,7 +109,8 @@ PICTURES: Final[dict[str, tuple[str, str, str]]] = {
     "function": (
         "a function",
         CAM,
-        '{type: function, of: A.theta, gives: S.s, value: "20 mm*(1 - cos(theta))"}',
+        '{type: function, of: A.theta, gives: S.s, value: "10 mm*(1 - cos(2*theta))", '
+        "follower: {type: translating, contact: roller, radius: 8 mm, base_radius: 40 mm}}",
     ),
 }
 """By file name: what it shows, a mechanism without its coupling, and the coupling."""

@@ -136,6 +136,15 @@ function addRack(body, wheel) {
   body.add(drawnOut(polygon(points), -width / 2, width / 2), frame(vector(wheel.centre), along.clone().cross(out), along));
 }
 
+/** The disc of a cam. */
+export function addDisc(body, disc, unit) {
+  const half = disc.width / 2;
+  const corners = disc.outline.map(([x, y]) => new Vector2(x, y));
+  const inmost = Math.min(...corners.map((point) => point.length()));
+  const contours = [corners, circle(Math.min(0.8 * unit, 0.35 * inmost), 24)];
+  body.add(lofted(contours, [[-half, 1, 0], [half, 1, 0]]), frame(vector(disc.centre), vector(disc.axis), vector(disc.x)));
+}
+
 /** A band along a closed line. */
 export function addBelt(body, belt) {
   const axis = vector(belt.axis);
@@ -147,6 +156,12 @@ export function addBelt(body, belt) {
     const half = [(BELT * belt.width) / 2, belt.width / 2];
     body.add(block([-half[0], -half[1], 0], [half[0], half[1], length]), frame(from, along, axis.clone().cross(along)));
   });
+}
+
+/** Places that a disc reaches. */
+export function reachedByDisc(disc) {
+  const on = frame(vector(disc.centre), vector(disc.axis), vector(disc.x));
+  return disc.outline.filter((_, k) => k % 15 === 0).map(([x, y]) => new Vector3(x, y, 0).applyMatrix4(on));
 }
 
 /** Places that a wheel reaches. */
