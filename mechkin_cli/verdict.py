@@ -113,6 +113,11 @@ class Status(IntEnum):
         "position, rates, forces",
         "solved, but a coordinate is beyond its limit: the mechanism does not come here.",
     )
+    slack = (
+        13,
+        "position, rates, forces",
+        "solved as if a belt, chain or cable pushed, or stuck to a pulley that it leaves.",
+    )
 
     has_solution: bool
     has_rates: bool

@@ -75,7 +75,7 @@ class Probe:
     def __init__(self, session: Session) -> None:
         self.session = session
         mechanism = session.problem.mechanism
-        self.coordinates = list(mechanism.coordinates)
+        self.coordinates = [q.name for q in coordinate_quantities(mechanism)]
         moving = [(n, at) for n, at in mechanism.joint_points() if at.link != GROUND_NAME]
         self.joints = [name for name, _ in moving]
         self.points = [at for _, at in moving]

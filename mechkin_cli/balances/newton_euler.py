@@ -8,7 +8,9 @@ three forces through its centre. Any other pair has six components, and a condit
 freedoms.
 
 System: rows are force and moment of every moving link, then the pairs' conditions; columns all
-components of all reactions, then the efforts. Rows by columns times unknowns equal the right side:
+components of all reactions, then the efforts and what couplings transmit, by their teeth if they
+have any: the part that pushes wheels apart goes with the magnitude of the rest, by its sign at the
+row. Rows by columns times unknowns equal the right side:
 what pairs and drives exert on a link is the opposite of loads, gravity and inertia.
 
 Tables: numbers are in the file's units, so that an unknown in its unit times a coefficient has the
@@ -38,7 +40,10 @@ from mechkin_cli.mechanism import (
     ZERO,
     Attached,
     Joint,
+    Mesh,
+    Relation,
     Vector,
+    add,
     cross,
     eliminated,
     scale,
@@ -58,8 +63,9 @@ _XYZ = "xyz"
 class PairTerm(NamedTuple):
     """An unknown or a condition of a joint.
 
-    Of an unknown `wrench` is what it exerts on the second link per unit, in SI, and `rank` orders
-    the unknowns as the source does: forces, moments, what stands apart, efforts. Of a condition
+    Of an unknown `wrench` is what it exerts on the second link per unit, in SI, and on the first
+    its opposite, and `rank` orders the unknowns as the source does: forces, moments, what stands
+    apart, efforts. What acts on other links has its wrenches by them in `others`. Of a condition
     `wrench` has the factors of F and M in the sum that vanishes.
     """
 
@@ -68,6 +74,7 @@ class PairTerm(NamedTuple):
     dimension: Dimension
     wrench: Wrench
     rank: int = 0
+    others: tuple[tuple[str, Wrench], ...] = ()
 
     @property
     def group(self) -> str:
@@ -76,8 +83,18 @@ class PairTerm(NamedTuple):
 
     def reversed(self) -> PairTerm:
         """The unknown that counts the other way."""
-        wrench = Wrench(scale(-1.0, self.wrench.force), scale(-1.0, self.wrench.moment))
-        return self._replace(name=f"{self.name} reversed", wrench=wrench)
+        return self._replace(
+            name=f"{self.name} reversed",
+            wrench=self.wrench.times(-1.0),
+            others=tuple((link, wrench.times(-1.0)) for link, wrench in self.others),
+        )
+
+    def on(self, link: str, ends: tuple[str, str]) -> Wrench:
+        """What it exerts on a link per unit; `ends` are its joint's."""
+        found = self.wrench.times(float(ends[1] == link) - float(ends[0] == link))
+        for name, wrench in self.others:
+            found = found.plus(wrench) if name == link else found
+        return found
 
     def coefficient(self, unknown: PairTerm) -> float:
         """The factor of an unknown in this condition."""
@@ -121,6 +138,39 @@ def effort(joint: Joint, coordinate: str, motion: RowMotion, word: str) -> PairT
     dimension = MOMENT if known.is_angle else FORCE
     wrench = coordinate_wrench(joint, coordinate, motion)
     return PairTerm(f"{joint.name}.{coordinate}.{word}", joint.name, dimension, wrench, 4)
+
+
+def transmitted(
+    name: str, relation: Relation, joints: Mapping[str, Joint], motion: RowMotion, sign: float
+) -> PairTerm:
+    """What a coupling transmits, a moment or a force at its first coordinate; `sign` is that of it
+    at the row."""
+    first = relation.terms[0]
+    word, dimension = ("force", FORCE) if relation.length else ("torque", MOMENT)
+    others: list[tuple[str, Wrench]] = []
+    if relation.mesh is None:
+        for term in relation.terms:
+            joint = joints[term.joint.name]
+            unit = coordinate_wrench(joint, term.coordinate, motion)
+            wrench = unit.times(term.factor / first.factor)
+            others += [(joint.second, wrench), (joint.first, wrench.times(-1.0))]
+    else:
+        mesh = relation.mesh
+        one, other = (_reached(mesh, joints, last) for last in (False, True))
+        carrier = motion[mesh.carrier].frame
+        push = add(mesh.along, scale(sign, mesh.apart))
+        force = force_at(
+            motion.point(Attached(mesh.carrier, mesh.point)), carrier.vector(push)
+        ).times(1.0 / first.factor)
+        others = [(other, force), (one, force.times(-1.0))]
+    return PairTerm(f"{name}.{word}", name, dimension, Wrench(), 4, tuple(others))
+
+
+def _reached(mesh: Mesh, joints: Mapping[str, Joint], last: bool) -> str:
+    """The link of a mesh's first wheel, or of its second."""
+    name, sense = mesh.way[-1 if last else 0]
+    joint = joints[name]
+    return joint.second if (sense > 0) is last else joint.first
 
 
 def _guide(joint: Joint, motion: RowMotion) -> PairTerms:
@@ -208,10 +258,15 @@ def dense_system(
     # coordinate
     word = "drive" if drives is not None and drives.constraints else "effort"
     inputs = [effort(mechanism.joints[j], c, motion, word) for j, c in result.problem.acting]
-    terms = [*(unknown for of_pair, _ in pairs for unknown in of_pair), *inputs]
+    related = [
+        transmitted(name, relation, mechanism.joints, motion, _sign(result, name, relation, row))
+        for name, relation in mechanism.couplings.items()
+    ]
+    terms = [*(unknown for of_pair, _ in pairs for unknown in of_pair), *inputs, *related]
     unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))
     conditions = [condition for _, of_pair in pairs for condition in of_pair]
     ends = {joint.name: (joint.first, joint.second) for joint in mechanism.joints.values()}
+    ends |= dict.fromkeys(mechanism.couplings, ("", ""))
     borne = borne_wrenches(result, motion, row)
     equations: list[tuple[str, Dimension]] = []
     coefficients: Matrix = []
@@ -219,15 +274,11 @@ def dense_system(
     for name in mechanism.links:
         if name == GROUND_NAME:
             continue
-        signs = [
-            float(ends[u.joint][1] == name) - float(ends[u.joint][0] == name) for u in unknowns
-        ]
+        wrenches = [unknown.on(name, ends[unknown.joint]) for unknown in unknowns]
         for part, dimension in (("force", FORCE), ("moment", MOMENT)):
             for k, letter in enumerate("xyz"):
                 equations.append((f"{name}: {part} {letter}", dimension))
-                coefficients.append(
-                    [s * getattr(u.wrench, part)[k] for s, u in zip(signs, unknowns, strict=True)]
-                )
+                coefficients.append([getattr(wrench, part)[k] for wrench in wrenches])
                 right.append(-getattr(borne[name], part)[k])
     for condition in conditions:
         equations.append((condition.name, condition.dimension))
@@ -242,6 +293,16 @@ def dense_system(
         )
         right.append(0.0)
     return DenseSystem(tuple(equations), unknowns, coefficients, right)
+
+
+def _sign(result: Result, name: str, relation: Relation, row: int) -> float:
+    """The sign of what a coupling transmits at its first coordinate, where its teeth push apart."""
+    if not relation.pushes_apart:
+        return 0.0
+    value = result.quantity(f"{name}.torque").value
+    assert isinstance(value, np.ndarray)
+    moment = float(value[row]) * relation.terms[0].factor
+    return 1.0 if moment > 0.0 else -1.0
 
 
 def arranged(system: DenseSystem, equations: Sequence[str], unknowns: Sequence[str]) -> DenseSystem:

@@ -55,6 +55,7 @@ from mechkin_cli.units import ANGLE, ANGULAR_RATE, ENERGY, INERTIA, MOMENT, Dime
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
 
@@ -86,7 +87,8 @@ def cycle_fault(result: Result, balance: AnyBalance) -> Diagnostic | None:
         text = f"{balance.name}: row {lost[0] + 1} of the cycle has no solution"
         hint = "balances need every row; move or turn the sweep so that all have one"
         return _fault("balance-undefined", balance, text, hint)
-    if stands_elsewhere(result.session, rows.states[:, [0, -1]]):
+    ends = rows.states[:, [0, -1]]
+    if stands_elsewhere(result.session, ends) or _turned_in_part(result.session, ends):
         text = f"{balance.name}: the mechanism is not back at the last row where it was at first"
         again = (cycle.turns + 1) if cycle.number is not None else 2
         hint = f"let the rows go over more turns, such as {again}; mechkin ranges shows the circuit"
@@ -99,6 +101,18 @@ def cycle_fault(result: Result, balance: AnyBalance) -> Diagnostic | None:
             hint = f"tie it with {{with: an expression of {cycle.name}}}, or give the sweep a time:"
             return _fault("no-cycle", balance, text, hint)
     return None
+
+
+def _turned_in_part(session: Session, ends: Floats) -> bool:
+    """Whether a turn that couplings count is no whole one from the first to the second of two
+    places (states, 2)."""
+    gone = [
+        float(ends[carrier.state + number, 1] - ends[carrier.state + number, 0]) / (2.0 * np.pi)
+        for carrier in session.layout.carriers
+        for number, freedom in enumerate(carrier.part.type.freedoms)
+        if freedom.counted
+    ]
+    return any(abs(turns - round(turns)) > tolerances.SAME_MODE for turns in gone)
 
 
 def repeated(values: Floats) -> bool:

@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from mechkin_cli import mobility
 from mechkin_cli.assembly import is_home_singular
-from mechkin_cli.building.couplings import build_couplings, coupled_joints, refuse_friction
+from mechkin_cli.building.cables import build_cables
+from mechkin_cli.building.couplings import (
+    build_couplings,
+    coupled_joints,
+    refuse_friction,
+    refuse_tied_friction,
+)
 from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
 from mechkin_cli.building.datum import Datum, datum_of
 from mechkin_cli.building.fields import (
@@ -40,7 +46,7 @@ from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
     build_tables,
-    quantities_of,
+    problem_of,
     runs_of,
     used_quantities,
 )
@@ -197,11 +203,11 @@ def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[An
 
 
 def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
-    if file.view is None:
+    if file.view is None and not file.couplings:
         return None
     from mechkin_cli.building.view import build_view
 
-    return build_view(fields, file.view, problem.mechanism)
+    return build_view(fields, file.view, file.couplings, problem.mechanism)
 
 
 def read_fields(
@@ -239,9 +245,10 @@ def build_problem(
     links, joints = build_linkage(fields, file)
     telescopes, slides = build_cylinders(fields, file.cylinders, points)
     links, joints = links | telescopes, joints | slides
-    for coupled in coupled_joints(file.couplings) & joints.keys():
+    for coupled in coupled_joints(fields, file.couplings, joints):
         joints[coupled] = counted(joints[coupled])
-    couplings = build_couplings(fields, file.couplings, joints)
+    cable_links, cable_joints, cables = build_cables(fields, file.couplings, joints, points)
+    couplings = build_couplings(fields, file.couplings, joints, cables)
     refuse_friction(fields, file.loads, couplings)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
@@ -249,7 +256,8 @@ def build_problem(
         if is_link(fields, ("directions", name, "link"), d.link, links)
     }
     guide_links, guide_joints = point_guides(fields, file.motion, points)
-    links, joints = links | guide_links, joints | guide_joints
+    links = links | guide_links | cable_links
+    joints = joints | guide_joints | cable_joints
     per_row = numbers_per_row(file, joints)
     if motion is None:
         motion = build_motion(fields, file.motion, joints, per_row)
@@ -271,6 +279,7 @@ def build_problem(
     loads.add_all(file.loads)
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
+    refuse_tied_friction(fields, file.loads, problem)
     if not (file.responses and responses):
         return problem
     from mechkin_cli.building.responses import build_responses
@@ -402,7 +411,7 @@ def _define(fields: Fields, name: str, expression: Expression) -> None:
 def check_quantities(fields: Fields, file: MechanismFile, problem: Problem) -> None:
     """Notes the error of a quantity that has one in every run of the file, at its place;
     expressions that use it get no message of their own."""
-    samples = [ColumnSample(fields, quantities_of(problem, run), run) for run in runs_of(file)]
+    samples = [ColumnSample(fields, problem_of(problem, run), run) for run in runs_of(file)]
     values: list[dict[str, Quantity]] = [{} for _ in samples]
     named = fields.definitions.named
     # of what is no quantity of the file nothing is known here: it stands for what it is

@@ -1,26 +1,29 @@
 """`couplings:` to relations between coordinates, each a sum of terms that is constant; a term is a
 coordinate or a function of it.
 
-What wheels and teeth come to is in `wheels.py`.
+What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`,
+cables in `cables.py`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import pi
 
 import numpy as np
 
+from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.law_reading import Over, read_law
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
-from mechkin_cli.building.wheels import gear_relation, rack_relation
+from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
 from mechkin_cli.mechanism import (
     CoordinateLaw,
     ExpressionOf,
     Joint,
+    Problem,
     Relation,
     Term,
     dimension_of,
@@ -28,11 +31,14 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
+    CableCoupling,
     FrictionAtJoint,
     FunctionCoupling,
     GearCoupling,
     JoinedTable,
     LinearCoupling,
+    RackCoupling,
+    ScrewCoupling,
     TableCoupling,
     TableLaw,
 )
@@ -41,9 +47,23 @@ from mechkin_cli.tolerances import TABLE_END
 from mechkin_cli.units import ANGLE, LENGTH, Dimension
 
 
-def coupled_joints(couplings: Mapping[str, AnyCoupling]) -> set[str]:
-    """Names of the joints that couplings name."""
-    return {name for section in couplings.values() for name in _joints_of(section)}
+def coupled_joints(
+    fields: Fields, couplings: Mapping[str, AnyCoupling], joints: Mapping[str, Joint]
+) -> set[str]:
+    """Names of the joints that couplings have coordinates of: those that they name, and those that
+    join the link on which a wheel turns to its carrier."""
+    named = {name for section in couplings.values() for name in _joints_of(section)}
+    found = named & joints.keys()
+    if fields.error_count:  # axes may be none
+        return found
+    for section in couplings.values():
+        wheels = [joints[name] for name in _joints_of(section) if name in joints]
+        if len(wheels) != 2 or not all(wheel.type.is_bearing for wheel in wheels):
+            continue
+        pair = on_one_carrier(wheels[0], wheels[1], joints)
+        if pair is not None:
+            found |= {name for turning in pair[1:] for name, _ in turning.way}
+    return found
 
 
 def _joints_of(section: AnyCoupling) -> Iterable[str]:
@@ -51,7 +71,7 @@ def _joints_of(section: AnyCoupling) -> Iterable[str]:
         return [term.rpartition(".")[0] for term in section.terms]
     if isinstance(section, FunctionCoupling | TableCoupling):
         return [name.rpartition(".")[0] for name in (_leading(section), section.gives)]
-    return section.joints
+    return () if isinstance(section, CableCoupling) else section.joints
 
 
 def _leading(section: FunctionCoupling | TableCoupling) -> str:
@@ -59,9 +79,12 @@ def _leading(section: FunctionCoupling | TableCoupling) -> str:
 
 
 def build_couplings(
-    fields: Fields, couplings: Mapping[str, AnyCoupling], joints: Mapping[str, Joint]
+    fields: Fields,
+    couplings: Mapping[str, AnyCoupling],
+    joints: Mapping[str, Joint],
+    cables: Mapping[str, Relation],
 ) -> dict[str, Relation]:
-    """The relations of a file's couplings; errors are noted in `fields`."""
+    """The relations of a file's couplings, `cables` among them; errors are noted in `fields`."""
     found: dict[str, Relation | None] = {}
     drawn = not fields.error_count  # else axes may be none
     for name, section in couplings.items():
@@ -70,27 +93,47 @@ def build_couplings(
             found[name] = _linear(fields, path, section, joints)
         elif isinstance(section, FunctionCoupling | TableCoupling):
             found[name] = _followed(fields, path, section, joints)
+        elif isinstance(section, CableCoupling):
+            found[name] = cables.get(name)
         elif not _are_joints(fields, path, section.joints, joints) or not drawn:
             found[name] = None
         elif isinstance(section, GearCoupling):
             found[name] = gear_relation(fields, path, section, joints)
-        else:
+        elif isinstance(section, RackCoupling):
             found[name] = rack_relation(fields, path, section, joints)
+        elif isinstance(section, ScrewCoupling):
+            found[name] = screw_relation(fields, path, section, joints)
+        else:
+            found[name] = belt_relation(fields, path, section, joints)
     return {name: relation for name, relation in found.items() if relation is not None}
 
 
 def refuse_friction(
     fields: Fields, loads: Iterable[object], couplings: Mapping[str, Relation]
 ) -> None:
-    """Notes teeth that push wheels apart where joints rub: friction is solved for by reactions that
-    are linear in it."""
+    """Notes teeth that push wheels apart, and belts without pretension, where joints rub: friction
+    is solved for by reactions that are linear in it."""
     if not any(isinstance(load, FrictionAtJoint) for load in loads):
         return
     for name, relation in couplings.items():
-        if relation.pushes_apart:
+        if relation.pushes_apart and relation.tensions:
+            text = "with friction in joints a strand that goes slack is not computed"
+            hint = "give the pretension, or leave out the friction"
+            fields.error("rubbing", ("couplings", name), text, hint)
+        elif relation.pushes_apart:
             text = "with friction in joints the force that pushes wheels apart is not computed"
             hint = "leave out pressure_angle, or the friction"
             fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)
+
+
+def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Problem) -> None:
+    """Notes friction at inputs that are tied: it depends on what transmits the tie, which is not
+    said."""
+    for i, load in enumerate(loads):
+        if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
+            text = f"{problem.tied[load.joint]}, and how that loads {load.joint} is not said"
+            hint = "write the tie as a coupling, or leave out the friction"
+            fields.error("rubbing", ("loads", i), text, hint)
 
 
 def _linear(

@@ -34,6 +34,7 @@ from mechkin_cli.mechanism import (
     Moments,
     Vector,
     pairs as joint_table,
+    told_coordinates,
     unit,
 )
 from mechkin_cli.reading import CORRECT_FIRST, MOST_DIAGNOSTICS, Document, in_order
@@ -337,7 +338,7 @@ def is_coordinate(
             return True
         note(CODE, path, *without(joints[joint], coordinate))
     elif not fields.is_refused(joint):
-        known = [c for joint in joints.values() for c in joint.coordinates]
+        known = told_coordinates(joints.values())
         note(CODE, path, f"{name} is not a coordinate", nearest_hint(name, known))
     return False
 

@@ -15,22 +15,27 @@ With t from the first value of the variable and u = (x - start)/duration the law
 
 - constant rate, constant acceleration, polynomial: c0 + c1 t + c2 t^2 + ...; bare coefficients
   must be in the file's angle (length) and time throughout
+- expression of the variable: `FormulaLaw`
 - sine: offset + amplitude sin(2 pi frequency t + phase)
 - rises, from + (to - from) s(u), with rest before and after: `SHAPES`
+- sequence: rises and rests one after another; over an angle that it spans a turn of again and again
 - table: the curve through the rows of a CSV file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from math import inf, prod
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from mechkin_cli.building.fields import Clock, Fields, Path
+import numpy as np
+
+from mechkin_cli.building.fields import AlreadyRefused, Clock, Fields, Path
 from mechkin_cli.building.law_shapes import (
     HALF_TURN,
     SHAPES,
+    Orders,
     Piece,
     PiecewiseLaw,
     rest,
@@ -44,20 +49,39 @@ from mechkin_cli.building.load_laws import (
     read_curve,
     read_rows,
 )
-from mechkin_cli.expressions import literal
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.exact import TURN
+from mechkin_cli.expressions import (
+    Expression,
+    ExpressionError,
+    Quantity,
+    UnknownName,
+    constant_jet,
+    derivatives,
+    literal,
+    parse,
+    scalar,
+)
 from mechkin_cli.mechanism import Curve
-from mechkin_cli.record import NamedTuple
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import (
     ConstantAcceleration,
     ConstantRate,
+    ExpressionLaw,
     Law,
     Polynomial,
     Rise,
+    Sequence,
     Sine,
     TableLaw,
 )
-from mechkin_cli.tape import as_recorded
+from mechkin_cli.tape import JetNumber, as_recorded, is_traced, orders_of
+from mechkin_cli.tolerances import COURSE_SAME
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+    from mechkin_cli.tape import ExactRows
 
 _ORDERS = range(4)
 
@@ -71,13 +95,15 @@ class Over(NamedTuple):
         last: its last value, at which a rise without a duration ends; None where there is none.
         met: the least and the largest of its values that are met, where they are known.
         in_si: whether the law is in SI, else in the file's units.
+        name: its name in expressions.
     """
 
     dimension: Dimension
     first: float
-    last: float | None
+    last: float | None = None
     met: tuple[float, ...] = ()
     in_si: bool = False
+    name: str = "time"
 
 
 def over_moments(clock: Clock) -> Over:
@@ -121,26 +147,250 @@ class _Reading(NamedTuple):
         return found
 
 
-def read_law(
-    fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over
-) -> PiecewiseLaw:
+class FormulaLaw:
+    """A law as an expression of its variable, with the interface of a `PiecewiseLaw`; where it
+    bends its tape tells."""
+
+    edges: tuple[float, ...] = ()
+    period = None
+
+    def __init__(self, reading: _Reading, expression: Expression) -> None:
+        self._reading, self._expression = reading, expression
+
+    def constants(self, _: float) -> list[float]:
+        """None: it is one piece."""
+        return []
+
+    def value(self, x: Any, _: Iterable[Any] = ()) -> Any:
+        """The value at x, a float, doubles (rows,) or a recorded number."""
+        return self._in_own_units(self._in_si(self._variable_in_si(x)), 0)
+
+    def orders(self, x: Floats) -> Floats:
+        """As `PiecewiseLaw.orders`; nan or infinite where there is no such derivative."""
+        variable = self._variable_in_si(x)
+        moving = np.stack([variable, np.ones_like(x), np.zeros_like(x), np.zeros_like(x)])
+        parameters = self._reading.fields.parameters
+        names = {
+            # a recorded parameter refuses to become a float
+            name: constant_jet(float(parameters[name].value)) if name in parameters else moving  # type: ignore[arg-type]
+            for name in self._expression.names
+        }
+        with np.errstate(all="ignore"):
+            found = np.broadcast_to(derivatives(self._expression, names), (4, x.size)).copy()
+            found[0] = self._in_si(variable)
+        return np.stack([self._in_own_units(order, k) for k, order in enumerate(found)])
+
+    def recorded(self, _: ExactRows, x: Any, __: Floats) -> Orders:
+        """As `PiecewiseLaw.recorded`."""
+        moving: Any = JetNumber([self._variable_in_si(x), 1.0, 0.0, 0.0])
+        orders = orders_of(self._in_si(moving))
+        a, b, c, d = (self._in_own_units(order, k) for k, order in enumerate(orders))
+        return a, b, c, d
+
+    def check(self) -> None:
+        """Notes what is wrong with the expression, whatever its variable is."""
+        reading, sample = self._reading, np.ones(1)
+        try:
+            scalar(
+                self._expression.in_doubles,
+                reading.dimension,
+                reading.fields.units,
+                lambda name: self._named(name, sample, recorded=False),
+            )
+        except ExpressionError as error:
+            reading.fields.expression_error((*reading.path, "value"), error)
+
+    def _in_si(self, variable: Any) -> Any:
+        reading = self._reading
+        return scalar(
+            self._expression,
+            reading.dimension,
+            reading.fields.units,
+            lambda name: self._named(name, variable),
+        )
+
+    def _named(self, name: str, variable: Any, *, recorded: bool = True) -> Quantity:
+        """The quantity of a name, with a value of the variable in SI."""
+        fields, over = self._reading.fields, self._reading.over
+        if name == over.name:
+            return Quantity(variable, over.dimension)
+        if fields.is_refused(name):
+            raise AlreadyRefused(name)
+        if name not in fields.parameters:
+            hint = f"a law is an expression of {over.name} and parameters"
+            hint += "; {with: ...} follows other inputs" if "." in name else ""
+            raise UnknownName(name, [*fields.parameters, over.name], hint)
+        parameter = fields.parameters[name]
+        return (
+            parameter
+            if recorded or not is_traced(parameter.value)
+            else replace(parameter, value=np.ones(1))
+        )
+
+    def _variable_in_si(self, x: Any) -> Any:
+        over, units = self._reading.over, self._reading.fields.units
+        return x if over.in_si else units.to_si(x, over.dimension)
+
+    def _in_own_units(self, value: Any, order: int) -> Any:
+        reading = self._reading
+        if reading.over.in_si:
+            return value
+        return reading.fields.units.from_si(value, reading.of_order(order))
+
+
+AnyLaw = PiecewiseLaw | FormulaLaw
+
+
+def read_law(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> AnyLaw:
     """The law at a path of the file, which gives a quantity of a dimension over a variable.
 
     Errors are noted in `fields`; a law at rest replaces a wrong one.
     """
     errors = fields.error_count
-    pieces = _READ[type(law)](_Reading(fields, path, dimension, over), law)
-    if fields.error_count > errors:
-        pieces = [rest(0.0)]
-    return PiecewiseLaw(pieces)
+    reading = _Reading(fields, path, dimension, over)
+    if isinstance(law, ExpressionLaw) and literal(law.value) is None:
+        formula = _formula(reading, law)
+        return (
+            formula
+            if formula is not None and fields.error_count == errors
+            else PiecewiseLaw([rest(0.0)])
+        )
+    if isinstance(law, Sequence):
+        pieces, period = _sequence(reading, law)
+    else:
+        pieces, period = _READ[law.law](reading, law), None
+    return PiecewiseLaw([rest(0.0)] if fields.error_count > errors else pieces, period)
 
 
 def note_bends(fields: Fields, path: Path, law: Law, dimension: Dimension, over: Over) -> None:
-    """Notes what is odd, but no error, in a law without errors."""
+    """Notes what is odd, but no error, in a law without errors: a curve of a table that leaves its
+    points, and jumps of rate and acceleration between the segments of a sequence."""
+    reading = _Reading(fields, path, dimension, over)
     if isinstance(law, TableLaw) and not over.in_si:
-        curve = _curve(_Reading(fields, path, dimension, over), law)
+        curve = _curve(reading, law)
         assert curve is not None
         note_overshoot(fields, (*path, "file"), curve, None)
+    elif isinstance(law, Sequence):
+        _note_jumps(reading, PiecewiseLaw(*_sequence(reading, law)))
+
+
+_JUMPS: tuple[tuple[str, Literal["warning", "note"], str, str], ...] = (
+    (
+        "rate-jump",
+        "warning",
+        "rate",
+        "forces are infinite there; a rise such as cycloidal begins and ends at rest",
+    ),
+    (
+        "acceleration-jump",
+        "note",
+        "acceleration",
+        "cycloidal, 3-4-5, modified-sine and modified-trapezoid begin and end without acceleration",
+    ),
+)
+
+
+def _note_jumps(reading: _Reading, law: PiecewiseLaw) -> None:
+    """Notes where the rate or else the acceleration jumps between two segments, of each the first
+    place and how many there are."""
+    fields, over = reading.fields, reading.over
+    least, most = over.met or (-inf, inf)
+    found = [(at, jump) for at, jump in law.jumps() if least < at < most]
+    for order, (code, severity, word, hint) in enumerate(_JUMPS, start=1):
+        jumping = [(at, jump) for at, jump in found if jump[order] and not jump[1:order].any()]
+        if not jumping:
+            continue
+        at, jump = max(jumping, key=lambda one: abs(one[1][order]))
+        unit = fields.units.label
+        where = f"{_written(reading, at, over.dimension):.6g} {unit(over.dimension)}"
+        more = f", the largest of {len(jumping)} such jumps" if len(jumping) > 1 else ""
+        size = _written(reading, abs(jump[order]), reading.of_order(order))
+        fields.note(
+            Diagnostic(
+                code,
+                severity,
+                f"the {word} of this sequence jumps at {where}{more}",
+                fields.document.place((*reading.path, "segments")),
+                measured=f"{size:.6g} {unit(reading.of_order(order))}",
+                hint=hint,
+            )
+        )
+
+
+def _written(reading: _Reading, value: float, dimension: Dimension) -> float:
+    """A number of the law in the file's units."""
+    return float(reading.fields.units.from_si(value, dimension)) if reading.over.in_si else value
+
+
+def _sequence(reading: _Reading, law: Sequence) -> tuple[list[Piece], float | None]:
+    """The pieces of a sequence, and its period where it spans a turn of an angle."""
+    fields, over = reading.fields, reading.over
+    first = reading.number(("from",), law.first, reading.dimension)
+    begin = over.first
+    if law.start is not None:
+        begin = reading.number(("start",), law.start, over.dimension)
+    pieces, start, at = [rest(first)], begin, first
+    for k, segment in enumerate(law.segments):
+        key: Path = ("segments", k, "for")
+        errors = fields.error_count
+        length = reading.number(key, segment.extent, over.dimension)
+        if not length > 0.0:
+            if fields.error_count == errors:
+                measured = f"{length:g} {fields.units.label(over.dimension)}"
+                text = "a segment has a positive extent"
+                hint = "write for: how long it lasts"
+                fields.error("no-duration", (*reading.path, *key), text, hint, measured=measured)
+            continue
+        if segment.last is None:
+            pieces.append(rest(at, start))
+        else:
+            to = reading.number(("segments", k, "to"), segment.last, reading.dimension)
+            scales = reading.scales(to - at, length)
+            pieces += risen(segment.law, start, length, at, to, scales)
+            at = to
+        start = start + length
+    period = _turn(reading, law, as_recorded(start - begin), as_recorded(at - first))
+    if period is None:
+        pieces.append(rest(at, start))
+    return pieces, period
+
+
+def _turn(reading: _Reading, law: Sequence, extent: float, rise: float) -> float | None:
+    """The turn that a sequence spans; None where it spans less, or runs over no angle."""
+    fields, over = reading.fields, reading.over
+    if over.dimension != ANGLE:
+        return None
+    turn = TURN if over.in_si else fields.units.from_si(TURN, ANGLE)
+    if extent < turn * (1.0 - COURSE_SAME):
+        return None
+    place = (*reading.path, "segments")
+    if extent > turn * (1.0 + COURSE_SAME):
+        text = "the segments span more than a turn"
+        measured = f"{_written(reading, extent, ANGLE):.12g} {fields.units.label(ANGLE)}"
+        fields.error("too-long", place, text, "shorten one of them", measured=measured)
+    elif rise != 0.0:
+        text = "after a turn the sequence does not end where it began"
+        size = _written(reading, rise, reading.dimension)
+        measured = f"{size:.12g} {fields.units.label(reading.dimension)}"
+        hint = f"write to: {law.first} in the last segment that moves"
+        fields.error("open-sequence", place, text, hint, measured=measured)
+    return turn
+
+
+def _formula(reading: _Reading, law: ExpressionLaw) -> FormulaLaw | None:
+    """The law of an expression; None where an error was noted."""
+    try:
+        expression = parse(law.value).taking_whole({reading.over.name})
+    except ExpressionError as error:
+        reading.fields.expression_error((*reading.path, "value"), error)
+        return None
+    formula = FormulaLaw(reading, expression)
+    formula.check()
+    return formula
+
+
+def _constant(reading: _Reading, law: ExpressionLaw) -> list[Piece]:
+    return [rest(reading.number(("value",), law.value, reading.dimension))]
 
 
 def _of_powers(
@@ -219,7 +469,7 @@ def _rise(reading: _Reading, law: Rise) -> list[Piece]:
     last = reading.number(("to",), law.last, reading.dimension)
     start, duration = _span(reading, law)
     scales = reading.scales(last - first, duration)
-    rising = risen(type(law), start, duration, first, last, scales)
+    rising = risen(law.law, start, duration, first, last, scales)
     return [rest(first), *rising, rest(last, start + duration)]
 
 
@@ -282,11 +532,12 @@ def _curve(reading: _Reading, law: TableLaw) -> Curve | None:
     return None if rows is None else join(reading.fields, place, *rows, *joining_of(law))
 
 
-_READ: dict[type, Callable[[_Reading, Any], list[Piece]]] = {
-    ConstantRate: _of_powers,
-    ConstantAcceleration: _of_powers,
-    Polynomial: _of_powers,
-    Sine: _sine,
+_READ: dict[str, Callable[[_Reading, Any], list[Piece]]] = {
     **dict.fromkeys(SHAPES, _rise),
-    TableLaw: _table,
+    "constant-rate": _of_powers,
+    "constant-acceleration": _of_powers,
+    "polynomial": _of_powers,
+    "expression": _constant,
+    "sine": _sine,
+    "table": _table,
 }

@@ -25,17 +25,8 @@ import numpy as np
 
 from mechkin_cli.exact import PI, Exact, nearest
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema import (
-    Cycloidal,
-    Harmonic,
-    ModifiedSine,
-    ModifiedTrapezoid,
-    Rise,
-    Rise345,
-    Rise4567,
-)
 from mechkin_cli.tape import JetNumber, Recorded, TraceLost, as_recorded, cos, is_traced, sin
-from mechkin_cli.tolerances import COURSE_SAME
+from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -108,6 +99,39 @@ class PiecewiseLaw:
         """Values of the variable at which the constants change, of a period those of its first."""
         parts = zip(self._starts.tolist(), self.pieces[1:], strict=True)
         return [start for start, piece in parts if not piece.goes_on]
+
+    def jumps(self) -> list[tuple[float, Floats]]:
+        """Where pieces meet that are not one function, and by how much each order (4,) jumps there;
+        what is rounding is 0. Of a law that repeats itself its start is such a place, too."""
+        last = len(self.pieces) - 1
+        pairs = [(k, k + 1, start) for k, start in enumerate(self._starts.tolist()) if k]
+        if self.period is not None:
+            pairs.append((last, 1, float(self._starts[0])))
+        else:
+            pairs.insert(0, (0, 1, float(self._starts[0])))
+        found = []
+        for before, behind, at in pairs:
+            if self.pieces[behind].goes_on:
+                continue
+            end = np.array([at + self._length if behind < before else at])
+            one, other = (
+                self._evaluated(x, [column[k] for column in self._columns], len(_ORDERS))
+                for k, x in ((before, end), (behind, np.array([at])))
+            )
+            jump = np.array([float(np.ravel(b - a)[0]) for a, b in zip(one, other, strict=True)])
+            found.append((at, np.where(np.abs(jump) <= COURSE_JUMP * self._largest(), 0.0, jump)))
+        return found
+
+    def _largest(self) -> Floats:
+        """A bound of each order (4,) near the pieces' own parts of the variable."""
+        anchors = self._columns[5]
+        found, used = [], 6
+        for size in self._sizes:
+            columns = self._columns[used : used + 1 + size]
+            found.append(max(sum(map(abs, row)) for row in zip(*columns, strict=True)))
+            used += 1 + size
+        found[0] += max(map(abs, anchors))
+        return np.array(found)
 
     def constants(self, x: float) -> list[float]:
         """Those of the piece in which a value of the variable lies."""
@@ -309,17 +333,18 @@ def _powers(*coefficients: int) -> _Part:
     return _Part(_ZERO, _ZERO, tuple(map(Fraction, coefficients)))
 
 
-SHAPES: dict[type[Rise], tuple[_Part, ...]] = {
-    Harmonic: _rise_of(_Part(_ZERO, _ZERO, (_HALF,), _HALF, _ONE, -_HALF)),
-    Cycloidal: _rise_of(_waving(_ONE, 2)),
-    Rise345: _rise_of(_powers(0, 0, 0, 10, -15, 6)),
-    Rise4567: _rise_of(_powers(0, 0, 0, 0, 35, -84, 70, -20)),
+SHAPES: dict[str, tuple[_Part, ...]] = {
+    "constant-rate": _rise_of(_powers(0, 1)),
+    "harmonic": _rise_of(_Part(_ZERO, _ZERO, (_HALF,), _HALF, _ONE, -_HALF)),
+    "cycloidal": _rise_of(_waving(_ONE, 2)),
+    "3-4-5": _rise_of(_powers(0, 0, 0, 10, -15, 6)),
+    "4-5-6-7": _rise_of(_powers(0, 0, 0, 0, 35, -84, 70, -20)),
     # R. L. Norton, Cam Design and Manufacturing Handbook, chapter 3
-    ModifiedSine: _rise_of(
+    "modified-sine": _rise_of(
         _waving(_SINE, 4),
         _Part(_EIGHTH, _HALF, (_ZERO, _SINE), 9 * _SINE / _FOUR_PI, Fraction(4, 3)),
     ),
-    ModifiedTrapezoid: _rise_of(
+    "modified-trapezoid": _rise_of(
         _waving(_TRAPEZOID, 4),
         _Part(
             _EIGHTH,
@@ -329,7 +354,7 @@ SHAPES: dict[type[Rise], tuple[_Part, ...]] = {
         _Part(3 * _EIGHTH, _HALF, (_ZERO, 2 - _TRAPEZOID), _TRAPEZOID / _FOUR_PI, 4 * _ONE),
     ),
 }
-"""The rises from 0 to 1 by the kind of their section."""
+"""The rises from 0 to 1 by the word of their law."""
 
 
 def waves_of(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> list[Any]:
@@ -342,12 +367,12 @@ def waves_of(scales: Sequence[Any], amplitude: Fraction, turns: Fraction) -> lis
 
 
 def risen(
-    kind: type[Rise], start: Any, length: Any, first: Any, last: Any, scales: Sequence[Any]
+    law: str, start: Any, length: Any, first: Any, last: Any, scales: Sequence[Any]
 ) -> list[Piece]:
-    """The pieces of a rise of a kind.
+    """The pieces of a rise.
 
     Args:
-        kind: one of `SHAPES`.
+        law: its word, one of `SHAPES`.
         start: the value of the variable at which it begins.
         length: how far it reaches.
         first: the value at its begin.
@@ -355,7 +380,7 @@ def risen(
         scales: what one unit of each order of a function of w from 0 to 1 is.
     """
     pieces = []
-    for part in SHAPES[kind]:
+    for part in SHAPES[law]:
         anchor = (
             first if part.shift < _HALF else last if part.shift > _HALF else (first + last) / 2.0
         )

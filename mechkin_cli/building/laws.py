@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.building.fields import AlreadyRefused, Clock, Fields, Path, dimension_of
-from mechkin_cli.building.law_reading import note_bends, over_moments, read_law
+from mechkin_cli.building.law_reading import AnyLaw, note_bends, over_moments, read_law
 from mechkin_cli.building.law_shapes import Piece, PiecewiseLaw
 from mechkin_cli.expressions import (
     Expression,
@@ -57,9 +57,17 @@ def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
     errors = fields.error_count
     dimension, over = dimension_of(coordinate), over_moments(clock)
     read = read_law(fields, path, law, dimension, over)
-    if fields.error_count == errors:
-        note_bends(fields, path, law, dimension, over)
-    return read.orders(clock.time.written)
+    orders = read.orders(clock.time.written)
+    if fields.error_count > errors:
+        return orders
+    note_bends(fields, path, law, dimension, over)
+    rows = np.flatnonzero(~np.isfinite(orders).all(axis=0))
+    if rows.size:
+        row = int(rows[0])
+        moment = f"time = {clock.time.written[row]:.12g} {fields.units.label(TIME)}"
+        _note_undefined(fields, (*path, "value"), str(path[-1]), orders, row, moment)
+        return np.zeros_like(orders)
+    return orders
 
 
 def _dimension(name: str) -> Dimension:
@@ -117,7 +125,7 @@ def _sources(
     clock: Clock | None,
     *,
     grid: bool,
-) -> tuple[Parameter, Floats, Mapping[str, PiecewiseLaw]] | None:
+) -> tuple[Parameter, Floats, Mapping[str, AnyLaw]] | None:
     """The parameter, its values in the rows, and the inputs that are functions of it alone."""
     if clock is not None:
         laws = {
@@ -160,7 +168,7 @@ def _recorded(
     expressions: Mapping[str, Expression],
     parameter: Parameter,
     at: Floats,
-    laws: Mapping[str, PiecewiseLaw],
+    laws: Mapping[str, AnyLaw],
 ) -> Formula:
     """The tape from the parameter and the constants of all pieces to the inputs in SI."""
 
@@ -238,6 +246,21 @@ def _tape(
         known[name] = Quantity(scalar(expression, dimension, fields.units, find), dimension)
     outputs = [register(recorder, known[item.name].value) for item in inputs]
     return recorder.tape(outputs, guarded=False)
+
+
+def _note_undefined(
+    fields: Fields, path: Path, name: str, orders: Floats, row: int, measured: str
+) -> None:
+    """Notes that an input has no finite value, or no such rate, in a row."""
+    words = ("value", "rate", "second rate", "third rate")
+    order = int(np.argmax(~np.isfinite(orders[:, row])))
+    fields.error(
+        "undefined-rate" if order else "undefined-value",
+        path,
+        f"{name} has no finite {words[order]} in row {row + 1}",
+        "write an expression that is smooth over all rows, or move the rows",
+        measured=measured,
+    )
 
 
 class Following:
@@ -379,24 +402,15 @@ class Following:
         in_si[0] = value
         rows = np.flatnonzero(~np.isfinite(in_si).all(axis=0))
         if rows.size:
-            self._note_undefined(name, expression, in_si, int(rows[0]))
+            row = int(rows[0])
+            places = ", ".join(self._place(used, row) for used in sorted(expression.names))
+            _note_undefined(self.fields, self._path(name), name, in_si, row, places)
+            self.fields.refused.add(name)
             return
         self.orders[name] = np.stack(
             [units.from_si(in_si[k], dimension_of(coordinate, k)) for k in range(4)]
         )
         self.expressions[name] = expression
-
-    def _note_undefined(self, name: str, expression: Expression, in_si: Floats, row: int) -> None:
-        words = ("value", "rate", "second rate", "third rate")
-        order = int(np.argmax(~np.isfinite(in_si[:, row])))
-        self.fields.error(
-            "undefined-rate" if order else "undefined-value",
-            self._path(name),
-            f"{name} has no finite {words[order]} in row {row + 1}",
-            "write an expression that is smooth over all rows, or move the rows",
-            measured=", ".join(self._place(used, row) for used in sorted(expression.names)),
-        )
-        self.fields.refused.add(name)
 
     def _place(self, name: str, row: int) -> str:
         """`O1.theta = 90 deg`: a quantity of the expression in one row."""

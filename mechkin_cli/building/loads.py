@@ -192,7 +192,7 @@ class LoadBuilder:
     ) -> tuple[Mechanism, tuple[LoadLaw, ...], dict[int, int]]:
         """The mechanism with the loads of a run; the laws of those that vary, numbered in the order
         of the loads; and these numbers by those that the laws have among those of all runs."""
-        loads: list[Load] = []
+        loads: list[Load] = [*mechanism.pretensions]
         frictions: list[Rubbing] = []
         gravity, numbers = ZERO, dict[int, int]()
         for runs, item in self._of_runs:

@@ -53,6 +53,7 @@ from mechkin_cli.mechanism import (
     perpendicular,
     scale,
     seat_letter,
+    told_coordinates,
     upright,
 )
 from mechkin_cli.schema import (
@@ -103,7 +104,7 @@ def numbers_per_row(file: MechanismFile, joints: Mapping[str, Joint]) -> int:
     inputs = list(motion.inputs) if motion else []
     cells = sum(len(table.columns) for table in file.tables)
     if not file.tables:
-        names = [name for joint in joints.values() for name in joint.coordinates]
+        names = told_coordinates(joints.values())
         timed = motion is not None and motion.time is not None
         cells = len(default_table(names, inputs, timed=timed).columns)
     freedoms = sum(joint.type.freedoms for joint in joints.values())
@@ -243,7 +244,7 @@ def build_inputs(
     if fields.error_count == errors and following:
         from mechkin_cli.building.laws import Following
 
-        coordinates = frozenset(c for joint in joints.values() for c in joint.coordinates)
+        coordinates = frozenset(told_coordinates(joints.values()))
         followers = Following(fields, orders, rows, time, path)
         followers.add_all(following, coordinates)
         expressions = followers.expressions

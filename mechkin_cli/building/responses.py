@@ -498,6 +498,9 @@ def response_graph(
     except UnsolvableGraph as error:
         if error.missing:
             return _too_few(response, error)._replace(place=place)
+        for extra in reversed(response.independent):
+            if _is_solvable(mechanism, [one for one in driven if one != extra]):
+                return _too_many(response, extra)._replace(place=place)
         return error.diagnostic._replace(place=place)
     if not is_redundant(graph) and response.independent:
         return graph
@@ -515,6 +518,14 @@ def response_graph(
     return graph
 
 
+def _is_solvable(mechanism: Mechanism, driven: Sequence[tuple[str, str]]) -> bool:
+    try:
+        solver_graph(mechanism, driven)
+    except UnsolvableGraph:
+        return False
+    return True
+
+
 def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
     free = len(response.independent) + error.missing
     return Diagnostic(
@@ -530,12 +541,8 @@ def _too_few(response: ResponseProblem, error: UnsolvableGraph) -> Diagnostic:
 def _undetermined(
     response: ResponseProblem, mechanism: Mechanism, driven: Sequence[tuple[str, str]]
 ) -> Diagnostic:
-    names = [
-        f"{joint.name}.{name}"
-        for joint in mechanism.joints.values()
-        for name in joint.type.coordinates
-        if (joint.name, name) not in driven
-    ]
+    places = {".".join(place) for place in driven}
+    names = [name for name in mechanism.coordinates if name not in places]
     return Diagnostic(
         "start-count",
         "error",

@@ -16,19 +16,15 @@ from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vect
 from mechkin_cli.mechanism import (
     AnyBalance,
     Cycle,
-    Drives,
     Flywheel,
     Harmonics,
     LoadWork,
     Problem,
     Wanted,
-    hint_in_plane,
-    hint_of,
     is_of_motion,
-    without_effort,
 )
 from mechkin_cli.schema import MechanismFile, tables as written
-from mechkin_cli.session import turn_of
+from mechkin_cli.session import round_of
 from mechkin_cli.tables import (
     CoefficientsLayout,
     ColumnLayout,
@@ -69,13 +65,12 @@ def unknown_run(fields: Fields, path: Path, name: str, known: Collection[str]) -
 def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[TableLayout, ...]:
     """The tables' layouts, and one for each run that has none; errors are noted in `fields`."""
     runs = runs_of(file)
-    known = {run: quantities_of(problem, run) for run in runs}
-    drives = problem.mechanism.drives
+    known = {run: problem_of(problem, run) for run in runs}
     tables = []
     for i, section in enumerate(file.tables):
         run = _run_of(fields, ("tables", i), section, runs)
         if run is not None:
-            sample = ColumnSample(fields, known[run], run, drives if run == SWEEP else None)
+            sample = ColumnSample(fields, known[run], run)
             tables.append(_table(fields, ("tables", i), section, run, sample))
     read = {table.run for table in tables}
     named = {section.run for section in file.tables}
@@ -86,11 +81,11 @@ def build_tables(fields: Fields, file: MechanismFile, problem: Problem) -> tuple
     return tuple(tables)
 
 
-def quantities_of(problem: Problem, run: str) -> Mapping[str, Wanted]:
-    """The quantities that the rows of a run have, by name."""
+def problem_of(problem: Problem, run: str) -> Problem:
+    """The problem of a run, whose quantities its rows have."""
     if run == SWEEP:
-        return problem.quantities()
-    return mechanism.response_problem(problem, problem.responses[run]).quantities()
+        return problem
+    return mechanism.response_problem(problem, problem.responses[run])
 
 
 def _run_of(fields: Fields, path: Path, section: written.Table, runs: Sequence[str]) -> str | None:
@@ -204,17 +199,11 @@ def _columns(
 class ColumnSample:
     """Resolves names to one-row stand-ins of the right dimension."""
 
-    def __init__(
-        self,
-        fields: Fields,
-        quantities: Mapping[str, Wanted],
-        run: str,
-        drives: Drives | None = None,
-    ) -> None:
-        self.run, self.drives = run, drives
+    def __init__(self, fields: Fields, problem: Problem, run: str) -> None:
+        self.run, self.problem = run, problem
         self.texts = row_texts(run)
         self.fields, self.parameters = fields, fields.parameters
-        self.quantities = quantities
+        self.quantities = problem.quantities()
 
     def __call__(self, name: str) -> Quantity:
         """The stand-in of a name.
@@ -235,10 +224,7 @@ class ColumnSample:
         if wanted is None:
             named = self.fields.definitions.named
             known = [*self.parameters, *named, *self.quantities, *self.texts]
-            response = self.run != SWEEP
-            passive = without_effort(name, self.quantities, self.drives, response=response)
-            in_plane = hint_in_plane(name) if self.fields.plane else None
-            raise UnknownName(name, known, passive or in_plane or hint_of(name, self.quantities))
+            raise UnknownName(name, known, self.problem.why_not(name))
         return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
 
@@ -286,9 +272,6 @@ def build_coefficients(
     if layouts and problem.mechanism.frictions:
         text = "there are no coefficients: where joints rub, since friction is not linear"
         fields.error("rubbing", ("coefficients",), text, "leave out coefficients: or the friction")
-    if layouts and problem.mechanism.couplings:
-        text = "there are no coefficients: of mechanisms with couplings"
-        fields.error("coupled", ("coefficients",), text, "leave out coefficients:")
     if layouts and problem.hold_idle:
         text = "there are no coefficients: where idle freedoms are held against loads"
         fields.error("held-idle", ("coefficients",), text, "leave out coefficients: or idle: hold")
@@ -323,7 +306,9 @@ def unknown_names(problem: Problem) -> list[str]:
         names += [f"{joint.name}.{word}" for word in words]
     drives = problem.mechanism.drives
     word = "drive" if drives is not None and drives.constraints else "effort"
-    return [*names, *(f"{j}.{c}.{word}" for j, c in problem.acting)]
+    names += [f"{j}.{c}.{word}" for j, c in problem.acting]
+    related = problem.mechanism.couplings.items()
+    return [*names, *(f"{name}.{'force' if r.length else 'torque'}" for name, r in related)]
 
 
 def _along(
@@ -397,7 +382,7 @@ class _BalanceBuilder:
             self.fields.error("not-driven", at, text, hint)
             return None
         item = motion.inputs[inputs[name]]
-        turn = turn_of(self.problem, item)
+        turn = round_of(self.problem, item)
         if turn is None:
             hint = "name an input that turns, or with time: and laws that come back, cycle: time"
             self.fields.error("no-cycle", at, f"{name} is not an angle that goes round", hint)
@@ -428,7 +413,7 @@ class _BalanceBuilder:
         if not self._are_equal(at, TIME, motion.time.written):
             return None
         for item in motion.inputs:
-            turn = turn_of(self.problem, item)
+            turn = round_of(self.problem, item)
             for k, (name, (_, values)) in enumerate(list(item.orders.items())[:3]):
                 gap = float(values[-1] - values[0])
                 if k == 0 and turn is not None:
@@ -484,7 +469,7 @@ class _BalanceBuilder:
         for i, text in enumerate(texts):
             try:
                 expression = parse(text)
-                quantity = expression.evaluate(ColumnSample(self.fields, self.known, SWEEP))
+                quantity = expression.evaluate(ColumnSample(self.fields, self.problem, SWEEP))
                 if dimension is not None and not quantity.dimension.compatible(dimension):
                     phrases = f"this is {quantity.dimension.phrase}, the first {dimension.phrase}"
                     message = f"one table holds one dimension; {phrases}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
+from mechkin_cli.building.drawn_wheels import DrawnBelt, DrawnWheel, drawn_couplings
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Mechanism, Vector, is_written
@@ -12,7 +13,7 @@ from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.schema import PartBetween, ShapeOfLink, ViewSection
+    from mechkin_cli.schema import AnyCoupling, PartBetween, ShapeOfLink, ViewSection
     from mechkin_cli.units import Dimension
 
 
@@ -54,6 +55,7 @@ class ViewSettings:
         arrow_length: of the longest arrow, m; None: by the size of the mechanism.
         camera: direction from the mechanism to the eye; None: the page's choice.
         speed: seconds for once through a run; None: the page's choice.
+        wheels, belts: what couplings look like.
     """
 
     colours: Mapping[str, str] = field(default_factory=dict)
@@ -66,10 +68,21 @@ class ViewSettings:
     arrow_length: float | None = None
     camera: Vector | None = None
     speed: float | None = None
+    wheels: tuple[DrawnWheel, ...] = ()
+    belts: tuple[DrawnBelt, ...] = ()
 
 
-def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> ViewSettings:
-    """The settings of the section; errors are noted in `fields`."""
+def build_view(
+    fields: Fields,
+    section: ViewSection | None,
+    couplings: Mapping[str, AnyCoupling],
+    mechanism: Mechanism,
+) -> ViewSettings:
+    """The settings of the section, and how couplings look; errors are noted in `fields`."""
+    drawn = ((), ()) if fields.error_count else drawn_couplings(fields, couplings, mechanism)
+    wheels, belts = drawn
+    if section is None:
+        return ViewSettings(wheels=wheels, belts=belts)
     view = _View(fields, mechanism)
     camera = section.camera
     return ViewSettings(
@@ -87,6 +100,8 @@ def build_view(fields: Fields, section: ViewSection, mechanism: Mechanism) -> Vi
         arrow_length=view.positive("arrow_length", section.arrow_length, LENGTH),
         camera=None if camera is None else fields.direction(("view", "camera"), camera),
         speed=view.positive("speed", section.speed, TIME),
+        wheels=wheels,
+        belts=belts,
     )
 
 

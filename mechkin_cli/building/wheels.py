@@ -46,7 +46,7 @@ from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH
 _QUARTER = 0.5 * pi
 
 
-class _Turning(NamedTuple):
+class Turning(NamedTuple):
     """How a wheel turns against a carrier, and slides along its axis: the terms of both, the axis
     as drawn on the carrier, about which they count, and the way from wheel to carrier (`Mesh`)."""
 
@@ -73,7 +73,7 @@ def gear_relation(
             fields.error("wheel-joint", (*path, "joints", i), text, hint)
             return None
     numbers = _ratio(fields, path, section)
-    pair = _on_one_carrier(wheels[0], wheels[1], joints)
+    pair = on_one_carrier(wheels[0], wheels[1], joints)
     if pair is None:
         one, other = (joint.name for joint in wheels)
         fields.error(
@@ -206,7 +206,7 @@ def _oblique(
     fields: Fields,
     path: Path,
     section: GearCoupling,
-    pair: tuple[str, _Turning, _Turning],
+    pair: tuple[str, Turning, Turning],
     numbers: tuple[float, float],
     teeth: _Teeth,
 ) -> Relation | None:
@@ -272,7 +272,7 @@ def _bevel(
     fields: Fields,
     path: Path,
     section: GearCoupling,
-    wheels: tuple[_Turning, _Turning],
+    wheels: tuple[Turning, Turning],
     numbers: tuple[float, float],
     teeth: _Teeth,
     place: tuple[Vector, Vector, float],
@@ -310,7 +310,7 @@ def _crossed(
     fields: Fields,
     path: Path,
     section: GearCoupling,
-    wheels: tuple[_Turning, _Turning],
+    wheels: tuple[Turning, Turning],
     numbers: tuple[float, float],
     teeth: _Teeth,
     place: tuple[Vector, Vector, float],
@@ -346,7 +346,7 @@ def _crossed(
 
 def _mesh(
     carrier: str,
-    first: _Turning,
+    first: Turning,
     way: tuple[tuple[str, int], ...],
     radius: float,
     outward: Vector,
@@ -379,35 +379,35 @@ def _ratio(fields: Fields, path: Path, section: GearCoupling) -> tuple[float, fl
     return (one, other) if fields.error_count == errors else None
 
 
-def _on_one_carrier(
+def on_one_carrier(
     one: Joint, other: Joint, joints: Mapping[str, Joint]
-) -> tuple[str, _Turning, _Turning] | None:
+) -> tuple[str, Turning, Turning] | None:
     """A carrier, and how two wheels turn against it."""
     shared = {one.first, one.second} & {other.first, other.second}
     if shared:
         carrier = min(shared, key=(one.first, one.second).index)
-        return carrier, _against(one, carrier), _against(other, carrier)
+        return carrier, against(one, carrier), against(other, carrier)
     for near, far in ((one, other), (other, one)):
         for base, carrier in product((near.first, near.second), (far.first, far.second)):
             for between in joints.values():
                 joins = {between.first, between.second} == {base, carrier}
                 if joins and _on_one_axis(near, between, base):
-                    pair = _through(near, between, base, carrier), _against(far, carrier)
+                    pair = _through(near, between, base, carrier), against(far, carrier)
                     return (carrier, *pair) if near is one else (carrier, *pair[::-1])
     return None
 
 
-def _against(joint: Joint, carrier: str) -> _Turning:
+def against(joint: Joint, carrier: str) -> Turning:
     """The wheel at a joint's other link against the carrier."""
     sense = 1 if joint.first == carrier else -1
     slides = (Term(joint, "s", float(sense)),) if any(joint.type.slides) else ()
     turn = Term(joint, "theta", float(sense))
-    return _Turning((turn,), slides, frame_on(joint, carrier), ((joint.name, -sense),))
+    return Turning((turn,), slides, frame_on(joint, carrier), ((joint.name, -sense),))
 
 
-def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> _Turning:
+def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> Turning:
     """A wheel on another link than the carrier: against that link, and with it."""
-    own, with_base = _against(wheel, base), _against(between, carrier)
+    own, with_base = against(wheel, base), against(between, carrier)
     # about the axis of the joint between them
     same = dot(frame_on(wheel, base).z, frame_on(between, base).z) > 0.0
     sign = 1.0 if same else -1.0
@@ -415,7 +415,7 @@ def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> _Turning:
         (*(t._replace(factor=sign * t.factor) for t in of_own), *of_base)
         for of_own, of_base in ((own.terms, with_base.terms), (own.slides, with_base.slides))
     )
-    return _Turning(terms, slides, with_base.axis, (*own.way, *with_base.way))
+    return Turning(terms, slides, with_base.axis, (*own.way, *with_base.way))
 
 
 def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
@@ -475,7 +475,7 @@ def rack_relation(
     teeth = _teeth(fields, path, section)
     if teeth is None:
         return None
-    wheel = _against(pinion, carrier)
+    wheel = against(pinion, carrier)
     slide = 1.0 if rack.first == carrier else -1.0
     side = 1.0 if lever > 0.0 else -1.0
     terms = (*wheel.terms, Term(rack, "s", -slide * side / radius))

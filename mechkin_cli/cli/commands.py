@@ -202,8 +202,8 @@ ANALYZE = Command(
         ),
         Word(
             "strict",
-            "Exit with 4 also if a row is near-singular, rank-unclear, beyond a limit or at a dead "
-            "centre.",
+            "Exit with 4 also if a row is near-singular, rank-unclear, slack, beyond a limit or at "
+            "a dead centre.",
             ("--strict",),
         ),
         Word("errors", "Measure the true error of every cell; write errors.csv.", ("--errors",)),

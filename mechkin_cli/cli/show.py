@@ -25,6 +25,7 @@ from mechkin_cli.mechanism import (
     DERIVED_KINDS,
     POWER_KINDS,
     accelerated,
+    is_written,
     quantities_read,
 )
 from mechkin_cli.plan import REACTION_KINDS, Demand
@@ -232,7 +233,7 @@ def _driven(analysis: Analysis) -> str:
     inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
-    words = [spin.idle_words for spin in mechanism.spins]
+    words = [spin.idle_words for spin in mechanism.told_spins]
     several = Counter(held.words for held in analysis.model.problem.held if held.idle)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
@@ -246,7 +247,7 @@ def _loops(analysis: Analysis) -> str:
     if not graph.closings:
         return "none (open chain)"
     coupled = ", ".join(c.name for c in graph.closings if c.terms)
-    closed = ", ".join(c.label for c in graph.closings if not c.terms)
+    closed = ", ".join(c.label for c in graph.closings if not c.terms and is_written(c.name))
     words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
     loops = analysis.model.problem.mechanism.loops

@@ -43,15 +43,15 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint InputConstraint Mesh PairConstraint Relation "
-        "Term",
+        "constraint": "Constraint DistanceConstraint Extent InputConstraint Mesh PairConstraint "
+        "Relation Tension Term",
         "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation LoadLaw joined_curve "
         "smooth_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
-        "joint": "GROUND_NAME Joint counted far_link frame_on is_written stop_of",
+        "joint": "GROUND_NAME Joint counted far_link frame_on is_written stop_of told_coordinates",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
@@ -64,7 +64,7 @@ __getattr__, __dir__ = lazy_names(
         "response_problem undefined_laws",
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
-        "response_quantities",
+        "response_quantities strands_of",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem StartValue Stop TurnsEnd",
         "track": "Track",

@@ -61,26 +61,57 @@ class Term(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Teeth that a coupling acts by, on the carrier's drawing: the pitch point (m), and the force
-    on the second wheel per unit moment on the first: `along` the flank, and `apart` per magnitude,
-    both in 1/m. `way` leads from the first wheel to the second: joints, each passed from its first
-    link to its second (1) or back (-1)."""
+    """Forces that a coupling acts by, on the carrier's drawing: a point (m) of the line of the
+    first, as the pitch point of teeth, and that force on the second wheel per unit moment on the
+    first: `along`, as of a flank, and `apart` per magnitude, both in 1/m. `way` leads from the
+    first wheel to the second: joints, each passed from its first link to its second (1) or back
+    (-1). `other`: point, `along` and `apart` of a second force."""
 
     carrier: str
     point: Vector
     along: Vector
     apart: Vector
     way: tuple[tuple[str, int], ...]
+    other: tuple[Vector, Vector, Vector] | None = None
+
+
+class Tension(NamedTuple):
+    """What pulls in a strand (N): `along` per unit moment on the first wheel and `apart` per its
+    magnitude (both 1/m), beside what is there `at_rest`."""
+
+    along: float
+    apart: float
+    at_rest: float
+
+
+class Extent(NamedTuple):
+    """A length of a cable (m): as `drawn`, and what `terms` add to it. It is more than nothing and,
+    where it is known, less than `most`; else the cable does what `words` say."""
+
+    words: str
+    drawn: float
+    terms: tuple[Term, ...]
+    most: float | None = None
 
 
 class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
-    m). It acts along its coordinates, or by a `mesh`, whose work at them is the same."""
+    m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
+    strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
+    other with (N) when it transmits nothing. `extents`: those of a cable."""
 
     terms: tuple[Term, ...]
     length: bool
     total: float = 0.0
     mesh: Mesh | None = None
+    tensions: tuple[tuple[str, Tension], ...] = ()
+    pull: tuple[Attached, Attached, float] | None = None
+    extents: tuple[Extent, ...] = ()
+
+    @property
+    def has_teeth(self) -> bool:
+        """Whether the force of its mesh is one."""
+        return self.mesh is not None and self.mesh.other is None
 
     @property
     def pushes_apart(self) -> bool:
@@ -510,7 +541,9 @@ class CouplingConstraint(Constraint):
 
     @property
     def words(self) -> str:
-        """Its coordinates."""
+        """Its coordinates, or that it is a cable."""
+        if self.relation.extents:
+            return f"the length of {self.name}"
         names = dict.fromkeys(f"{term.joint.name}.{term.coordinate}" for term in self.terms)
         return f"a relation between {', '.join(names)}"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_told, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pair_type import Attached
@@ -18,12 +18,11 @@ from mechkin_cli.mechanism.quantities import BEARING_KINDS, effort_quantity, in_
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
-    ACCELERATION,
     ANGLE,
-    ANGULAR_ACCELERATION,
     DIMENSIONLESS,
     ENERGY,
     LENGTH,
+    TIME,
     Dimension,
 )
 
@@ -123,7 +122,7 @@ def _coefficient(quantity: Wanted, kind: Kind, name: str, dimension: Dimension, 
 
 
 def _acceleration(coordinate: str) -> Dimension:
-    return ANGULAR_ACCELERATION if is_angle(coordinate) else ACCELERATION
+    return dimension_of(coordinate) / TIME / TIME
 
 
 QUATERNION = ("q0", "q1", "q2", "q3")
@@ -142,6 +141,7 @@ LEDGER: dict[str, tuple[Kind, Dimension]] = {
 LEDGER_KINDS = {kind for kind, _ in LEDGER.values()}
 DERIVED_KINDS = (
     ORIENTATION_KINDS
+    | {"arc_length"}
     | INSTANT_KINDS
     | FINITE_KINDS
     | POWER_KINDS
@@ -149,6 +149,9 @@ DERIVED_KINDS = (
     | LEDGER_KINDS
     | BEARING_KINDS
 )
+
+PARAMETER = "u"
+"""The coordinate along a curve."""
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
 _PINS = [kind.letter for kind in PLANE_JOINT_TYPES.values() if kind.turns_in_plane]
@@ -221,12 +224,19 @@ def derived_catalogue(
 ) -> dict[str, Wanted]:
     """Every derived quantity by name; `inputs` (joint, coordinate), `leading` the one of them that
     mechanical advantages refer to."""
-    found = [*_of_orientations(mechanism), *_of_screws(mechanism)]
+    found = [*_of_orientations(mechanism), *_of_curves(mechanism), *_of_screws(mechanism)]
     if leading is not None:
         found += _of_advantages(mechanism, inputs, leading[1])
     found += _of_transmissions(mechanism, inputs)
     known = {wanted.name: wanted for wanted in found}
     return in_plane(known) if mechanism.plane else known
+
+
+def _of_curves(mechanism: Mechanism) -> Iterator[Wanted]:
+    """Lengths along curves, from where their parameter is zero, or else from their begin."""
+    for joint in mechanism.joints.values():
+        if joint.type.is_carried and joint.track.names == (PARAMETER,):
+            yield Wanted(f"{joint.name}.s", "arc_length", joint.name, LENGTH, False, PARAMETER)
 
 
 def ledger_catalogue() -> dict[str, Wanted]:
@@ -434,7 +444,7 @@ def _of_advantages(
     mechanism: Mechanism, inputs: Sequence[tuple[str, str]], leading: str
 ) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        for coordinate in joint.type.coordinates:
+        for coordinate in joint.type.coordinates if is_told(joint.name) else ():
             if (joint.name, coordinate) not in inputs:
                 name = f"{joint.name}.{coordinate}.mechanical_advantage"
                 dimension = dimension_of(leading) / dimension_of(coordinate)
@@ -446,7 +456,7 @@ def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -
     driven = {joint for joint, _ in inputs}
     for joint in mechanism.joints.values():
         driver = driving_joint(mechanism, joint)
-        if driver is not None and driver.name not in driven:
+        if driver is not None and driver.name not in driven and is_told(joint.name):
             for coordinate in joint.type.coordinates:
                 for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():
                     name = f"{joint.name}.{coordinate}.{kind}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from mechkin_cli.exact import TURN
 from mechkin_cli.mechanism.pair_type import (
     FIRST,
@@ -13,6 +15,7 @@ from mechkin_cli.mechanism.pair_type import (
     Screw,
 )
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, joint_type
+from mechkin_cli.mechanism.track import Track
 from mechkin_cli.mechanism.vectors import (
     Frame,
     Vector,
@@ -30,6 +33,12 @@ GROUND_NAME = "ground"
 def is_written(name: str) -> bool:
     """Whether a link or joint stands in the file: names of what guides a point have a dot."""
     return "." not in name
+
+
+def is_told(name: str) -> bool:
+    """Whether users see the coordinates of a joint: the name of one that stands for a part of
+    something else, as of a cable's stretch, has a blank."""
+    return " " not in name
 
 
 class Joint(NamedTuple):
@@ -92,6 +101,11 @@ class Joint(NamedTuple):
         return Attached(link, scale(-1.0, vector) if direction.reverse else vector)
 
     @property
+    def track(self) -> Track:
+        """The curve or surface of a joint that goes along one."""
+        return next(part.track for part in self.parts if part.track is not None)
+
+    @property
     def pitch(self) -> float:
         """Slide per radian of a joint with a lead, in m; 0 without one."""
         return self.lead / TURN
@@ -144,6 +158,11 @@ class Joint(NamedTuple):
         if self.type.parameter == "from axis to pin":
             return -dot(self.axis.vector, self.on_first.y)
         return 0.0
+
+
+def told_coordinates(joints: Iterable[Joint]) -> tuple[str, ...]:
+    """Full names of the coordinates of some joints that users see."""
+    return tuple(name for joint in joints if is_told(joint.name) for name in joint.coordinates)
 
 
 def frame_on(joint: Joint, link: str) -> Frame:

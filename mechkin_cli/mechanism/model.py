@@ -18,7 +18,7 @@ from mechkin_cli.mechanism.constraint import (
     Relation,
     find_constraints,
 )
-from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written, told_coordinates
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
@@ -336,10 +336,21 @@ class Mechanism:
         """Freedoms of a free link: six, or three in a plane."""
         return 3 if self.plane else 6
 
+    @cached_property
+    def pretensions(self) -> tuple[Spring, ...]:
+        """What couplings pull with when they transmit nothing, as springs without stiffness."""
+        found = []
+        for relation in self.couplings.values():
+            if relation.pull is not None:
+                one, other, pull = relation.pull
+                length = norm(subtract(other.vector, one.vector))
+                found.append(Spring((one, other), None, None, 0.0, length, pull))
+        return tuple(found)
+
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """All coordinates in joint order."""
-        return tuple(name for joint in self.joints.values() for name in joint.coordinates)
+        """All coordinates that users see, in joint order."""
+        return told_coordinates(self.joints.values())
 
     @cached_property
     def joints_of(self) -> Mapping[str, tuple[Joint, ...]]:
@@ -361,6 +372,17 @@ class Mechanism:
         """The idle freedoms of their own links."""
         return tuple(c.hung for c in self.constraints if c.hung is not None)
 
+    @cached_property
+    def told_spins(self) -> tuple[DistanceConstraint, ...]:
+        """Those that users see, which are none of stretches of cables."""
+        return tuple(spin for spin in self.spins if any(map(is_written, spin.links)))
+
+    @property
+    def has_arcs(self) -> bool:
+        """Whether cables run over pulleys, which they may leave."""
+        relations = self.couplings.values()
+        return any(extent.most is not None for each in relations for extent in each.extents)
+
     @property
     def loops(self) -> int:
         """Number of independent loops."""
@@ -372,7 +394,8 @@ class Mechanism:
         """Kutzbach's count of freedoms: 6 (n - 1 - j) + sum f, in a plane 3 (n - 1 - j) + sum f,
         less one for every coupling."""
         freedoms = sum(joint.type.freedoms for joint in self.joints.values())
-        return freedoms - self.space * self.loops - len(self.couplings)
+        unseen = len(self.spins) - len(self.told_spins)
+        return freedoms - unseen - self.space * self.loops - len(self.couplings)
 
     def box_diagonal(self) -> float:
         """Diagonal of the box of all joint points as drawn, in m; 1 if they all coincide."""

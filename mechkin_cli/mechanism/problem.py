@@ -48,6 +48,14 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.response import AnyBalance, ResponseProblem
     from mechkin_cli.show import Bools, Floats
 
+_REACTIONS = frozenset(
+    (
+        *("force", "moment", "moment_about_origin", "total_force", "total_moment"),
+        *("radial_force", "axial_force", "tilting_moment"),
+    )
+)
+"""What a joint takes of what transmits a tie, by kind and word."""
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -145,9 +153,37 @@ class Problem:
     def why_not(self, name: str) -> str | None:
         """Why there is no quantity of a name, and what there is; None where that is not known."""
         response = self.response is not None
-        passive = without_effort(name, self._quantities, self.mechanism.drives, response=response)
+        drives = None if response else self.mechanism.drives
+        passive = without_effort(name, self._quantities, drives, response=response)
         held = hint_in_plane(name) if self.mechanism.plane else None
-        return passive or held or hint_of(name, self._quantities)
+        return passive or self._why_untold(name) or held or hint_of(name, self._quantities)
+
+    @cached_property
+    def tied(self) -> Mapping[str, str]:
+        """Joints that are tied to others as inputs, by name, with the tie in words: its effort is
+        known, but not what transmits it, a tooth or a belt, of which their reactions depend."""
+        inputs = self.motion.inputs
+        pairs = [(inputs[tie.input], inputs[tie.leader]) for tie in self.motion.constraints]
+        return {
+            joint: f"{one.name} is tied to {other.name}"
+            for one, other in pairs
+            if one.joint != other.joint
+            for joint in (one.joint, other.joint)
+        }
+
+    def _why_untold(self, name: str) -> str | None:
+        """Why a reaction is not told at a tied joint; None for other names."""
+        owner, _, word = (
+            name.removesuffix(".x").removesuffix(".y").removesuffix(".z").rpartition(".")
+        )
+        if owner not in self.tied or word not in _REACTIONS:
+            return None
+        return (
+            f"{self.tied[owner]}, and what transmits that is not said: teeth push their "
+            "bearings, a belt pulls; write couplings: {K: {type: gear, ...}} (or linear, for "
+            "moments and forces along the coordinates alone), or drive: own if they are not "
+            "connected"
+        )
 
     def _linear(self, found: Mapping[str, Wanted]) -> Mapping[str, Wanted]:
         """Without reactions where teeth push wheels apart, whichever way their moment acts."""
@@ -160,6 +196,16 @@ class Problem:
     def _quantities(self) -> Mapping[str, Wanted]:
         if self._known is not None:
             return self._known
+        tied, found = self.tied, self._all_quantities()
+        if not tied:
+            return found
+        return {
+            name: known
+            for name, known in found.items()
+            if known.owner not in tied or known.kind not in _REACTIONS
+        }
+
+    def _all_quantities(self) -> Mapping[str, Wanted]:
         mechanism, motion = self.mechanism, self.motion
         if self.response is not None:
             efforts = self.response.efforts_of

@@ -16,6 +16,7 @@ from mechkin_cli.expressions import (
     Resolve,
     parse,
 )
+from mechkin_cli.mechanism.constraint import Relation
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, is_written
 from mechkin_cli.mechanism.model import Mechanism
@@ -178,6 +179,8 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
     for name, relation in mechanism.couplings.items():
         places: dict[tuple[Kind, Dimension], str] = {}
         for term in relation.terms:
+            if not is_written(term.joint.name):
+                continue
             angle = is_angle(term.coordinate)
             what: tuple[Kind, Dimension] = (
                 ("coupling_torque", MOMENT) if angle else ("coupling_force", FORCE)
@@ -186,8 +189,15 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         for (kind, dimension), at in places.items():
             word = kind.removeprefix("coupling_")
             yield Wanted(f"{name}.{word}", kind, name, dimension, False, at)
-        if relation.mesh is not None:
+        if relation.has_teeth:
             yield Wanted(f"{name}.tooth_force", "tooth_force", name, FORCE, True)
+        yield from strands_of(name, relation)
+
+
+def strands_of(name: str, relation: Relation) -> Iterator[Wanted]:
+    """What pulls in the strands of a coupling."""
+    for strand, _ in relation.tensions:
+        yield Wanted(f"{name}.{strand}", "tension", name, FORCE, False, strand)
 
 
 def friction_states(mechanism: Mechanism) -> list[Wanted]:
@@ -330,7 +340,10 @@ def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
 def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
     """What each puts in at its first coordinate; all that it puts in is zero."""
     for name, relation in mechanism.couplings.items():
-        at = f"{relation.terms[0].joint.name}.{relation.terms[0].coordinate}"
+        first = relation.terms[0]
+        if not is_written(first.joint.name):
+            continue
+        at = f"{first.joint.name}.{first.coordinate}"
         yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
 
 

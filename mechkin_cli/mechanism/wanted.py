@@ -65,6 +65,7 @@ Kind = Literal[
     "time",
     "quaternion",
     "turn",
+    "arc_length",
     "screw_axis",
     "screw_point",
     "screw_pitch",
@@ -102,6 +103,7 @@ Kind = Literal[
     "coupling_torque",
     "coupling_power",
     "tooth_force",
+    "tension",
 ]
 """Some are of no use to users: what derived quantities are computed from, and what cells
 are judged by."""

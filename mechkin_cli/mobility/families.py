@@ -178,7 +178,7 @@ def held_to_family(
     """
     held, driven, mechanism = problem.held, problem.motion.driven, problem.mechanism
     idle = len(held) + len(mechanism.spins)
-    if not driven or mechanism.kutzbach > len(driven) + idle:
+    if not driven or mechanism.kutzbach > len(driven) + len(held) + len(mechanism.told_spins):
         return held
     body = Body(mechanism)
     start = home(body)

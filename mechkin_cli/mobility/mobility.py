@@ -28,7 +28,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import RandomStarts
-from mechkin_cli.mechanism import Joint, Problem, joint_type
+from mechkin_cli.mechanism import Joint, Problem, is_written, joint_type
 from mechkin_cli.mobility.configurations import Body, Configuration, assembled, first_row, home
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
 from mechkin_cli.mobility.families import MotionFamily, families_of
@@ -204,15 +204,17 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     families = families_of(start, freedoms, driven)
     # inputs that drive one of several families are neither locked nor too few
     fits = any(f.inputs == inputs and f.dimension == len(inputs) + len(idle) for f in families)
+    seen = tuple(item for item in idle if any(map(is_written, item.links)))
+    unseen = len(idle) - len(seen)
     return replace(
         counted,
-        mobility=motion.mobility,
-        first_order=first_order,
-        dimensions=motion.dimensions,
+        mobility=motion.mobility - unseen,
+        first_order=first_order - unseen,
+        dimensions=tuple(number - unseen for number in motion.dimensions),
         configurations=1 + motion.places,
-        idle=idle,
+        idle=seen,
         redundant=redundancies(motion.general, motion.stresses, {name for name, _ in driven}),
-        fixed=motion.fixed,
+        fixed=tuple(name for name in motion.fixed if name in mechanism.coordinates),
         families=families,
         diagnostics=() if inputs and fits else tuple(input_notes(problem, motion, len(idle))),
     )

@@ -87,7 +87,9 @@ class Walker:
         edge, freedom = layout.graph.inputs[number]
         joint = layout.graph.edges[edge].joint
         self.lost_holds: dict[str, LockedFreedom] = {}
-        self.period = 2.0 * pi if joint.type.chain[freedom].is_cyclic else None
+        counts = any(joint.counted for joint in session.problem.mechanism.joints.values())
+        self.most = tolerances.MOST_COUPLED_TURNS if counts else tolerances.MOST_TURNS
+        self.period = 2.0 * pi if joint.type.chain[freedom].motion == "turn" else None
 
     def circuit(self, state: Floats) -> list[Branch]:
         """All branches of the circuit through an assembly at the first value, that one first."""
@@ -143,7 +145,7 @@ class Walker:
         """Follows a branch in a direction to its end; the places passed."""
         value, state = start
         places: list[Passage] = []
-        for _ in range(tolerances.MOST_TURNS):
+        for _ in range(self.most):
             target = self._next(value, direction)
             followed = self.follow(np.array([value, target]), state)
             if followed.end != TrackEnd.FINISHED:

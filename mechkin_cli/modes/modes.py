@@ -255,7 +255,8 @@ def _result(
         item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
     }
     probe = probe_of(session)
-    coordinates, points = probe.read(place, assemblies.states)
+    found, points = probe.read(place, assemblies.states)
+    coordinates = {name: found[name] for name in problem.mechanism.coordinates}
     telling = telling_points(coordinates, points)
     axes = "xy" if problem.mechanism.plane else "xyz"
     order = sorted(

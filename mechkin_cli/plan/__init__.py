@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "layout": "Carrier Layout home_inputs home_state",
+        "layout": "Carrier Layout home_inputs home_state is_lifted",
         "outputs": "FORCE_KINDS OutputPlan Readout REACTION_KINDS demand_of forces_demand "
         "needs_all_links",
         "plan": "build_plan plan_records",

@@ -7,6 +7,7 @@ origin is the ground origin unless the drawing lies far from it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -36,8 +37,8 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Laws, Relation, Track
-    from mechkin_cli.show import Floats
+    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation, Track
+    from mechkin_cli.show import Bools, Floats
 
 
 class Carrier(NamedTuple):
@@ -75,6 +76,12 @@ class RelationRow(NamedTuple):
     factor: float
     function: int
     argument: float
+
+
+def is_lifted(extent: Extent, value: Floats) -> Bools:
+    """Whether a length of a cable (m) is less than nothing, beyond rounding."""
+    size = float(extent.drawn if extent.most is None else extent.most)
+    return np.asarray(value < -tolerances.PARALLEL * size)
 
 
 @dataclass(frozen=True)
@@ -218,6 +225,19 @@ class Layout:
         """The functions of the plan, in order."""
         relations = self.mechanism.couplings.values()
         return tuple(t.law for r in relations for t in r.terms if t.law is not None)
+
+    def extents(self, states: Floats) -> Iterator[tuple[str, Extent, Floats]]:
+        """Those of cables, with the coupling's name, and their values (m) at some states (states,
+        places)."""
+        for name, relation in self.mechanism.couplings.items():
+            for extent in relation.extents:
+                value = np.full(states.shape[1], float(extent.drawn))
+                for term in extent.terms:
+                    freedom = term.joint.freedom_number(term.coordinate)
+                    state = states[self.state(self.edge_number[term.joint.name], freedom)]
+                    unit = term.joint.unit_of(term.coordinate, self.length)
+                    value += float(term.factor) * unit * state
+                yield name, extent, value
 
     def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
         """All parts of the joints of a coupling; those that have none of its coordinates come

@@ -40,7 +40,7 @@ _SHAKING_KINDS = {"shaking_force", "shaking_moment"}
 _INERTIA_KINDS = {"inertia_force", "inertia_moment"}
 _HOLDING_KINDS = {"holding_moment", "holding_force"}
 FRICTION_KINDS = {"normal_load", "friction_force", "friction_moment", "friction_power"}
-COUPLING_KINDS = {"coupling_force", "coupling_torque", "tooth_force"}
+COUPLING_KINDS = {"coupling_force", "coupling_torque", "tooth_force", "tension"}
 REACTION_KINDS = WRENCH_KINDS | COUPLING_KINDS
 """What redundant constraints may leave open."""
 _VERDICT_KINDS = {"friction_state", "self_locking", "reaction_level"}
@@ -237,6 +237,13 @@ class OutputPlan:
         number = next(k for k, c in enumerate(layout.graph.closings) if c.name == wanted.owner)
         if wanted.kind == "tooth_force":
             return self._output(OutputCode.MESH_FORCE, number, layout.length)
+        if wanted.kind == "tension":
+            tension = dict(layout.mechanism.couplings[wanted.owner].tensions)[wanted.coordinate]
+            length = layout.length
+            # a multiplier is a force, or a moment
+            arm = 1.0 if layout.mechanism.couplings[wanted.owner].length else length
+            parts = (arm * tension.along, arm * tension.apart, tension.at_rest / length)
+            return self._output(OutputCode.TENSION, number, length, data=parts)
         joint, _, coordinate = wanted.coordinate.rpartition(".")
         axis = layout.axis_number[joint, coordinate]
         relation, loop = layout.mechanism.couplings[wanted.owner], layout.graph.loops[number]

@@ -30,7 +30,7 @@ from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import Constraint, Motion, Rubbing
+    from mechkin_cli.mechanism import Constraint, Motion, Rubbing, Vector
     from mechkin_cli.structure import Loop
 
 
@@ -240,15 +240,21 @@ def _relation(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[Pl
     mesh = relation.mesh
     if mesh is None:
         return
-    forces = [
-        scale(layout.length, layout.vector(Attached(mesh.carrier, force)))
-        for force in (mesh.along, mesh.apart)
-    ]
     signs, carrier = dict(loop), layout.link_number[mesh.carrier]
-    point = layout.point(Attached(mesh.carrier, mesh.point))
+    point, *forces = _force_of(layout, mesh.carrier, mesh.point, mesh.along, mesh.apart)
     way = [(layout.edge_number[name], sense) for name, sense in mesh.way]
     path = [(k, float(signs[e] * sense)) for e, sense in way for k in layout.parts_of[e]]
     yield record("add_mesh", carrier, point, *forces, path)
+    if mesh.other is not None:
+        yield record("add_force", *_force_of(layout, mesh.carrier, *mesh.other))
+
+
+def _force_of(
+    layout: Layout, carrier: str, point: Vector, *parts: Vector
+) -> tuple[Vector, Vector, Vector]:
+    """A force of a mesh in the carrier's frame: its point, and its parts per unit moment."""
+    along, apart = (scale(layout.length, layout.vector(Attached(carrier, part))) for part in parts)
+    return layout.point(Attached(carrier, point)), along, apart
 
 
 def _functions(layout: Layout) -> Iterator[PlanRecord]:

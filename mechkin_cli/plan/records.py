@@ -58,6 +58,7 @@ _CONSTANTS = {
     "add_function": (2,),
     "add_relation": (2, 3, 4),
     "add_mesh": (1, 2, 3),
+    "add_force": (0, 1, 2),
     "add_place": (4,),
     "add_axis": (3, 5),
     "add_free_motion": (4,),

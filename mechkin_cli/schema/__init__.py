@@ -33,8 +33,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling FunctionCoupling GearCoupling LinearCoupling RackCoupling "
-        "TableCoupling",
+        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FunctionCoupling "
+        "GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling TableCoupling",
         "curves": "Curve Surface",
         "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
@@ -46,10 +46,9 @@ __getattr__, __dir__ = lazy_names(
         "loads": "AnyLoad DamperAtJoint DamperBetweenPoints FallingCoefficient ForceOnJoint "
         "ForceOnLink FrictionAtJoint Gravity SpringAtJoint SpringBetweenPoints TableValue "
         "TorqueOnJoint TorqueOnLink",
-        "motion": "AssemblySection ConstantAcceleration ConstantRate Cycloidal FollowingInput "
-        "Harmonic HeldInput InputMotion Law ListedInput ModifiedSine ModifiedTrapezoid "
-        "MotionSection Polynomial Rise Rise345 Rise4567 Sine SweptInput TableLaw TimeSection "
-        "WithRates",
+        "motion": "AssemblySection ConstantAcceleration ConstantRate ExpressionLaw FollowingInput "
+        "HeldInput InputMotion Law ListedInput MotionSection Polynomial Rise Segment Sequence Sine "
+        "SweptInput TableLaw TimeSection WithRates",
         "plane": "in_space",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",

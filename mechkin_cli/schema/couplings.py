@@ -1,10 +1,10 @@
 """`couplings:` - relations between coordinates of joints anywhere in the mechanism: gears, racks,
-differentials.
+belts, screws, differentials.
 
 All coordinates are zero in the home drawing, so a coupling is drawn as it meshes.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from mechkin_cli.schema.base import (
     Limits,
@@ -16,6 +16,15 @@ from mechkin_cli.schema.base import (
     each_once,
     refuse,
 )
+from mechkin_cli.schema.coupling_words import (
+    BELT_KEYS,
+    CHAIN_KEYS,
+    FUNCTION_KEYS,
+    GEAR_KEYS,
+    LINEAR_KEYS,
+    RACK_KEYS,
+    TABLE_KEYS,
+)
 from mechkin_cli.schema.motion import LAWS, Law, law_tag
 from mechkin_cli.schema.scalars import (
     Angle,
@@ -24,6 +33,7 @@ from mechkin_cli.schema.scalars import (
     Coordinate,
     CsvPath,
     Dimensionless,
+    Force,
     JoinedTable,
     Length,
     Name,
@@ -50,6 +60,8 @@ TwoJoints = Annotated[
 class LinearCoupling(Section):
     """The sum of some coordinates, each with its factor, is constant."""
 
+    advice: ClassVar[dict[str, str]] = LINEAR_KEYS
+
     type: Literal["linear"]
     terms: dict[Coordinate, AnyDimension]
     """Coordinates and their factors; the factor of the first is a number, those of the others
@@ -69,6 +81,8 @@ CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("Coordi
 
 class FunctionCoupling(Section):
     """A coordinate is a function of another one: a cam and its follower, a Scotch yoke."""
+
+    advice: ClassVar[dict[str, str]] = FUNCTION_KEYS
 
     type: Literal["function"]
     of: Coordinate
@@ -96,6 +110,8 @@ class FunctionCoupling(Section):
 
 class TableCoupling(JoinedTable):
     """A coordinate is a tabulated function of another one."""
+
+    advice: ClassVar[dict[str, str]] = TABLE_KEYS
 
     type: Literal["table"]
     table: CsvPath
@@ -132,6 +148,8 @@ class GearCoupling(Toothed):
     """Two wheels that mesh, on one carrier: with parallel axes; bevel wheels, whose axes meet; or
     crossed helical wheels, such as a worm and its wheel, whose axes pass each other."""
 
+    advice: ClassVar[dict[str, str]] = GEAR_KEYS
+
     type: Literal["gear"]
     joints: TwoJoints
     """The R or C joints of the two wheels, which turn on one link, the carrier; where a wheel turns
@@ -162,6 +180,8 @@ class GearCoupling(Toothed):
 class RackCoupling(Toothed):
     """A pinion that rolls on a rack."""
 
+    advice: ClassVar[dict[str, str]] = RACK_KEYS
+
     type: Literal["rack"]
     joints: TwoJoints
     """The R or C joint of the pinion and the P joint of the rack, both on one link."""
@@ -172,10 +192,123 @@ class RackCoupling(Toothed):
     out, the point of the rack's joint."""
 
 
+class Strands(Section):
+    """Two strands that pull at two pulleys with parallel axes on one carrier."""
+
+    joints: TwoJoints
+    """The R or C joints of the two pulleys, which turn on one link, the carrier; where a pulley
+    turns on another link, that is joined to the carrier about the same axis."""
+    pretension: Force | None = None
+    """What pulls in each strand at rest; left out, the slack strand carries nothing."""
+
+
+class BeltCoupling(Strands):
+    """A belt over two pulleys that does not slip."""
+
+    advice: ClassVar[dict[str, str]] = BELT_KEYS
+
+    type: Literal["belt"]
+    radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)]
+    """Radii of the pulleys to the middle of the belt, in the order of the joints."""
+    crossed: Truth = False
+    """Whether the strands cross, so that the pulleys turn opposite ways; left out, no."""
+
+
+class ChainCoupling(Strands):
+    """A chain over two wheels."""
+
+    advice: ClassVar[dict[str, str]] = CHAIN_KEYS
+
+    type: Literal["chain"]
+    teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)]
+    """Numbers of teeth of the wheels, in the order of the joints."""
+    pitch: Length
+    """Distance of the chain's pins."""
+
+
+class ScrewCoupling(Section):
+    """A screw and its nut, one of which turns and the other slides, on joints of their own."""
+
+    type: Literal["screw"]
+    joints: TwoJoints
+    """The R or C joint of the part that turns and the P joint of the part that slides, along the
+    same direction, both on one link."""
+    lead: Length
+    """Length per turn, positive for a right-hand thread."""
+
+
 FollowedCoupling = FunctionCoupling | TableCoupling
 """Those of a coordinate that follows another one."""
 
-AnyCoupling = LinearCoupling | GearCoupling | RackCoupling | FollowedCoupling
+
+class PathPart(Section):
+    """A place that a cable passes: a point, a pulley or a drum."""
+
+    point: Name | None = None
+    """A named point, through which the cable runs, or where it ends; left out, a pulley or a
+    drum."""
+    pulley: Name | None = None
+    """The R joint of a pulley, or a named point that is its centre; the cable runs over it without
+    friction; left out, a point or a drum."""
+    drum: Name | None = None
+    """The R joint of a drum, its second link, on which the cable is wound and ends; left out, a
+    point or a pulley."""
+    radius: Length | None = None
+    """Of the pulley or drum, to the middle of the cable, which they need; left out, a point."""
+    side: Literal["left", "right"] | None = None
+    """On which side of the centre the cable passes, seen along its path, which pulleys and drums
+    need; left out, a point."""
+
+    def check(self) -> None:
+        """One place, with what it needs."""
+        if sum(key is not None for key in (self.point, self.pulley, self.drum)) != 1:
+            text = "a place of a cable is a point, a pulley or a drum"
+            raise refuse("two-choices", text, "give one of point, pulley and drum")
+        for key, value in (("radius", self.radius), ("side", self.side)):
+            if self.point is None and value is None:
+                text = f"a pulley needs its {key}"
+                raise refuse("missing-key", text, "add radius: 50 mm, side: left")
+            if self.point is not None and value is not None:
+                text = f"a point has no {key}"
+                raise refuse("two-choices", text, "write pulley instead of point", key)
+
+
+def _as_point(value: Any) -> Any:
+    return {"point": value} if isinstance(value, str) else value
+
+
+PointOrPart = Annotated[
+    PathPart,
+    Rule(_as_point, before=True),
+    Shown(("string",), "the name of a point", is_short=True),
+]
+
+
+class CableCoupling(Section):
+    """A cable of constant length over points and pulleys, which bears pull alone."""
+
+    type: Literal["cable"]
+    path: Annotated[tuple[PointOrPart, ...], Limits(min_length=2, max_length=100)]
+    """Places from one end to the other: names of points, pulleys, and drums at its ends. A place
+    may be named again, as in a tackle."""
+
+
+AnyCoupling = (
+    LinearCoupling
+    | GearCoupling
+    | RackCoupling
+    | BeltCoupling
+    | ChainCoupling
+    | ScrewCoupling
+    | CableCoupling
+    | FollowedCoupling
+)
 """All forms of a coupling."""
 
-Coupling = Annotated[AnyCoupling, by_word("type", ("linear", "gear", "rack", "function", "table"))]
+Coupling = Annotated[
+    AnyCoupling,
+    by_word(
+        "type",
+        ("linear", "gear", "rack", "belt", "chain", "screw", "cable", "function", "table"),
+    ),
+]

@@ -25,6 +25,7 @@ from mechkin_cli.schema.base import (
     fields_of,
     tagged,
 )
+from mechkin_cli.schema.coupling_words import BELT, COUPLING_ADVICE, ELSEWHERE
 from mechkin_cli.schema.scalars import FORMS
 
 
@@ -273,9 +274,10 @@ def advice_for_key(section: str, key: str) -> str | None:
 
 
 def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | None:
-    """What to do instead of a type that `loads` or `joints` do not have."""
+    """What to do instead of a type that `loads`, `joints` or `couplings` do not have."""
     joints = PLANE_JOINT_ADVICE if in_plane else JOINT_ADVICE
-    return {"loads": LOAD_ADVICE, "joints": joints}.get(section, {}).get(word.casefold())
+    tables = {"loads": LOAD_ADVICE, "joints": joints, "couplings": {**OUTSIDE, **COUPLING_ADVICE}}
+    return tables.get(section, {}).get(word.casefold())
 
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
@@ -284,23 +286,14 @@ CONTACT = (
     "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
     "where they would meet (stop:)"
 )
-RATIO = (
-    "wheels, racks and belts are couplings of joints: couplings: {K: {type: gear, joints: [A, B], "
-    "teeth: [20, 40]}}, or {type: linear, terms: {A.theta: 1, B.theta: -2}}"
-)
-CAM = (
-    "give the follower a law: {law: table, file: lift.csv} with time, or {with: an expression of "
-    "the cam's angle}"
-)
 RIGID = "links are rigid; put a spring between two of them: {type: spring, joint: A, ...}"
 CONTROL = (
     "an effort may be an expression of coordinates, rates and time: responses: {NAME: {efforts: "
     '{A.theta: "-k*(A.theta - 1 rad) - c*A.theta_dot"}}}'
 )
 ROPE = (
-    "a taut rope, cable or chain ties what it joins: motion: {inputs: {D.s: {with: 20 mm*A.theta, "
-    "drive: tie}, ...}} at a drum of radius 20 mm, {B.theta: {with: 2*A.theta, drive: tie}} over "
-    "two wheels; between two points it is a link with a joint at either end"
+    "a cable over points and pulleys is a coupling: couplings: {K: {type: cable, path: [P, "
+    "{pulley: A, radius: 50 mm, side: left}, Q]}}"
 )
 GENEVA = (
     'the wheel turns by a law of the crank: motion: {inputs: {W.theta: {with: "if(abs(A.theta) < '
@@ -369,7 +362,7 @@ LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spr
 _MISSING: Final = {
     **dict.fromkeys(("ratchet", "pawl", "escapement", "clutch", "freewheel", "bumper"), CONTACT),
     **dict.fromkeys(("rope", "ropes", "cable", "cables", "tendon", "winch", "string"), ROPE),
-    **dict.fromkeys(("roller_chain", "chains", "sprocket", "sprockets", "wire"), ROPE),
+    "wire": ROPE,
     **dict.fromkeys(("geneva", "maltese", "geneva_drive", "maltese_cross"), GENEVA),
     **dict.fromkeys(("curved_groove", "curved_slot", "groove_curve", "slot_curve"), GROOVE),
     **dict.fromkeys(("grooves", "guide_curve", "path_curve"), GROOVE),
@@ -389,9 +382,7 @@ _MISSING: Final = {
 OUTSIDE: Final = {
     **_MISSING,
     **dict.fromkeys(("contact", "contacts", "collision", "impact", "clearance"), CONTACT),
-    **dict.fromkeys(("gear", "gears", "gearing", "belt", "pulley", "chain_drive", "rack"), RATIO),
-    **dict.fromkeys(("cam", "cams", "follower"), CAM),
-    **dict.fromkeys(("gearbox", "reducer", "timing_belt", "pulleys", "worm"), RATIO),
+    **ELSEWHERE,
     **dict.fromkeys(("wheel", "wheels", "tyre", "tire"), ROLLING),
     **dict.fromkeys(("cylinder", "cylinders"), CYLINDER),
     **dict.fromkeys(("motor", "motors", "drive", "drives", "engine"), MOTOR),
@@ -451,6 +442,7 @@ TOP_KEYS: Final = {
 """Keys of the file."""
 
 JOINT_KEYS: Final = {
+    **ELSEWHERE,
     "friction": FRICTION,
     "damping": "a damper is a load: loads: [{type: damper, joint: A, coordinate: theta, ...}]",
     "stiffness": "a spring is a load: loads: [{type: spring, joint: A, coordinate: theta, ...}]",
@@ -532,6 +524,7 @@ RESPONSE_KEYS: Final = {
 """Keys of a response."""
 
 MOTION_KEYS: Final = {
+    **ELSEWHERE,
     "driven": "in the sweep they are inputs:; driven: belongs to a response",
     "efforts": "in the sweep efforts follow from the motion; as given they belong to a response",
     "start": RESPONSE,
@@ -574,7 +567,7 @@ LOAD_ADVICE: Final = {
     "moment": "a moment is a torque: {type: torque, ...}",
     "couple": "a couple is a torque: {type: torque, ...}",
     "viscous": DAMPER,
-    "chain": ROPE,
+    "chain": BELT,
     "weight": "weights follow from the masses and {type: gravity, g: standard}",
     "acceleration": "write {type: gravity, g: [x, y, z]}",
     "damping": "write {type: damper, ..., damping: c}",
@@ -590,7 +583,7 @@ JOINT_ADVICE: Final = {
     **dict.fromkeys(("prismatic", "slider", "sliding", "translational"), "a slider is P"),
     **dict.fromkeys(("cylindrical", "cylindric"), "turning and sliding is C"),
     "cylinder": f"turning and sliding is C; {CYLINDER}",
-    "chain": ROPE,
+    "chain": BELT,
     **dict.fromkeys(("groove", "curve", "track"), GROOVE),
     **dict.fromkeys(("viscous", "journal"), OIL_FILM),
     **dict.fromkeys(("wheel", "roller"), ROLLING),

@@ -6,7 +6,7 @@ inputs run through all pairs of their values. Or the rows are moments of `time`,
 laws.
 """
 
-from typing import Annotated, Any, ClassVar, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal
 
 from mechkin_cli.schema.base import (
     NOTHING,
@@ -65,9 +65,19 @@ class Polynomial(Section):
     carry units from c1 on, unless the file's angular rates are in its angle per its time."""
 
 
+class ExpressionLaw(Section):
+    """x as an expression of `time`; its rates are exact."""
+
+    law: Literal["expression"]
+    value: AnyDimension
+    """The value as an expression of `time` and parameters: `20 deg*sin(360 deg*time/(1 s))`."""
+
+
 class Rise(Section):
     """x = from + (to - from) * s(u), with u from 0 to 1 over the duration and s as the law says."""
 
+    if TYPE_CHECKING:
+        law: str
     start: Duration | None = None
     """When the rise begins, as `time` counts; left out, at the first moment of `time`. Before it
     the input rests."""
@@ -144,6 +154,52 @@ class Sine(Section):
             raise refuse("two-choices", text, "keep one of them", "period")
 
 
+class Segment(Section):
+    """One segment of a sequence."""
+
+    keys: ClassVar[dict[str, str]] = {"extent": "for", "last": "to"}
+    advice: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("duration", "time", "angle", "over"), "write for: 0.2 s"),
+        "from": "a segment begins where the one before ends; the first one at from: of the law",
+    }
+
+    extent: AnyDimension
+    """How long it lasts: a time, or how far the coordinate goes that the law runs over."""
+    law: Literal[
+        "dwell",
+        "constant-rate",
+        "harmonic",
+        "cycloidal",
+        "3-4-5",
+        "4-5-6-7",
+        "modified-sine",
+        "modified-trapezoid",
+    ]
+    """How it goes: at rest, at a constant rate, or by one of the rises."""
+    last: AngleOrLength | None = None
+    """Value at its end; left out, of a dwell, as before."""
+
+    def check(self) -> None:
+        """A dwell has no end of its own, the others have one."""
+        if self.law == "dwell" and self.last is not None:
+            text = "a dwell stays where it is"
+            raise refuse("dwell-to", text, "remove to, or write another law", "to")
+        if self.law != "dwell" and self.last is None:
+            raise refuse("missing-key", "the key to is missing", "add to: the value at its end")
+
+
+class Sequence(Section):
+    """Segments one after another, before and after which the input rests."""
+
+    law: Literal["sequence"]
+    first: AngleOrLength = "0"
+    """Value at the beginning."""
+    start: AnyDimension | None = None
+    """When the first segment begins, as `time` counts; left out, at the first moment of `time`."""
+    segments: Annotated[tuple[Segment, ...], Limits(min_length=1)]
+    """The segments; over an angle that they span a turn of, they are repeated in each turn."""
+
+
 class TableLaw(JoinedTable):
     """x as a table of time and value, joined by a curve: a spline, or a monotone one."""
 
@@ -164,6 +220,7 @@ Law = (
     ConstantRate
     | ConstantAcceleration
     | Polynomial
+    | ExpressionLaw
     | Sine
     | Harmonic
     | Cycloidal
@@ -171,6 +228,7 @@ Law = (
     | Rise4567
     | ModifiedSine
     | ModifiedTrapezoid
+    | Sequence
     | TableLaw
 )
 
@@ -178,6 +236,7 @@ LAWS: Final = {
     "constant-rate": ConstantRate,
     "constant-acceleration": ConstantAcceleration,
     "polynomial": Polynomial,
+    "expression": ExpressionLaw,
     "sine": Sine,
     "harmonic": Harmonic,
     "cycloidal": Cycloidal,
@@ -185,6 +244,7 @@ LAWS: Final = {
     "4-5-6-7": Rise4567,
     "modified-sine": ModifiedSine,
     "modified-trapezoid": ModifiedTrapezoid,
+    "sequence": Sequence,
     "table": TableLaw,
 }
 """The laws of motion by their words."""

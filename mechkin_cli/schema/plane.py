@@ -305,7 +305,7 @@ class PlaneFile(AnyFile):
     advice: ClassVar[dict[str, str]] = {
         "chain": "rows of Denavit and Hartenberg are spatial: write the joints under joints: as "
         "{type: R, links: [crank, rod], point: [x, y]}; a chain over two wheels is a coupling: "
-        "couplings: {K: {type: linear, terms: {A.theta: 2, B.theta: -1}}}",
+        "couplings: {K: {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}}",
         "coefficients": "they are six equations a link: leave it out; A.force and A.moment are "
         "unique in a plane",
         "idle": _LEFT_OUT + "no link spins about its own line",

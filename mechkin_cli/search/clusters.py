@@ -191,7 +191,7 @@ class Clusters:
     def add(self, states: Floats, isolated: Isolated) -> None:
         """Sorts end points (columns, in the order of their starts) into the clusters; those that
         are not known yet as `isolated` leaves them."""
-        keys = pose_keys(self.layout, states, self.carriers)
+        keys = pose_keys(self.layout, states, self.carriers, by_turns=True)
         unknown = self._left(keys)
         fresh = states[:, unknown]
         ended, good, condition, free = isolated(fresh)
@@ -205,7 +205,10 @@ class Clusters:
         self.closed += int(np.count_nonzero(closing))
         self.free += free
         moved = ended is not fresh
-        keys = pose_keys(self.layout, ended, self.carriers) if moved else keys[:, unknown]
+        if moved:
+            keys = pose_keys(self.layout, ended, self.carriers, by_turns=True)
+        else:
+            keys = keys[:, unknown]
         self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
         if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
             self._merge_folds()
@@ -316,12 +319,15 @@ def pose_keys(
     states: Floats,
     carriers: Sequence[Carrier] | None = None,
     left_out: Collection[tuple[int, int]] = (),
+    *,
+    by_turns: bool = False,
 ) -> Floats:
     """Numbers (keys, columns) that differ between assemblies: cosines and sines of turns, slides,
     products of quaternions, places on curves and surfaces, of some of the kernel's joints (None:
     all).
 
-    `left_out` are freedoms (tree edge, number) that do not matter.
+    `left_out` are freedoms (tree edge, number) that do not matter; `by_turns`, places a whole turn
+    apart differ where couplings count it, which have yet to say where other joints stand then.
     """
     used = [
         carrier
@@ -329,7 +335,7 @@ def pose_keys(
         if (carrier.edge, carrier.first_freedom) not in left_out
     ]
     triples = _turn_triples(layout, used)
-    turns = _cosines_and_sines(states, used)
+    turns = _cosines_and_sines(states, used, by_turns)
     keys: list[Floats] = []
     for triple in triples:
         (cz, sz), (cy, sy), (cx, sx) = (
@@ -351,9 +357,19 @@ def pose_keys(
             places = carrier.part.track.places_at(states[state : state + len(carrier.part.at)])
             keys.extend(place / layout.length for place in places)
             continue
-        for number, freedom in enumerate(carrier.part.type.freedoms, start=state):
-            keys.extend(turns[number] if freedom.is_cyclic else (states[number],))
+        for number in range(state, state + len(carrier.part.type.freedoms)):
+            keys.extend(turns.get(number) or (states[number],))
     return np.array(keys) if keys else np.zeros((0, states.shape[1]))
+
+
+def counted_turns(layout: Layout) -> list[int]:
+    """The states of turns that couplings count."""
+    return [
+        carrier.state + number
+        for carrier in layout.carriers
+        for number, freedom in enumerate(carrier.part.type.freedoms)
+        if freedom.counted
+    ]
 
 
 def _turn_triples(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]]:
@@ -367,14 +383,14 @@ def _turn_triples(layout: Layout, carriers: Sequence[Carrier]) -> list[list[int]
 
 
 def _cosines_and_sines(
-    states: Floats, carriers: Sequence[Carrier]
+    states: Floats, carriers: Sequence[Carrier], by_turns: bool
 ) -> dict[int, tuple[Floats, Floats]]:
     """Of the turns of some joints, by state."""
     cyclic = [
         number
         for carrier in carriers
         for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state)
-        if freedom.is_cyclic
+        if freedom.is_cyclic or (freedom.counted and not by_turns)
     ]
     angles = states[cyclic].reshape(-1)
     shape = (len(cyclic), states.shape[1])

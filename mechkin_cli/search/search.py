@@ -17,12 +17,13 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel.functions import RandomStarts, threads_for, width
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Demand, Layout, home_state
+from mechkin_cli.plan import Demand, Layout, home_state, is_lifted
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import (
     Clusters,
     Within,
+    counted_turns,
     first_of_each,
     most_turn,
     on_tracks,
@@ -368,6 +369,8 @@ def assemblies(
         partial = _continued(layout, number, partial, place, searches)
     states, residual, condition = _closed(layout, plan, inputs, partial)
     complete = tally.complete and states.shape[1] == partial.shape[1]
+    taut = _are_stretched(layout, states)
+    states, residual, condition = states[:, taut], residual[taut], condition[taut]
     return Assemblies(
         states,
         residual,
@@ -385,6 +388,17 @@ def assemblies(
         places=tally.places,
         cut=tally.is_cut,
     )
+
+
+def _are_stretched(layout: Layout, states: Floats) -> Bools:
+    """Whether all stretches and arcs of cables are as long as such may be in assemblies (columns):
+    the slide that stands for one may as well go through its end, which a cable does not."""
+    good = np.ones(states.shape[1], dtype=bool)
+    for _, extent, value in layout.extents(states):
+        good &= ~is_lifted(extent, value)
+        if extent.most is not None:
+            good &= value < extent.most
+    return good
 
 
 def _first_place(layout: Layout, inputs: Floats) -> Floats:
@@ -467,7 +481,12 @@ def _closed(
     keep = batch.good & (batch.condition < tolerances.SEARCH_CONDITION)
     states = batch.states[:, keep]
     _wrap_angles(layout, states)
-    chosen = first_of_each(pose_keys(layout, states))
+    # of the same pose the one next to the drawing
+    turned = np.zeros(states.shape[1])
+    for number in counted_turns(layout):
+        turned = turned + np.abs(states[number])
+    ahead = np.argsort(turned, kind="stable")
+    chosen = np.sort(ahead[first_of_each(pose_keys(layout, states[:, ahead]))])
     return states[:, chosen], batch.residual[keep][chosen], batch.condition[keep][chosen]
 
 

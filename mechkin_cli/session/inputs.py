@@ -206,6 +206,15 @@ def turn_of(problem: Problem, item: DrivenInput) -> Fraction | None:
     return _turn(problem.units.angle)
 
 
+def round_of(problem: Problem, item: DrivenInput) -> Fraction | None:
+    """A full turn of an input that turns about an axis, in the file's unit, whether the turn is
+    counted or not; None of threads and slides."""
+    kind = problem.mechanism.joints[item.joint].type
+    if kind.chain[kind.freedom_of[item.coordinate]].motion != "turn":
+        return None
+    return _turn(problem.units.angle)
+
+
 @cache
 def _turn(unit: CompoundUnit) -> Fraction:
     return 2 * PI / unit.factor

@@ -26,7 +26,7 @@ __getattr__, __dir__ = lazy_names(
         "branch_end": "passed_straight_on",
         "dead_centre": "lost_rates",
         "following": "follow_rows",
-        "friction": "unfounded_in_motion",
+        "friction": "is_slack slack_quantities unfounded_in_motion",
         "limits": "beyond judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",

@@ -12,10 +12,10 @@ import numpy as np
 
 from mechkin_cli import idle, tolerances
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states
-from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState
+from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states, strands_of
+from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState, is_lifted
 from mechkin_cli.sweep.rows import RunRows
-from mechkin_cli.units import FORCE, MOMENT, Dimension
+from mechkin_cli.units import FORCE, LENGTH, MOMENT, Dimension
 from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ and messages."""
 def verdict_quantities(problem: Problem) -> list[Wanted]:
     """What forces with friction are judged by."""
     mechanism = problem.mechanism
-    found = _stopping(problem)
+    found = [*_stopping(problem), *_strands(problem)]
     if mechanism.frictions:
         found += [*friction_states(mechanism), SELF_LOCKING, *_holding(problem)]
     return [REACTION_LEVEL, *found] if found else []
@@ -61,6 +61,18 @@ def _stopping(problem: Problem) -> list[Wanted]:
     """What would hold the freedoms that constraints do not stop to first order."""
     known = problem.quantities()
     return [known[one.holding] for one in problem.stopped]
+
+
+def _strands(problem: Problem) -> list[Wanted]:
+    """What pulls in strands that may go slack."""
+    couplings = problem.mechanism.couplings.items()
+    return [strand for name, relation in couplings for strand in strands_of(name, relation)]
+
+
+def slack_quantities(problem: Problem) -> list[Wanted]:
+    """What strands that go slack are told by: first what reactions are measured by."""
+    strands = _strands(problem)
+    return [REACTION_LEVEL, *strands] if strands else []
 
 
 def _holding(problem: Problem) -> list[Wanted]:
@@ -125,6 +137,52 @@ def unsupported(result: RunRows) -> FrictionVerdict:
 
 Findings = Iterator[tuple["Bools", Diagnostic]]
 """Rows (rows,) with a message on them."""
+
+
+def _slack(result: RunRows, lost: Bools) -> Findings:
+    """Rows in which strands would have to push."""
+    rows, problem = result.row_states, result.problem
+    strands = _strands(problem)
+    for strand in strands:
+        level = result.columns[REACTION_LEVEL.name][0]
+        tension = result.columns[strand.name][0]
+        where = rows.reached & has_rates(rows.status) & ~lost & is_slack(tension, level)
+        if where.any():
+            least = float(problem.units.from_si(float(np.min(tension[where])), FORCE))
+            yield (
+                where,
+                Diagnostic(
+                    Status.slack.label,
+                    "warning",
+                    f"a strand of {strand.owner} goes slack in {_rows(where)}: its forces are as "
+                    "if it pushed",
+                    measured=f"{strand.name} = {least:.6g} {problem.units.label(FORCE)}",
+                    limit="0",
+                    hint="give more pretension, or hold the load so that it always pulls",
+                ),
+            )
+
+
+def lifted(result: RunRows) -> list[Diagnostic]:
+    """Warns of rows in which a cable would leave a pulley, which then are slack."""
+    rows, units = result.row_states, result.problem.units
+    found = []
+    for name, extent, value in result.session.layout.extents(rows.states):
+        where = rows.reached & is_lifted(extent, value)
+        if where.any():
+            rows.status[where & (rows.status == int(Status.ok))] = Status.slack
+            least = float(units.from_si(float(np.min(value[where])), LENGTH))
+            text = f"{name} {extent.words} in {_rows(where)}: it is led as if it stuck there"
+            measured = f"{least:.6g} {units.label(LENGTH)}"
+            hint = "end the sweep before it, or leave that place out of the cable's path"
+            code = Status.slack.label
+            found.append(Diagnostic(code, "warning", text, None, measured, "0", hint))
+    return found
+
+
+def is_slack(tension: Floats, level: Floats) -> Bools:
+    """Whether strands push, beyond the rounding of reactions, whose largest are `level`."""
+    return np.asarray(tension < -tolerances.UNIQUE_CELL * level)
 
 
 def _undecided(result: RunRows, judged: Bools) -> Findings:
@@ -302,8 +360,8 @@ def judged_by(problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> lis
 
 
 def is_judged(problem: Problem) -> bool:
-    """Whether forces may have no value in rows that have rates."""
-    return bool(problem.mechanism.frictions or problem.stopped)
+    """Whether forces may have no value in rows that have rates, or one that is doubtful."""
+    return bool(problem.mechanism.frictions or problem.stopped or _strands(problem))
 
 
 def _judged(result: RunRows) -> FrictionVerdict:
@@ -316,6 +374,9 @@ def _judged(result: RunRows) -> FrictionVerdict:
         rows.status[undecided] = Status.friction_undecided
         lost, unfounded, said = loose | undecided, unfounded | empty, said + more
     rows.status[loose] = Status.unsupported
+    for where, diagnostic in _slack(result, lost):
+        rows.status[where & (rows.status == int(Status.ok))] = Status.slack
+        said.append(diagnostic)
     rows.diagnostics += said
     return lost, unfounded, said
 

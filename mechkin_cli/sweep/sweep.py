@@ -26,7 +26,7 @@ from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.record import replace
 from mechkin_cli.session import Ask, assembly_size
 from mechkin_cli.sweep.following import follow_rows, followed_session
-from mechkin_cli.sweep.friction import judged_by, uncounted_notes
+from mechkin_cli.sweep.friction import judged_by, lifted, uncounted_notes
 from mechkin_cli.sweep.limits import judge_limits, limited
 from mechkin_cli.sweep.messages import (
     actuation_notes,
@@ -349,6 +349,7 @@ def row_notes(
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
+    notes += lifted(result)
     if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(result, asked))
     return notes

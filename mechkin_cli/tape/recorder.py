@@ -169,7 +169,7 @@ class RecordedComparison(Undecided):
     """
 
     __slots__ = ("left", "negated", "operation", "recorder", "right")
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def __init__(
         self, recorder: Recorder, operation: Operation, left: int, right: int, negated: bool = False

@@ -102,9 +102,14 @@ class Recorded:
 
 
 class Undecided:
-    """A comparison of recorded numbers before it becomes a truth value."""
+    """A comparison of recorded numbers before it becomes a truth value, as it does where it is
+    compared with one."""
 
     __slots__ = ()
+    __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return bool(self) == bool(other)
 
     def choose(self, chosen: Any, other: Any) -> Any:
         """`chosen` where the condition holds, else `other`."""

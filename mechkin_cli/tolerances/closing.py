@@ -425,6 +425,10 @@ MOST_BRANCHES: Final = 64
 MOST_TURNS: Final = 16
 """Whole turns of an input after which an assembly that never came again counts as far."""
 
+MOST_COUPLED_TURNS: Final = 256
+"""The same where couplings count turns: wheels come again after as many turns as the other has
+teeth."""
+
 PASSED: Final = 1e-6
 """Way of the inputs (rad, length units) up to which a branch that ends has not left its start."""
 

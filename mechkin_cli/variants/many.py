@@ -31,7 +31,7 @@ from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
-from mechkin_cli.sweep import beyond, has_turns, limited
+from mechkin_cli.sweep import beyond, has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.design import VariedDesign, base_of
 from mechkin_cli.variants.result import (
@@ -138,6 +138,7 @@ class _SweepRun:
             or self._forces_are_judged(session)
             or self._led_by_rates()
             or variation.moves_limits
+            or self.problem.mechanism.has_arcs
             or (variation.moving_inputs and inputs & {q.name for q in self._read_or_judged()})
         ):
             return None
@@ -173,6 +174,7 @@ class _SweepRun:
         computed = [q for q in every if q.owner != "row" and q.name not in inputs]
         if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
             computed += friction_states(self.problem.mechanism)
+            computed += slack_quantities(self.problem)
         if any(map(PERIODIC.search, self.asked)):
             # angles within a turn, which the kernel gives before it adds whole turns
             computed += [q._replace(name=q.name + REST) for q in computed if has_turns(q)]
@@ -204,7 +206,9 @@ class _SweepRun:
             runs = run_variants(kernel, values, self.packing.lanes, threads)
             frictions = friction_states(self.problem.mechanism)
             states = [reading.slots[q.name].start for q in frictions if q.name in reading.slots]
-            codes[begin : begin + count] = _verdicts(runs, states)
+            strands = [q.name for q in slack_quantities(self.problem) if q.name in reading.slots]
+            slots = [reading.slots[name].start for name in strands]
+            codes[begin : begin + count] = _verdicts(runs, states, slots)
             own = codes[begin : begin + count]
             self._judge_limits(_Resolver(self, variation, reading, runs, values, own), own)
             found = self._evaluated(variation, reading, runs, values, own)
@@ -357,10 +361,13 @@ class _Resolver:
         return column.reshape(-1)
 
 
-def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
+def _verdicts(
+    runs: Runs, states: Sequence[int] = (), strands: Sequence[int] = ()
+) -> NDArray[np.int8]:
     """Codes of `Status` (variants, rows) of those that are complete; others are not read.
 
-    `states` are the slots of friction's states, zero where there is an answer.
+    `states` are the slots of friction's states, zero where there is an answer; `strands` those of
+    `slack_quantities`.
     """
     # without loops there is no condition
     loops = not np.isnan(runs.condition).all()
@@ -368,6 +375,9 @@ def _verdicts(runs: Runs, states: Sequence[int] = ()) -> NDArray[np.int8]:
     for slot in states:
         undecided = ~(runs.outputs[:, slot, :] == 0.0) & (codes != int(Status.rank_unclear))
         codes[undecided] = int(Status.friction_undecided)
+    for slot in strands[1:]:
+        pushes = is_slack(runs.outputs[:, slot, :], runs.outputs[:, strands[0], :])
+        codes[pushes & (codes == int(Status.ok))] = int(Status.slack)
     return codes
 
 

@@ -58,7 +58,8 @@ def tie_records(
 ) -> list[Plain]:
     """Springs, dampers and cylinders for the page: those of loads between points and on joints that
     slide or turn about one axis, and those that are only `drawn`."""
-    loads = [load for load in mechanism.loads if isinstance(load, Spring | Damper)]
+    elements = (load for load in mechanism.loads if isinstance(load, Spring | Damper))
+    loads = [load for load in elements if load not in mechanism.pretensions]
     kinds = {Spring: "spring", Damper: "damper"}
     ends = [(kinds[type(load)], load.between, None) for load in loads if load.between is not None]
     found: list[Plain] = [

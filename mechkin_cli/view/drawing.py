@@ -1,9 +1,9 @@
 """The small picture of a mechanism: its first position with a solution, and its points' paths.
 
 Links are lines, areas, stars, bars or discs in their colours, as `view.shapes` has them; joints are
-symbols; a joint on ground stands on a hatched foot. Feet and paths are drawn first, then links,
-then joints, each from far to near, what is as near in the order of the file. Numbers have one
-decimal.
+symbols; a joint on ground stands on a hatched foot. Wheels of couplings have their teeth. Feet,
+paths and belts are drawn first, then links, then joints, each from far to near, what is as near in
+the order of the file. Numbers have one decimal.
 
 In reading order: the projection, elements of SVG, symbols of joints, the picture. The projection is
 isometric: all three axes are shortened alike, seen from the corner (1, 1, 1). With x', y', z' the
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.building import ViewSettings
+from mechkin_cli.building import DrawnWheel, ViewSettings
 from mechkin_cli.mechanism import (
     FIRST,
     GROUND_NAME,
@@ -47,6 +47,7 @@ from mechkin_cli.view.joints import (
     link_shape,
 )
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
+from mechkin_cli.view.wheels import belt_line, wheel_outlines
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -294,6 +295,9 @@ PICTURE_NAME = "picture.svg"
 
 WIDTH, HEIGHT, MARGIN = 200.0, 150.0, 24.0
 MOST_PATH_POINTS = 120
+LEAST_PITCH = 2.5
+"""From tooth to tooth on the picture: below it wheels are circles."""
+
 NEAR_DECIMALS = 6
 """Of how near a thing is, in parts of the mechanism's size: the rest is rounding."""
 
@@ -356,11 +360,12 @@ class _Scene:
 
     def marks(self) -> list[Mark]:
         """Everything from back to front."""
-        links = sorted(self._shapes(), key=itemgetter(0))
+        links = sorted([*self._shapes(), *self._wheels()], key=itemgetter(0))
         joints = sorted(self._symbols(), key=itemgetter(0))
         return [
             *self._feet(),
             *self._paths(),
+            *self._belts(),
             *(m for _, marks in [*links, *joints] for m in marks),
         ]
 
@@ -382,6 +387,8 @@ class _Scene:
             for side, link in ((FIRST, joint.first), (SECOND, joint.second)):
                 parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
         parts += [self._path(at.link, at.vector) for at in self._moving_points()]
+        for wheel in self._drawn_wheels():
+            parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
         every = np.concatenate(parts)[:, :2]
         low, high = every.min(axis=0), every.max(axis=0)
@@ -435,6 +442,29 @@ class _Scene:
                 thick = ROD if shape.radius is None else 2.0 * self.scale * shape.radius
                 marks = [Stroke(tuple(places), ink, thick, round_ends=True)]
             yield near, marks
+
+    def _drawn_wheels(self) -> list[DrawnWheel]:
+        hidden = self.settings.hidden
+        return [one for one in self.settings.wheels if one.link not in hidden]
+
+    def _wheels(self) -> Iterator[Item]:
+        """Wheels and racks of couplings, in the colour of their link; rings are open."""
+        for wheel in self._drawn_wheels():
+            toothed = wheel.pitch * self.scale >= LEAST_PITCH
+            ink = self._ink(wheel.link)
+            marks: list[Mark] = []
+            for line in wheel_outlines(wheel, toothed):
+                places = [self._on_picture(one) for one in self._placed(wheel.link, line)]
+                outline = _hull(sorted(places)) if wheel.is_worm else tuple(places)
+                marks.append(Stroke(outline, ink, 1.2, closed=True, filled=not wheel.inner))
+            height = self._placed(wheel.link, np.array([wheel.on.o]))[0, 2]
+            yield round(float(height) / self.size, NEAR_DECIMALS), marks
+
+    def _belts(self) -> Iterator[Mark]:
+        for belt in self.settings.belts:
+            seen = self._placed(belt.link, belt_line(belt))
+            places = tuple(self._on_picture(one) for one in seen)
+            yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
 
     def _symbols(self) -> Iterator[Item]:
         for joint in self.joints:

@@ -58,6 +58,9 @@ FORMAT = 1
 
 _Z = 2
 
+RACK_ENDS = 1.2
+"""What a rack reaches beyond the places where its pinion is, in parts of the pinion's radius."""
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -155,6 +158,8 @@ class Scene:
                 mechanism, self.links, self._travels(), settings.joint_radius, lengths
             ),
             "points": self._points(),
+            "wheels": self._wheels(),
+            "belts": self._belts(),
             "runs": [
                 self._run(run, branches)
                 for run, branches in zip(self.runs, self.branches, strict=True)
@@ -222,6 +227,47 @@ class Scene:
                 "path": at.link != GROUND_NAME and (chosen is None or name in chosen),
             }
             for name, at in self.problem.mechanism.points.items()
+        ]
+
+    def _wheels(self) -> list[Plain]:
+        """What couplings have on their links; of racks from where to where, about their place."""
+        lengths, travels = self._lengths, self._travels()
+        found: list[Plain] = []
+        for wheel in self.settings.wheels:
+            reach = None
+            if wheel.slide is not None:
+                name, sense = wheel.slide
+                ends = travels.get(name.rpartition(".")[0], (0.0, 0.0))
+                beyond = lengths.one(RACK_ENDS * wheel.radius)
+                reach = [min(-sense * end for end in ends) - beyond]
+                reach.append(max(-sense * end for end in ends) + beyond)
+            found.append(
+                {
+                    "link": self.links.index(wheel.link),
+                    "centre": lengths.vector(wheel.on.o),
+                    "axis": list(wheel.on.z),
+                    "x": list(wheel.on.x),
+                    "radius": lengths.one(wheel.radius),
+                    "width": lengths.one(wheel.width),
+                    "teeth": wheel.teeth,
+                    "inner": wheel.inner,
+                    "apex": lengths.one(wheel.apex),
+                    "lean": float(wheel.lean),
+                    "reach": reach,
+                }
+            )
+        return found
+
+    def _belts(self) -> list[Plain]:
+        lengths = self._lengths
+        return [
+            {
+                "link": self.links.index(belt.link),
+                "line": [lengths.vector(point) for point in belt.line],
+                "axis": list(belt.axis),
+                "width": lengths.one(belt.width),
+            }
+            for belt in self.settings.belts
         ]
 
     def _travels(self) -> dict[str, tuple[float, float]]:

@@ -20,12 +20,14 @@ LAWS = {
     "constant-rate": {"at": 0, "rate": 1},
     "constant-acceleration": {"at": 0, "acceleration": 1},
     "polynomial": {"coefficients": [0, "1 rad/s"]},
+    "expression": {"value": "1 rad/s*time"},
     "harmonic": {"from": 0, "to": 1},
     "cycloidal": {"from": 0, "to": 1},
     "3-4-5": {"from": 0, "to": 1},
     "4-5-6-7": {"from": 0, "to": 1},
     "modified-sine": {"from": 0, "to": 1},
     "modified-trapezoid": {"from": 0, "to": 1},
+    "sequence": {"segments": [{"for": 1, "to": 2, "law": "cycloidal"}, {"for": 1, "law": "dwell"}]},
     "table": {"file": "law.csv"},
 }
 ODD = ["", "x y", [], {}, [[]], {"type": "harmonic"}, "nan", 10**400]

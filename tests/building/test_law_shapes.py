@@ -177,6 +177,47 @@ def test_a_sine_and_its_derivatives(
                 assert abs(found[n, k] - one * mp.factorial(n)) <= near[n] + 1e-15 * (n == 0)
 
 
+EXPRESSIONS = [
+    ("20 mm*sin(360 deg*time/(7 s))", lambda t: 20 * mp.sin(2 * mp.pi * t / 7)),
+    (
+        "3 mm*exp(-time/(20 s))*cos(0.3 rad/s*time) + 1 mm",
+        lambda t: 3 * mp.exp(-t / 20) * mp.cos(mp.mpf("0.3") * t) + 1,
+    ),
+    ("5 mm/(1 + (time/(9 s) - 2)^2)", lambda t: 5 / (1 + (t / 9 - 2) ** 2)),
+    ("sqrt(time/(1 s) + 1)*1 mm", lambda t: mp.sqrt(t + 1)),
+]
+
+
+@pytest.mark.parametrize(("value", "closed_form"), EXPRESSIONS)
+def test_an_expression_and_its_derivatives(value: str, closed_form: Numbers) -> None:
+    found = driven("expression", f'value: "{value}"', "step: 1.5").written_orders
+    with mp.workdps(40):
+        for k in range(41):
+            series = mp.taylor(closed_form, mp.mpf(1.5 * k), 3)
+            expected = [float(one * mp.factorial(n)) for n, one in enumerate(series)]
+            # the sine's argument, up to 54 rad, is rounded to parts of itself
+            assert found[:, k] == pytest.approx(expected, rel=2e-14, abs=2e-13)
+
+
+def test_an_expression_without_time_rests() -> None:
+    for value in ("3 cm", "30", '"half*2"'):
+        text = FILE.replace("links:", "parameters: {half: 15 mm}\nlinks:", 1).replace(
+            "LAW", "expression"
+        )
+        model = mk.loads(text.replace("KEYS", f"value: {value}").replace("ROWS", "step: 10"))
+        orders = model.problem.motion.inputs[0].written_orders
+        assert orders[0].tolist() == [30.0] * 7
+        assert not orders[1:].any()
+
+
+def test_rows_between_which_an_expression_bends_see_its_bend() -> None:
+    """A block pushed forth and back by |t - 31 s|: it turns between two rows."""
+    text = FILE.replace("LAW", "expression").replace("KEYS", 'value: "1 mm/s*abs(time - 31 s)"')
+    course = mk.loads(text.replace("ROWS", "step: 20")).problem.motion.course
+    assert course is not None
+    assert course.edges.tolist() == pytest.approx([0.0, 31.0, 60.0], abs=1e-12)
+
+
 BAD = [
     ("sine", "amplitude: 1", "missing-key", "a frequency or a period"),
     ("sine", "amplitude: 1, period: 1, frequency: 1", "two-choices", "keep one"),
@@ -185,6 +226,23 @@ BAD = [
     ("sine", "amplitude: 1, frequency: 3 rpm", "expression", "expected a frequency"),
     ("sine", "amplitude: 1 deg, period: 1", "expression", "expected a length"),
     ("3-4-5", "from: 0, to: 1, duration: -1", "no-duration", "a positive time"),
+    ("expression", 'value: "time"', "expression", "expected a length, found a time"),
+    ("expression", 'value: "1 mm*sin(2*pi*time/(1 s))"', "expression", "by 1 rad if it is in rad"),
+    ("expression", 'value: "1 mm*tiem/(1 s)"', "expression", "an expression of time"),
+    ("expression", 'value: "2*O.s"', "expression", "{with: ...} follows other inputs"),
+    ("expression", 'value: "2 mm*("', "expression", ""),
+    (
+        "expression",
+        'value: "1 mm*sqrt(time/(1 s) - 3)"',
+        "undefined-value",
+        "O.s has no finite value in row 1: time = 0 s; write an expression that is smooth",
+    ),
+    (
+        "expression",
+        'value: "1 mm*sqrt(time/(1 s))"',
+        "undefined-rate",
+        "O.s has no finite rate in row 1: time = 0 s",
+    ),
 ]
 
 

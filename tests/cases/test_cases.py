@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from math import acos, cos, degrees, hypot, radians, sin, sqrt
+from math import acos, cos, degrees, hypot, pi, radians, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +108,58 @@ def test_no_response_leaves_a_tie_out() -> None:
 def test_a_tie_to_what_is_not_driven_says_what_to_do() -> None:
     with pytest.raises(mk.InvalidFile, match="drive it, too; there are no other inputs"):
         _load("gears_spun_up.yaml")
+
+
+def test_what_transmits_a_tie_is_not_left_out_of_bearings() -> None:
+    """100 N at the rim of the wheel are 100 N in both bearings; a tie alone does not say so."""
+    text = (HERE / "spur_pair.yaml").read_text()
+    with pytest.raises(mk.InvalidFile, match=r"what transmits that is not said.*couplings:"):
+        mk.loads(text)
+    rubbing = "loads: [{type: friction, joint: A, coefficient: 0.1, radius: 2}, {type: torque"
+    columns = "columns: [A.theta, A.effort, norm(A.force), norm(B.force)]"
+    alone = text.replace(columns, "columns: [A.effort]")
+    assert mk.loads(alone).analyze()["A.effort"] == pytest.approx(-2000.0)
+    with pytest.raises(mk.ExpressionError, match="what transmits that is not said"):
+        mk.loads(alone).analyze()["B.radial_force"]
+    with pytest.raises(mk.InvalidFile, match="how that loads A is not said"):
+        mk.loads(alone.replace("loads: [{type: torque", rubbing))
+    own = text.replace("drive: tie", "drive: own")
+    assert mk.loads(own).analyze()["norm(B.force)"] == pytest.approx(0.0)
+    for angle, force in (("0", 100.0), ("20 deg", 100.0 / cos(radians(20)))):
+        gear = text.replace("    B.theta: {with: -A.theta/2, drive: tie}\n", "")
+        gear += (
+            f"couplings: {{G: {{type: gear, joints: [A, B], teeth: [20, 40], "
+            f"pressure_angle: {angle}}}}}\n"
+        )
+        result = mk.loads(gear).analyze()
+        for joint in ("A", "B"):
+            assert result[f"norm({joint}.force)"] == pytest.approx(force, rel=1e-12)
+
+
+def test_a_rack_in_a_loop_is_a_coupling() -> None:
+    text = (HERE / "rack_in_a_loop.yaml").read_text()
+    with pytest.raises(mk.InvalidFile, match=r"a gear or rack between S.s and P.theta"):
+        mk.loads(text)
+    text = text.replace("    P.theta: {with: S.s/20, drive: tie}\n", "")
+    result = mk.loads(
+        text + "couplings: {K: {type: rack, joints: [P, S], radius: 20 mm}}\n"
+    ).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    # its pitch line goes through S, below the pinion: it turns as S slides
+    assert result["P.theta"] == pytest.approx(result["S.s"] / 20 * 180 / pi, abs=1e-12)
+
+
+def test_shafts_of_a_response_are_coupled() -> None:
+    """The tie's right form, under couplings."""
+    text = (HERE / "geared_shafts.yaml").read_text()
+    text = text.replace(
+        "motion: {inputs: {A.theta: {at: 0}, B.theta: {with: -2*A.theta, drive: tie}}}", ""
+    )
+    text += "couplings: {K: {type: linear, terms: {A.theta: 2, B.theta: 1}}}\n"
+    with pytest.raises(mk.InvalidFile, match=r"leave out B.theta|B.theta follows"):
+        mk.loads(text).respond("r")
+    text = text.replace("A.theta: 0, B.theta: 0", "A.theta: 0")
+    assert mk.loads(text).respond("r")["A.theta"][-1] == pytest.approx(0.25, rel=1e-9)
 
 
 def test_a_freedom_left_undriven_in_space_is_the_one_error() -> None:

@@ -131,6 +131,21 @@ def test_planet_and_arm_in_a_fixed_ring() -> None:
     assert (found.count, found.mobility, found.first_order) == (1, 1, 1)
 
 
+def test_a_carrier_that_no_coupling_names_may_turn_more_than_half() -> None:
+    """Its turns are counted as those of the wheels: between sun and ring it turns by the mean of
+    both, by their teeth."""
+    ring = EPICYCLIC.replace("planet: {}}", "planet: {}, ring: {}}")
+    ring += "  N: {type: R, links: [ground, ring], point: [0, 0]}\n"
+    words = "K: {type: gear, joints: [S, P], teeth: [18, 12], ideal: true}\n"
+    words += "  R: {type: gear, joints: [N, P], teeth: [42, 12], internal: true, ideal: true}"
+    motion = "motion: {inputs: {S.theta: {from: 0, to: 90, count: 40}, N.theta: {with: S.theta/7}}}"
+    result = of(ring, words, motion).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    sun = result["S.theta"]
+    np.testing.assert_allclose(result["C.theta"], (18.0 + 6.0) / 60.0 * sun, rtol=1e-13)
+    np.testing.assert_allclose(result["P.theta"], 42.0 / 12.0 * (1.0 / 7.0 - 0.4) * sun, rtol=1e-13)
+
+
 @pytest.mark.parametrize(("teeth", "share"), [(99, -1 / 99), (100, 0.0), (101, 1 / 101)])
 def test_fergusons_paradox(teeth: int, share: float) -> None:
     """A wide planet on a fixed wheel of 100 teeth and on another of nearly as many."""

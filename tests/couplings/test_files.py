@@ -113,7 +113,7 @@ WRONG = {
     "no teeth": ("teeth: [n, 50], ", "", "told by teeth or by radii"),
     "negative teeth": ("[n, 50]", "[n, -50]", "the teeth of a wheel are -50"),
     "unknown joint": ("[A, B]", "[A, Q]", "there is no joint Q"),
-    "no type": ("type: gear", "type: worm", "known words: linear, gear, rack"),
+    "no type": ("type: gear", "type: grip", "known words: linear, gear, rack"),
     "name taken": ("  G: {type: gear", "  A: {type: gear", "already used"),
 }
 

@@ -110,14 +110,22 @@ def test_python_says_the_same(name: str) -> None:
 
 
 FEATURES = {
-    "a taut rope, cable or chain ties": ("rope", "cable", "ropes", "tendon", "winch", "sprocket"),
+    "a cable over points and pulleys is a coupling": ("rope", "cable", "ropes", "tendon", "winch"),
+    "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
     "the wheel turns by a law of the crank": ("geneva", "maltese", "geneva_drive"),
     "prescribe the place of the pin": ("curved_groove", "curved_slot", "guide_curve"),
     "friction that depends on the speed is a load": ("hydrodynamic", "lubrication", "oil_film"),
     "links are rigid": ("flexible", "compliant", "beam", "flexure"),
     "an effort may be an expression": ("control", "controller", "controllers", "servo", "pid"),
     "a P between them, whose s is driven": ("cylinder", "hydraulic", "piston", "jack"),
-    "tie two inputs by their ratio": ("gear", "gearbox", "belt", "timing_belt", "worm"),
+    "wheels and racks are couplings of joints": ("gear", "gearbox", "transmission", "pinion"),
+    "a worm is a gear whose axes pass each other": ("worm", "worm_gear"),
+    "bevel wheels are a gear whose axes meet": ("bevel",),
+    "a planetary gear is two couplings": ("planetary", "epicyclic"),
+    "a differential is a coupling of three": ("differential",),
+    "a rack and its pinion are a coupling": ("rack",),
+    "a cam is a coupling of its angle": ("cam", "follower"),
+    "coordinates that move in a ratio are a coupling": ("tie", "ratio", "coupling"),
     "a wheel that rolls without slip": ("rolling", "wheel", "roller"),
     "mechkin has no contact": ("contact", "ratchet", "escapement", "clutch"),
     "a brake is a load": ("brake",),
@@ -159,13 +167,13 @@ def test_a_feature_as_a_key_of_anything(form: str, word: str) -> None:
     assert words in hint(friction)
 
 
-def test_a_chain_is_a_tie_too() -> None:
+def test_a_chain_is_a_coupling() -> None:
     """In space the key chain: is there, for rows of Denavit and Hartenberg."""
     for text in FILES.values():
-        assert "a taut rope, cable or chain ties" in hint(
+        assert "belts and chains over two pulleys are couplings" in hint(
             text.replace("D: {type: P", "D: {type: chain")
         )
-    assert "a chain over two wheels is a tie" in hint(f"{PLANE}chain: 3\n")
+    assert "a chain over two wheels is a coupling" in hint(f"{PLANE}chain: 3\n")
 
 
 HEAD = "format: 1\nplane: xy\nunits: {length: mm, force: N}\n"

@@ -146,6 +146,8 @@ class Hostile:
         if self.random.random() < 0.5:
             vectors = self.numbers(3), self.numbers(3), self.numbers(3)
             self.attempt(builder.add_mesh, self.index(-1, links), *vectors, loop)
+        if self.random.random() < 0.5:
+            self.attempt(builder.add_force, self.numbers(3), self.numbers(3), self.numbers(3))
 
     def places(self, builder: Any, links: int, closings: int) -> tuple[int, int]:
         count = self.random.randint(0, 3)

@@ -49,6 +49,25 @@ def cycloid(t: float) -> tuple[float, float, float]:
     )
 
 
+def quintic(t: float) -> tuple[float, float, float]:
+    """A rise by 3-4-5 over half a second, a rest of half a second, and back by a cycloid."""
+    if t <= 0.5:
+        u = 2.0 * t
+        return (
+            0.3 + 2.0 * u**3 * (10.0 - 15.0 * u + 6.0 * u * u),
+            4.0 * 30.0 * u * u * (1.0 - u) ** 2,
+            8.0 * 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
+        )
+    if t <= 1.0:
+        return 2.3, 0.0, 0.0
+    turn = 4.0 * math.pi * (t - 1.0)
+    return (
+        2.3 - 2.0 * (2.0 * (t - 1.0) - math.sin(turn) / (2.0 * math.pi)),
+        -4.0 * (1.0 - math.cos(turn)),
+        -16.0 * math.pi * math.sin(turn),
+    )
+
+
 LAWS: dict[str, Course] = {
     "{law: constant-rate, at: 0.3, rate: 5 rad/s}": lambda t: (0.3 + 5 * t, 5.0, 0.0),
     "{law: polynomial, coefficients: [0.3, 4 rad/s, -1 rad/s^2, 2 rad/s^3]}": lambda t: (
@@ -57,6 +76,13 @@ LAWS: dict[str, Course] = {
         -2 + 12 * t,
     ),
     f"{{law: cycloidal, from: 0.3, to: {0.3 + 2 * math.pi!r}}}": cycloid,
+    "{law: sine, amplitude: 0.5, frequency: 2 Hz, offset: 0.3}": lambda t: (
+        0.3 + 0.5 * math.sin(4 * math.pi * t),
+        2 * math.pi * math.cos(4 * math.pi * t),
+        -8 * math.pi**2 * math.sin(4 * math.pi * t),
+    ),
+    "{law: sequence, from: 0.3, segments: [{for: 0.5, to: 2.3, law: 3-4-5}, "
+    "{for: 0.5, law: dwell}, {for: 0.5, to: 0.3, law: cycloidal}]}": quintic,
 }
 
 

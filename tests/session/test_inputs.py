@@ -129,6 +129,10 @@ LAWS = [
         lambda t: DEGREE * (3 + 37 * flat((t + mp.mpf("1.2")) / 9)),
     ),
     (
+        '{law: expression, value: "0.7 deg*exp(-time/(3 s)) + 1.1 rad/s*time"}',
+        lambda t: mp.mpf("0.7") * DEGREE * mp.exp(-t / 3) + mp.mpf("1.1") * t,
+    ),
+    (
         "{law: sine, amplitude: 0.7, frequency: 0.3 Hz, phase: 25, offset: 4}",
         lambda t: DEGREE * (4 + mp.mpf("0.7") * mp.sin(mp.mpf("0.6") * mp.pi * t + 25 * DEGREE)),
     ),

@@ -87,6 +87,14 @@ def test_zeros_of_either_sign_are_two_constants() -> None:
     assert [math.copysign(1.0, value) for value in tape.constants] == [1.0, -1.0]
 
 
+def test_a_condition_compared_with_a_truth_value_decides() -> None:
+    """As `same == section.internal` does."""
+    x = traced()
+    assert ((x > X - 1.0) == True, (x > X - 1.0) == False) == (True, False)  # noqa: E712
+    assert (x > X - 1.0) != (x > X + 1.0)
+    assert x.recorder.tape([0]).expected.tolist() == [True, False]
+
+
 def test_a_condition_that_nobody_asks_is_no_guard() -> None:
     x = traced()
     (x < 1.0).choose(x, 2.0)

@@ -40,7 +40,15 @@ def test_a_template_runs_without_a_warning(name: str) -> None:
     assert max(map(len, text.splitlines())) <= 110
 
 
-PLANAR = {"four-bar", "slider-crank", "inverted-slider", "cylinder-arm", "pendulum"}
+PLANAR = {
+    "four-bar",
+    "slider-crank",
+    "inverted-slider",
+    "cylinder-arm",
+    "pendulum",
+    "gearbox",
+    "planetary",
+}
 IN_A_PLANE = {"R", "P", "W", "Ps"}
 
 
@@ -300,6 +308,54 @@ def test_the_pendulum_is_jacobis() -> None:
             for t in map(float, rows["time"])
         ]
     assert off(rows["A.theta"], angles) < 1e-7
+
+
+def test_the_gearbox_in_steady_running() -> None:
+    """Of 30 N m at the output a third arrives at the middle shaft, a ninth at the motor; a force of
+    teeth is the moment over the radius and the cosine of the pressure angle."""
+    rows = rows_of("gearbox")
+    assert off(rows["C.theta"], rows["A.theta"] / 9.0) < 1e-10
+    assert off(rows["A.effort"], 30000.0 / 9.0) < 1e-9
+    slant = np.cos(np.radians(20.0))
+    at_middle, at_output = 10000.0 / 54.0 / slant, 30000.0 / 75.0 / slant
+    for name, force in {
+        "norm(G12.tooth_force)": at_middle,
+        "norm(G34.tooth_force)": at_output,
+        "norm(A.force)": at_middle,
+        "norm(C.force)": at_output,
+    }.items():
+        assert off(rows[name], force) < 1e-9, name
+    # on the middle shaft both act downwards along y by their tangential parts, and push it apart
+    across = (at_output - at_middle) * np.sin(np.radians(20.0))
+    along = (at_output + at_middle) * slant
+    assert off(rows["norm(B.force)"], np.hypot(across, along)) < 1e-9
+
+
+def test_the_gearbox_runs_up_by_one_inertia() -> None:
+    """J omega' = 8 N m (1 - omega/300) - 30 N m/9, with all inertias at the motor."""
+    rows = mk.loads(template_text("gearbox")).respond("run_up")
+    inertia = (900.0 + 1800.0 / 9.0 + 40000.0 / 81.0) * 1e-6
+    final = 300.0 * (1.0 - 30.0 / 9.0 / 8.0)
+    omega = final * (1.0 - np.exp(-rows["time"] * 8.0 / 300.0 / inertia))
+    assert off(rows["A.theta_dot"], omega) < 1e-6
+    assert off(rows["C.theta_dot"], omega / 9.0) < 1e-6
+
+
+def test_the_planetary_gear_is_williss() -> None:
+    """In a fixed ring the carrier turns 18/(18 + 42) of the sun's turn, the planet -18/24."""
+    rows = rows_of("planetary")
+    assert off(rows["C.theta"], 0.3 * rows["S.theta"]) < 1e-10
+    assert off(rows["ratio"], 0.3) < 1e-14
+    assert off(rows["planet.omega"], -0.75 * 100.0) < 1e-11
+    assert off(rows["S.effort"], 0.3 * 12000.0) < 1e-9
+    # teeth of sun and ring push the planet with the same tangential force; its bearing carries
+    # the sum, and the planet's weight in its circle
+    tangential = 0.3 * 12000.0 / 22.5
+    for name in ("inner", "outer"):
+        found = rows[f"norm({name}.tooth_force)"]
+        assert off(found, tangential / np.cos(np.radians(20.0))) < 1e-9
+    centrifugal = 0.14 * 30.0**2 * 37.5e-3
+    assert off(rows["norm(P.force)"], np.hypot(2.0 * tangential, centrifugal)) < 1e-9
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

@@ -101,6 +101,22 @@ DATA = _object(
         )
     ),
     points=_list(_object(name=TEXT, link=INDEX, place=VECTOR, path=SWITCH)),
+    wheels=_list(
+        _object(
+            link=INDEX,
+            centre=VECTOR,
+            axis=VECTOR,
+            x=VECTOR,
+            radius=LENGTH,
+            width=LENGTH,
+            teeth=INDEX,
+            inner=SWITCH,
+            apex=NUMBER,
+            lean=NUMBER,
+            reach=_or_null(_list(NUMBER, minItems=2, maxItems=2)),
+        )
+    ),
+    belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),
     runs=_list(
         _object(
             name=TEXT,

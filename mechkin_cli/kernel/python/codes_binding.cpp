@@ -68,7 +68,8 @@ void bind_plan_codes(nb::module_& m) {
       .value("FRICTION_STATE", OUT_FRICTION_STATE)
       .value("SELF_LOCKING", OUT_SELF_LOCKING)
       .value("MULTIPLIER", OUT_MULTIPLIER)
-      .value("MESH_FORCE", OUT_MESH_FORCE);
+      .value("MESH_FORCE", OUT_MESH_FORCE)
+      .value("TENSION", OUT_TENSION);
   nb::enum_<ReadCode>(m, "ReadCode", nb::is_arithmetic(), "What programs of quantities read.")
       .value("OUTPUT", READ_OUTPUT)
       .value("ANGLE", READ_ANGLE)

@@ -137,6 +137,7 @@ void bind_builder(nb::module_& m) {
            "operands"_a, "instructions"_a, "outputs"_a, "output_ends"_a)
       .def("add_relation", raising(&PlanBuilder::add_relation), "length"_a, "terms"_a, "factors"_a, "arguments"_a, "sum"_a)
       .def("add_mesh", raising(&PlanBuilder::add_mesh), "carrier"_a, "point"_a, "along"_a, "apart"_a, "path"_a)
+      .def("add_force", raising(&PlanBuilder::add_force), "point"_a, "along"_a, "apart"_a)
       .def("add_place", raising(&PlanBuilder::add_place), "reference"_a, "first"_a, "second"_a, "point_on"_a, "point"_a,
            "sign"_a)
       .def("add_axis", raising(&PlanBuilder::add_axis), "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,

@@ -234,14 +234,21 @@ inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* 
   }
 }
 
-// What a relation that acts by a force exerts: teeth push along the flank that bears, and always apart.
+// What a relation that acts by forces exerts by the one in a frame: teeth push along the flank that bears, and always apart.
+inline Vec3 force_by(const Workspace& w, const ClosingJoint& j, const Frame& f, Pack multiplier) {
+  return multiplier * carried_vector(w, j.first, f.x) + abs(multiplier) * carried_vector(w, j.first, f.y);
+}
+inline Wrench wrench_by(const Workspace& w, const ClosingJoint& j, const Frame& f, Pack multiplier) {
+  return force_at(carried_point(w, j.first, f.o), force_by(w, j, f, multiplier));
+}
 inline Vec3 mesh_force(const Workspace& w, const ClosingJoint& j, Pack multiplier) {
-  return multiplier * carried_vector(w, j.first, j.on_first.x) + abs(multiplier) * carried_vector(w, j.first, j.on_first.y);
+  return force_by(w, j, j.on_first, multiplier);
 }
 inline void transmit_by_force(const Plan& p, Workspace& w, int c, Pack multiplier) {
   const ClosingJoint& j = p.closing[c];
   w.reaction[c] = {zero3(), {multiplier, Pack(0.0), Pack(0.0)}};
-  const Wrench r = force_at(carried_point(w, j.first, j.on_first.o), mesh_force(w, j, multiplier));
+  Wrench r = wrench_by(w, j, j.on_first, multiplier);
+  if (j.is_pair_of_forces) r += wrench_by(w, j, j.on_second, multiplier);
   for (int l = j.path_begin; l < j.path_end; ++l) w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * r;
 }
 

@@ -9,6 +9,7 @@
 //   add_function       constants
 //   add_relation       factors, arguments, sum
 //   add_mesh           point (3), along (3), apart (3)
+//   add_force          point (3), along (3), apart (3)
 //   add_place          point (3)
 //   add_axis           vector (3), other_vector (3)
 //   add_input          scale

@@ -43,6 +43,10 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
     case OUT_CARRIED_MOMENT:
     case OUT_JOINT_MOMENT_ORIGIN: return check_index(r.index, 0, p.places, "place");
     case OUT_HOLDING_MOMENT: return check_index(r.index, 0, p.hung_bodies, "body");
+    case OUT_TENSION:
+      CHECK(check_index(r.index, 0, p.closings, "relation"));
+      REQUIRE(is_relation(p.closing[r.index].type), "an output of a tension of a closing joint that is no relation");
+      return {};
     case OUT_MULTIPLIER:
       CHECK(check_index(r.index, 0, p.closings, "relation"));
       REQUIRE(is_relation(p.closing[r.index].type), "an output of a multiplier of a closing joint that is no relation");
@@ -70,7 +74,7 @@ Refusal check_output(const Plan& p, const OutputRecord& r) {
   }
 }
 
-bool is_output(int type) { return type >= 0 && type <= OUT_MESH_FORCE; }
+bool is_output(int type) { return type >= 0 && type <= OUT_TENSION; }
 
 int output_width(int type) {
   switch (type) {
@@ -130,6 +134,7 @@ unsigned output_demand(int type, int order) {
     case OUT_REACTION_LEVEL:
     case OUT_MULTIPLIER:
     case OUT_MESH_FORCE:
+    case OUT_TENSION:
     case OUT_HOLDING_MOMENT: return DEMAND_FORCES;
     default: return to_order[order];
   }

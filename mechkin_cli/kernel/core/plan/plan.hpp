@@ -63,7 +63,8 @@ struct ClosingJointOf {
   int loop_begin, loop_end;  // into Plan::loop
   int path_begin, path_end;  // likewise, where a relation acts by a force between two links: the way from one to the other.
                              // `first` carries the point of contact o and the force on the latter per multiplier, x, and
-                             // per its magnitude, y
+                             // per its magnitude, y, in on_first
+  int is_pair_of_forces;     // and another such force in on_second
 };
 
 // One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1). Of a relation

@@ -113,7 +113,7 @@ Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const Fr
   CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
-  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0});
+  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
@@ -193,7 +193,7 @@ Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& ter
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
   const Frame none = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
   const int type = length ? RELATION_OF_LENGTHS : RELATION_OF_ANGLES;
-  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0});
+  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
   return {};
 }
@@ -209,9 +209,26 @@ Refusal PlanBuilder::add_mesh(int carrier, const Triple& point, const Triple& al
   j.first = carrier;
   copy(point, j.on_first.o), copy(along, j.on_first.x), copy(apart, j.on_first.y);
   std::tie(j.path_begin, j.path_end) = add_loop(path);
-  const std::size_t at = (closing_.size() - 1) * sizeof(ClosingJoint) + offsetof(ClosingJoint, on_first);
-  for (std::size_t part : {offsetof(Frame, o), offsetof(Frame, x), offsetof(Frame, y)}) number(ARRAY_CLOSING, at + part, 3);
+  number_force(offsetof(ClosingJoint, on_first));
   return {};
+}
+
+Refusal PlanBuilder::add_force(const Triple& point, const Triple& along, const Triple& apart) {
+  CHECK(open());
+  REQUIRE(!closing_.empty() && closing_.back().path_end > 0 && !closing_.back().is_pair_of_forces,
+          "a relation acts by two forces at most, the first with its way");
+  CHECK(check_finite(point, along, apart));
+  ClosingJoint& j = closing_.back();
+  j.is_pair_of_forces = 1;
+  copy(point, j.on_second.o), copy(along, j.on_second.x), copy(apart, j.on_second.y);
+  number_force(offsetof(ClosingJoint, on_second));
+  return {};
+}
+
+// The constants of the last relation's force in the frame at `frame`.
+void PlanBuilder::number_force(std::size_t frame) {
+  const std::size_t at = (closing_.size() - 1) * sizeof(ClosingJoint) + frame;
+  for (std::size_t part : {offsetof(Frame, o), offsetof(Frame, x), offsetof(Frame, y)}) number(ARRAY_CLOSING, at + part, 3);
 }
 
 Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, const FrameData& on_first,
@@ -235,7 +252,7 @@ Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, co
   joints_[body].hung = (int)hung_.size();
   const std::size_t at = closing_.size() * sizeof(ClosingJoint), hung_at = hung_.size() * sizeof(HungBody);
   hung_.push_back(hung);
-  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0});
+  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   const int end_point = (int)constants_.size() + 9;
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);

@@ -47,6 +47,8 @@ class PlanBuilder {
                        const std::vector<double>& arguments, double sum);
   // The last relation acts by a force, see ClosingJoint, at a point of `carrier`, on the end of the way `path`.
   Refusal add_mesh(int carrier, const Triple& point, const Triple& along, const Triple& apart, const Loop& path);
+  // And by another one, at another point of the same link.
+  Refusal add_force(const Triple& point, const Triple& along, const Triple& apart);
   // The next joint as its user knows it, see JointPlace; returns its number.
   Result<int> add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
@@ -105,6 +107,7 @@ class PlanBuilder {
   std::pair<int, int> add_loop(const Loop& loop);
   // The next `count` constants stand in a row from here on.
   std::size_t in_plan(const double* number) const;
+  void number_force(std::size_t frame);
   void number(int array, std::size_t offset, int count);
   Refusal place_joints(int block, const std::vector<int>& joints, std::vector<int>* placed_by) const;
   Refusal check_order() const;

@@ -40,7 +40,8 @@ enum OutputCode : int {
   OUT_FRICTION_STATE = 33,    // FrictionState
   OUT_SELF_LOCKING = 34,      // 1 where a drive that would brake without friction has to push
   OUT_MULTIPLIER = 35,        // index: closing joint that is a relation; freedom: one of its terms, along which it acts
-  OUT_MESH_FORCE = 36         // index: closing joint that is a relation and acts by a force
+  OUT_MESH_FORCE = 36,        // index: closing joint that is a relation and acts by a force
+  OUT_TENSION = 37            // index: closing joint that is a relation; data: per multiplier, its magnitude, and beside
 };
 
 // One quantity that a run writes; outputs are no part of the plan (OutputsView).

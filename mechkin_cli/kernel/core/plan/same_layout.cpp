@@ -23,7 +23,7 @@ bool same_joint(const TreeJoint& a, const TreeJoint& b) {
 bool same_closing(const ClosingJoint& a, const ClosingJoint& b) {
   return a.type == b.type && a.first == b.first && a.second == b.second && a.slide == b.slide && a.row == b.row &&
          a.loop_begin == b.loop_begin && a.loop_end == b.loop_end && a.path_begin == b.path_begin &&
-         a.path_end == b.path_end;
+         a.path_end == b.path_end && a.is_pair_of_forces == b.is_pair_of_forces;
 }
 
 bool same_block(const Block& a, const Block& b) {

@@ -91,6 +91,13 @@ inline Pack output_multiplier(const Plan& p, const Workspace& w, const OutputOf<
   return term_slope(p, w.curve, e.term) * w.reaction[o.index].force.x;
 }
 
+// What pulls in a strand of a relation that acts by such.
+template <class Number>
+inline Pack output_tension(const Workspace& w, const OutputOf<Number>& o) {
+  const Pack multiplier = w.reaction[o.index].force.x;
+  return Pack(o.data[0]) * multiplier + Pack(o.data[1]) * abs(multiplier) + Pack(o.data[2]);
+}
+
 // The value of a quantity, one pack or three; returns how many. `balance` for those that need forces, `row_value` as in
 // apply_load.
 template <class Number, class RowValue>
@@ -121,6 +128,7 @@ inline int output_value(const Plan& p, const Workspace& w, const Balance* balanc
     case OUT_JOINT_MOMENT_ORIGIN: return three(factor * output_joint(p, w, o.type, o.index));
     case OUT_HOLDING_MOMENT: return one(factor * w.holding[o.index]);
     case OUT_MESH_FORCE: return three(factor * mesh_force(w, p.closing[o.index], w.reaction[o.index].force.x));
+    case OUT_TENSION: return one(factor * output_tension(w, o));
     case OUT_MULTIPLIER: return one(factor * output_multiplier(p, w, o));
     case OUT_REACTION_LEVEL: return one(factor * balance->level);
     case OUT_MOTOR: return one(factor * w.actuation.motor[o.index]);

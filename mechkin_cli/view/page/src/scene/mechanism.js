@@ -9,6 +9,7 @@ import { bar } from "./parts.js";
 import { BORE, TUBE, addShape } from "./shapes.js";
 import { travels } from "./travel.js";
 import { vector } from "./vectors.js";
+import { addBelt, addWheel } from "./wheels.js";
 
 const JOINT_SIZE = 0.028; // of the mechanism's size
 const LEAST_JOINT_SIZE = 0.008;
@@ -50,6 +51,8 @@ export class Mechanism {
     this.object = new Group();
     const bodies = data.links.map(() => new Body());
     data.links.forEach((link, index) => addShape(bodies[index], link.shape, unit));
+    data.wheels.forEach((wheel) => addWheel(bodies[wheel.link], wheel, unit));
+    data.belts.forEach((belt) => addBelt(bodies[belt.link], belt));
     const travel = travels(data, branch);
     data.joints.forEach((joint, j) => this.#addJoint(joint, bodies, travel[j]));
     this.links = bodies.map((body, index) => {

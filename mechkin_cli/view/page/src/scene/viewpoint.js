@@ -4,6 +4,7 @@ import { Box3, Vector3 } from "three";
 import { reached } from "./shapes.js";
 import { squareTo, vector } from "./vectors.js";
 import { poseMatrix } from "./travel.js";
+import { reachedBy } from "./wheels.js";
 
 const MOST_POSES = 60;
 const TURNS = 24;
@@ -14,6 +15,7 @@ export function placesOf(data, branch) {
   const found = [];
   const shown = (link) => !data.links[link].hidden;
   const shapes = data.links.map(({ shape }) => reached(shape));
+  data.wheels.forEach((wheel) => shapes[wheel.link].push(...reachedBy(wheel)));
   const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
   for (let index = 0; index < branch.poseCount; index += stride) {
     const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));

@@ -1,0 +1,92 @@
+"""Outlines of wheels, racks and belts for pictures, with straight flanks in place of involutes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.building import DrawnBelt, DrawnWheel
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+ABOVE, BELOW = 1.0, 1.25
+"""Height of teeth beyond the pitch line and below it, in modules."""
+
+FLANK = 0.36
+"""Tangent of the angle of a flank: 20 degrees."""
+
+SIDES = 48
+"""Of what is drawn round."""
+
+RIM, RACK = 3.5, 2.5
+"""Of a ring beyond its pitch circle, and of a rack below its pitch line, in modules."""
+
+RACK_ENDS = 2.5
+"""Half the length of a rack in parts of its pinion's radius."""
+
+
+def wheel_outlines(wheel: DrawnWheel, toothed: bool) -> list[Floats]:
+    """Closed lines (n, 3) on the home drawing of its link, m: of a ring the rim, too; teeth where
+    they are to be seen, else the pitch circle. Of a worm places whose hull is its cylinder."""
+    module = wheel.pitch / np.pi / np.sqrt(1.0 + wheel.lean**2) if wheel.teeth else 0.0
+    if wheel.slide is not None:
+        return [_placed(wheel, *_rack(wheel, module, toothed))]
+    if wheel.is_worm:
+        tip, half = wheel.radius + ABOVE * module, 0.5 * wheel.width
+        return [np.concatenate([_circle(wheel, tip, -half), _circle(wheel, tip, half)])]
+    if not (toothed and wheel.teeth):
+        lines = [_circle(wheel, wheel.radius)]
+    else:
+        lines = [_placed(wheel, *_teeth(wheel, module), 0.0)]
+    if wheel.inner:
+        lines.append(_circle(wheel, wheel.radius + RIM * (module or 0.03 * wheel.radius)))
+    return lines
+
+
+def belt_line(belt: DrawnBelt) -> Floats:
+    """Its closed line (n, 3) on the home drawing of the carrier, m."""
+    return np.array(belt.line)
+
+
+def _teeth(wheel: DrawnWheel, module: float) -> tuple[Floats, Floats]:
+    """Along and square to the mark: four corners a tooth, from the mark on."""
+    sign = -1.0 if wheel.inner else 1.0
+    tip, root = wheel.radius + sign * ABOVE * module, wheel.radius - sign * BELOW * module
+    quarter = 0.25 * wheel.pitch
+    at_tip, at_root = quarter - ABOVE * module * FLANK, quarter + BELOW * module * FLANK
+    turns = 2.0 * np.pi * np.arange(wheel.teeth)[:, None] / wheel.teeth
+    angles = turns + np.array([-at_root, -at_tip, at_tip, at_root]) / wheel.radius
+    radii = np.broadcast_to([root, tip, tip, root], angles.shape)
+    return (radii * np.cos(angles)).ravel(), (radii * np.sin(angles)).ravel()
+
+
+def _rack(wheel: DrawnWheel, module: float, toothed: bool) -> tuple[float | Floats, ...]:
+    """Out of the teeth, beside them and along the rack."""
+    ends = RACK_ENDS * wheel.radius
+    count = int(ends / wheel.pitch)
+    quarter, back = 0.25 * wheel.pitch, -RACK * module
+    if not toothed:
+        return np.array([0.0, 0.0, back, back]), 0.0, np.array([-ends, ends, ends, -ends])
+    at_tip, at_root = quarter - ABOVE * module * FLANK, quarter + BELOW * module * FLANK
+    middles = wheel.pitch * np.arange(-count, count + 1)[:, None]
+    along = (middles + np.array([-at_root, -at_tip, at_tip, at_root])).ravel()
+    out = np.tile(np.array([-BELOW, ABOVE, ABOVE, -BELOW]) * module, 2 * count + 1)
+    along = np.concatenate([along, [along[-1], along[0]]])
+    return np.concatenate([out, [back, back]]), 0.0, along
+
+
+def _circle(wheel: DrawnWheel, radius: float, height: float = 0.0) -> Floats:
+    turns = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
+    return _placed(wheel, radius * np.cos(turns), radius * np.sin(turns), height)
+
+
+def _placed(wheel: DrawnWheel, x: float | Floats, y: float | Floats, z: float | Floats) -> Floats:
+    """Places (n, 3) of coordinates in the wheel's frame."""
+    x, y, z = np.broadcast_arrays(x, y, z)
+    on = wheel.on
+    found: Floats = np.array(on.o) + (
+        x[:, None] * np.array(on.x) + y[:, None] * np.array(on.y) + z[:, None] * np.array(on.z)
+    )
+    return found

@@ -1,0 +1,19 @@
+"""Mechanisms with couplings against a dense system: `python -m random_families.coupled 0:100` takes
+more."""
+
+from __future__ import annotations
+
+import pytest
+from random_families.coupled import judge
+
+SLIDES = (8, 14, 94)
+"""Where the slide of a rack would be the cheapest joint to cut a loop at."""
+RINGS = (27, 38, 45)
+"""Rings, whose sense is a truth value of what the file tells."""
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 7, *SLIDES, *RINGS])
+def test_motion_and_forces_are_those_of_a_dense_system(seed: int) -> None:
+    swept, moved = judge(seed)
+    assert swept.word in ("ok", "beyond"), swept
+    assert moved.word == "ok", moved

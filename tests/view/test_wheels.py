@@ -1,0 +1,199 @@
+"""Wheels, racks and belts of couplings: their teeth mesh in the drawing and as they move, and lines
+have the lengths of closed forms."""
+
+from __future__ import annotations
+
+from math import acos, pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from view.seen import data
+
+import mechkin_cli as mk
+from mechkin_cli.templates import template_text
+from mechkin_cli.view.joints import carried, link_poses
+from mechkin_cli.view.wheels import wheel_outlines
+
+PLANE = "format: 1\nplane: xy\nunits: {length: mm, angle: deg}\n"
+SPACE = "format: 1\nunits: {length: mm, angle: deg}\n"
+PAIR = """\
+links: {one: {}, two: {}}
+joints:
+  A: {type: R, links: [ground, one], point: [7, -3]}
+  B: {type: R, links: [two, ground], point: POINT}
+couplings: {K: {type: gear, joints: [A, B], teeth: TEETH}}
+motion: {inputs: {A.theta: {from: 0, to: 400, step: 23}}}
+"""
+
+
+def moved(model: mk.Model) -> list[tuple[Any, np.ndarray, np.ndarray]]:
+    """Each wheel with its centre and the direction of its mark in each row (rows, 3)."""
+    result = model.analyze().result
+    wheels = model.view_settings.wheels
+    names = ["ground", *result.problem.mechanism.links]
+    poses = link_poses(result, names)
+    found = []
+    for wheel in wheels:
+        own = poses[:, names.index(wheel.link)]
+        centre = carried(own, wheel.on.o)
+        tip = carried(own, np.array(wheel.on.o) + np.array(wheel.on.x))
+        found.append((wheel, centre, tip - centre))
+    return found
+
+
+def about(mark: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """The angle from a line to a mark, in the plane z."""
+    turn = np.arctan2(mark[:, 1], mark[:, 0]) - np.arctan2(line[:, 1], line[:, 0])
+    return np.asarray(turn)
+
+
+def misfit(phase: np.ndarray) -> float:
+    """How far a phase, in turns of a tooth, is from a half."""
+    return float(np.abs((phase % 1.0) - 0.5).max())
+
+
+@pytest.mark.parametrize("point", ["[97, -3]", "[7, 60]", "[-40, -50]"])
+@pytest.mark.parametrize("teeth", ["[20, 40]", "[17, 23]", "[31, 12]"])
+def test_a_tooth_stands_in_a_gap(point: str, teeth: str) -> None:
+    """At the pitch point one wheel is at a tooth by a share s of its pitch, the other, which counts
+    the other way, at 1/2 - s."""
+    text = PAIR.replace("POINT", point).replace("TEETH", teeth)
+    (one, c1, m1), (two, c2, m2) = moved(mk.loads(PLANE + text))
+    apart = c2 - c1
+    assert np.linalg.norm(apart[0]) == pytest.approx(one.radius + two.radius)
+    phase = one.teeth * about(m1, apart) + two.teeth * about(m2, -apart)
+    assert misfit(phase / (2.0 * pi)) < 1e-9
+
+
+def test_teeth_of_a_planetary_gear() -> None:
+    """Of the sun and planet as above; of the ring, which counts the same way, s and 1/2 + s."""
+    (sun, c1, m1), (planet, c2, m2), (ring, c3, m3) = moved(mk.loads(template_text("planetary")))
+    assert (sun.link, planet.link, ring.link) == ("sun", "planet", "ground")
+    assert (sun.inner, planet.inner, ring.inner) == (False, False, True)
+    apart = c2 - c1
+    phase = sun.teeth * about(m1, apart) + planet.teeth * about(m2, -apart)
+    assert misfit(phase / (2.0 * pi)) < 1e-9
+    phase = ring.teeth * about(m3, apart) - planet.teeth * about(m2, apart)
+    assert misfit(phase / (2.0 * pi)) < 1e-9
+    assert np.abs(c3).max() < 1e-12
+    assert ring.radius == pytest.approx(0.0525)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("axis", ["[1, 0]", "[-3, 0]"])
+def test_a_rack_meets_its_pinion(side: int, axis: str) -> None:
+    """Along the pitch line the pinion's tooth is at r times its angle, the rack's half a pitch
+    from it."""
+    text = f"""{PLANE}links: {{one: {{}}, bar: {{}}}}
+joints:
+  A: {{type: R, links: [ground, one], point: [0, 0]}}
+  S: {{type: P, links: [bar, ground], point: [11, {-20 * side}], axis: {axis}}}
+couplings: {{K: {{type: rack, joints: [A, S], radius: 20 mm}}}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 200, step: 23}}}}}}
+"""
+    model = mk.loads(text)
+    (pinion, _, mark), (rack, place, out) = moved(model)
+    down = np.array([[0.0, -1.0 * side, 0.0]])
+    assert np.abs(out + down).max() < 1e-12
+    assert np.abs(place[:, 1] + 0.02 * side).max() < 1e-12
+    tooth = 0.02 * about(mark, down) * side
+    assert misfit((place[:, 0] - tooth) / pinion.pitch) < 1e-9
+    assert rack.pitch == pytest.approx(pinion.pitch)
+    reach = data(model)["wheels"][1]["reach"]
+    # the pinion's way on the rack, and its ends
+    assert reach[1] - reach[0] == pytest.approx(20 * pi * 184 / 180 + 2 * 1.2 * 20)
+
+
+@pytest.mark.parametrize("crossed", [False, True])
+def test_a_belt_is_as_long_as_its_strands_and_arcs(crossed: bool) -> None:
+    text = f"""{PLANE}links: {{one: {{}}, two: {{}}}}
+joints:
+  A: {{type: R, links: [ground, one], point: [5, 5]}}
+  B: {{type: R, links: [ground, two], point: [95, 125]}}
+couplings:
+  K: {{type: belt, joints: [A, B], radii: [20, 50], crossed: {str(crossed).lower()}}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 200, step: 50}}}}}}
+"""
+    model = mk.loads(text)
+    (belt,) = model.view_settings.belts
+    line = np.array([*belt.line, belt.line[0]]) * 1e3
+    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+    d, r, q = 150.0, 20.0, 50.0
+    gap = r + q if crossed else q - r
+    touch = acos(gap / d)
+    arcs = (r + q) * 2 * (pi - touch) if crossed else r * 2 * touch + q * 2 * (pi - touch)
+    assert length == pytest.approx(2 * sqrt(d * d - gap * gap) + arcs, rel=2e-3)
+    assert [wheel.teeth for wheel in model.view_settings.wheels] == [0, 0]
+
+
+def test_wheels_of_one_shaft_are_drawn_above_one_another() -> None:
+    wheels = mk.loads(template_text("gearbox")).view_settings.wheels
+    assert [wheel.link for wheel in wheels] == [
+        "motor_shaft",
+        "middle_shaft",
+        "middle_shaft",
+        "output_shaft",
+    ]
+    low, high = ({wheel.on.o[2] for wheel in part} for part in (wheels[:2], wheels[2:]))
+    assert low == {0.0}
+    assert min(high) > max(wheel.width for wheel in wheels)
+    assert len(high) == 1
+
+
+BEVEL = """links: {one: {}, two: {}}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [ground, two], point: [50, 0, 80], axis: [1, 0, 0]}
+couplings: {K: {type: gear, joints: [A, B], teeth: [20, 40], radii: [30, 60]}}
+motion: {inputs: {A.theta: {from: 0, to: 720, step: 90}}}
+"""
+WORM = """links: {worm: {}, wheel: {}}
+joints:
+  A: {type: R, links: [ground, worm], point: [9, 0, 0], axis: [1, 0, 0]}
+  B: {type: R, links: [ground, wheel], point: [0, 2, -100], axis: [0, 1, 0]}
+couplings: {K: {type: gear, joints: [A, B], teeth: [1, 40], radii: [20, 80], helix: atan(10)}}
+motion: {inputs: {A.theta: {from: 0, to: 720, step: 90}}}
+"""
+
+
+def test_bevel_wheels_meet_where_their_cones_have_one_apex() -> None:
+    """The apex is 80 above A; the wheels of 30 and 60 have it 60 and 30 from their planes."""
+    one, two = mk.loads(SPACE + BEVEL).view_settings.wheels
+    for wheel, radius, apex in ((one, 0.03, 0.06), (two, 0.06, 0.03)):
+        assert wheel.radius == pytest.approx(radius)
+        assert abs(wheel.apex) == pytest.approx(apex)
+        peak = np.array(wheel.on.o) + wheel.apex * np.array(wheel.on.z)
+        assert peak == pytest.approx([0.0, 0.0, 0.08])
+
+
+def test_a_worm_leans_by_its_helix_and_its_wheel_by_the_lead() -> None:
+    worm, wheel = mk.loads(SPACE + WORM).view_settings.wheels
+    assert (worm.is_worm, wheel.is_worm) == (True, False)
+    assert abs(worm.lean) == pytest.approx(10.0)
+    assert abs(wheel.lean) == pytest.approx(0.1)
+    # where they touch: between the axes, above the wheel's
+    assert np.array(worm.on.o) == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
+    assert np.array(wheel.on.o) == pytest.approx([0.0, 0.0, -0.1], abs=1e-15)
+
+
+def test_outlines_have_the_teeth() -> None:
+    """Each tooth reaches a module beyond the pitch circle, and five quarters inside."""
+    (wheel, *_), _ = moved(
+        mk.loads(PLANE + PAIR.replace("POINT", "[97, -3]").replace("TEETH", "[20, 40]"))
+    )
+    (line,) = wheel_outlines(wheel, True)
+    radii = np.linalg.norm(line - np.array(wheel.on.o), axis=1)
+    assert len(line) == 4 * 20
+    assert radii.max() == pytest.approx(0.033)
+    assert radii.min() == pytest.approx(0.03 - 0.00375)
+    (circle,) = wheel_outlines(wheel, False)
+    assert np.linalg.norm(circle - np.array(wheel.on.o), axis=1) == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize("name", ["gearbox", "planetary"])
+def test_pages_have_the_wheels(name: str) -> None:
+    model = mk.loads(template_text(name))
+    shown = data(model, modes=False)
+    assert len(shown["wheels"]) == len(model.view_settings.wheels)
+    assert shown["belts"] == []
