@@ -158,6 +158,9 @@ def _basis(mechanism: Mechanism, quantity: Wanted) -> list[Wanted]:
     if quantity.kind in ORIENTATION_KINDS:
         joint = mechanism.joints[owner]
         return [*directions(joint.first), *directions(joint.second)]
+    if quantity.kind == "arc_length":
+        name = f"{owner}.{quantity.coordinate}"
+        return [Wanted(name, "coordinate", owner, DIMENSIONLESS, False, quantity.coordinate)]
     if quantity.kind in FINITE_KINDS:
         return displacement(owner)
     if quantity.kind in INSTANT_KINDS:

@@ -237,6 +237,9 @@ def _computed(run: BasisQuantities, wanted: Sequence[Wanted]) -> list[list[Float
             return [quaternion(owner)[QUATERNION.index(quantity.coordinate)]]
         if quantity.kind == "turn":
             return [*turn(run, owner)]
+        if quantity.kind == "arc_length":
+            track = session.problem.mechanism.joints[owner].track
+            return [track.lengths(run.scalar(f"{owner}.{quantity.coordinate}"))]
         if quantity.kind == "mechanical_advantage":
             return [next(advantages)]
         if quantity.kind == "transmission_angle":

@@ -18,12 +18,11 @@ from mechkin_cli.mechanism.quantities import BEARING_KINDS, effort_quantity, in_
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
-    ACCELERATION,
     ANGLE,
-    ANGULAR_ACCELERATION,
     DIMENSIONLESS,
     ENERGY,
     LENGTH,
+    TIME,
     Dimension,
 )
 
@@ -123,7 +122,7 @@ def _coefficient(quantity: Wanted, kind: Kind, name: str, dimension: Dimension, 
 
 
 def _acceleration(coordinate: str) -> Dimension:
-    return ANGULAR_ACCELERATION if is_angle(coordinate) else ACCELERATION
+    return dimension_of(coordinate) / TIME / TIME
 
 
 QUATERNION = ("q0", "q1", "q2", "q3")
@@ -142,6 +141,7 @@ LEDGER: dict[str, tuple[Kind, Dimension]] = {
 LEDGER_KINDS = {kind for kind, _ in LEDGER.values()}
 DERIVED_KINDS = (
     ORIENTATION_KINDS
+    | {"arc_length"}
     | INSTANT_KINDS
     | FINITE_KINDS
     | POWER_KINDS
@@ -149,6 +149,9 @@ DERIVED_KINDS = (
     | LEDGER_KINDS
     | BEARING_KINDS
 )
+
+PARAMETER = "u"
+"""The coordinate along a curve."""
 
 _ORIENTED = [kind.letter for kind in JOINT_TYPES.values() if kind.is_oriented]
 _PINS = [kind.letter for kind in PLANE_JOINT_TYPES.values() if kind.turns_in_plane]
@@ -221,12 +224,19 @@ def derived_catalogue(
 ) -> dict[str, Wanted]:
     """Every derived quantity by name; `inputs` (joint, coordinate), `leading` the one of them that
     mechanical advantages refer to."""
-    found = [*_of_orientations(mechanism), *_of_screws(mechanism)]
+    found = [*_of_orientations(mechanism), *_of_curves(mechanism), *_of_screws(mechanism)]
     if leading is not None:
         found += _of_advantages(mechanism, inputs, leading[1])
     found += _of_transmissions(mechanism, inputs)
     known = {wanted.name: wanted for wanted in found}
     return in_plane(known) if mechanism.plane else known
+
+
+def _of_curves(mechanism: Mechanism) -> Iterator[Wanted]:
+    """Lengths along curves, from where their parameter is zero, or else from their begin."""
+    for joint in mechanism.joints.values():
+        if joint.type.is_carried and joint.track.names == (PARAMETER,):
+            yield Wanted(f"{joint.name}.s", "arc_length", joint.name, LENGTH, False, PARAMETER)
 
 
 def ledger_catalogue() -> dict[str, Wanted]:

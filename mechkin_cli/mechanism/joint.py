@@ -15,6 +15,7 @@ from mechkin_cli.mechanism.pair_type import (
     Screw,
 )
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, joint_type
+from mechkin_cli.mechanism.track import Track
 from mechkin_cli.mechanism.vectors import (
     Frame,
     Vector,
@@ -98,6 +99,11 @@ class Joint(NamedTuple):
             return Attached(link, self.parts[own].before.z)
         vector: Vector = getattr(frame, direction.axis)
         return Attached(link, scale(-1.0, vector) if direction.reverse else vector)
+
+    @property
+    def track(self) -> Track:
+        """The curve or surface of a joint that goes along one."""
+        return next(part.track for part in self.parts if part.track is not None)
 
     @property
     def pitch(self) -> float:

@@ -7,6 +7,7 @@ lines of parameters (`JetNumber`): along u, along v and, for the mixed ones, alo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -115,6 +116,64 @@ class Track:
         rows = at.shape[1]
         return [np.broadcast_to(as_recorded(orders_of(jet)[0]), (rows,)) for jet in jets]
 
+    def speeds(self, u: Floats) -> Floats:
+        """Lengths along a curve by its parameter, at parameters (rows,)."""
+        if self.knots:
+            (at,) = self.wrapped((u,))
+            first = [curve.evaluate(at)[1] for curve in self.knots]
+        else:
+            first = [jet[1] for jet in self.jets((u,), (1.0,), self.numbers)]
+        x, y, z = (np.broadcast_to(as_recorded(one), u.shape) for one in first)
+        found: Floats = np.sqrt(x * x + y * y + z * z)
+        return found
+
+    def lengths(self, u: Floats) -> Floats:
+        """Lengths (m) along a curve to parameters (rows,), from where it is zero, or else from the
+        begin.
+
+        Raises:
+            TypeError: the parameters are no doubles.
+        """
+        if not isinstance(u, np.ndarray):
+            raise TypeError("lengths along a curve")
+        ((low, high),) = self.ends
+        edges = self._pieces()
+        pieces = [self._length(a[None], b[None]) for a, b in pairwise(edges)]
+        totals = [np.zeros(1)]
+        for piece in pieces:
+            totals.append(totals[-1] + piece)
+        sums = np.concatenate(totals)
+
+        def from_begin(at: Floats) -> Floats:
+            (inside,) = self.wrapped((at,))
+            piece = np.clip(np.searchsorted(edges, inside, side="right") - 1, 0, len(pieces) - 1)
+            turns = np.rint((at - inside) / (high - low)) if self.closed[0] else 0.0
+            return turns * sums[-1] + sums[piece] + self._length(edges[piece], inside)
+
+        start = np.array([0.0 if low < 0.0 < high else low])
+        found: Floats = from_begin(u) - from_begin(start)
+        return found
+
+    def _pieces(self) -> Floats:
+        """Ends of the pieces that lengths are summed over."""
+        ((low, high),) = self.ends
+        if not self.knots:
+            return np.linspace(low, high, _PIECES + 1)
+        inside = [x for x in self.knots[0].x.tolist() if low <= x <= high]
+        halves = [
+            (a, a + 0.25 * (b - a), 0.5 * (a + b), b - 0.25 * (b - a)) for a, b in pairwise(inside)
+        ]
+        return np.array([*(x for some in halves for x in some), inside[-1]])
+
+    def _length(self, begin: Floats, end: Floats) -> Floats:
+        """By the quadrature of Gauss."""
+        half, middle = 0.5 * (end - begin), 0.5 * (begin + end)
+        total = np.zeros_like(half)
+        for node, weight in _GAUSS:
+            total = total + weight * self.speeds(middle - node * half)
+            total = total + weight * self.speeds(middle + node * half)
+        return half * total
+
     def nearest(self, point: Vector) -> tuple[float, ...]:
         """The parameters between the ends of the place that is nearest to a point."""
         grids = [np.linspace(low, high, _SAMPLES[len(self.ends)]) for low, high in self.ends]
@@ -152,6 +211,15 @@ class Track:
             (right[1] * squares[0] - right[0] * mixed) / size,
         )
 
+
+_PIECES = 64
+_GAUSS = (
+    (0.1834346424956498, 0.3626837833783620),
+    (0.5255324099163290, 0.3137066458778873),
+    (0.7966664774136267, 0.2223810344533745),
+    (0.9602898564975363, 0.1012285362903763),
+)
+"""Nodes and weights of eight points, both signs of each (Abramowitz and Stegun, table 25.4)."""
 
 _SAMPLES = {1: 721, 2: 61}
 _STEPS = 60

@@ -65,6 +65,7 @@ Kind = Literal[
     "time",
     "quaternion",
     "turn",
+    "arc_length",
     "screw_axis",
     "screw_point",
     "screw_pitch",

@@ -3,8 +3,11 @@ through points, and arcs, with their ends."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 
 import mechkin_cli as mk
@@ -202,3 +205,25 @@ def test_loads_and_drives_work_on_the_parameter() -> None:
     np.testing.assert_allclose(driven["S.s_dot"], -1000.0 * slope * 2.0, rtol=1e-12)
     # told in N*mm, u in m
     np.testing.assert_allclose(driven["D.effort"], 1000.0 * 3.0 * slope, rtol=1e-11)
+
+
+def test_lengths_along_curves_are_their_integrals() -> None:
+    """Of a parabola in closed form, of a circle by its angle, of a spline by quadrature."""
+    parabola = "{at: [u, '20 mm + u^2/(200 mm)'], from: -50 mm, to: 40 mm}"
+    result = cam("20", parabola, -35, 35, 5).analyze()
+    u = 1000.0 * np.asarray(result["D.u"])
+    slope = u / 100.0
+    expected = 50.0 * (slope * np.sqrt(1.0 + slope**2) + np.arcsinh(slope))
+    np.testing.assert_allclose(result["D.s"], expected, atol=1e-11)
+    ring = cam("20", "{center: [0, 60]}", -30, 30, 5).analyze()
+    np.testing.assert_allclose(ring["D.s"], 40.0 * np.asarray(ring["D.u"]), atol=1e-11)
+    points = cam("20", f"{{points: {POINTS}}}", -55, 55, 10).analyze()
+    chords = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(np.array(POINTS), axis=0).T))])
+    rate = CubicSpline(chords, np.array(POINTS)).derivative()
+    for s, at in zip(points["D.s"], 1000.0 * np.asarray(points["D.u"]), strict=True):
+        breaks = [*(x for x in chords if x < at), at]
+        known = sum(
+            quad(lambda x: float(np.hypot(*rate(x))), a, b, epsabs=1e-12)[0]
+            for a, b in pairwise(breaks)
+        )
+        assert float(s) == pytest.approx(known, abs=1e-8)
