@@ -42,9 +42,7 @@ def build_limits(
     return tuple(limits.values())
 
 
-def _of_tracks(
-    fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]
-) -> Iterator[Limit]:
+def _of_tracks(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]) -> Iterator[Limit]:
     """The ends of curves and surfaces."""
     for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
         yield Limit(joint, coordinate, low, high, fields.document.key_place(path))
