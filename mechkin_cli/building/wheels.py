@@ -429,7 +429,7 @@ def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
     a, b = frame_on(one, link), frame_on(other, link)
     apart = subtract(b.o, a.o)
     off = norm(cross(a.z, apart))
-    near = tolerances.PARALLEL * (norm(apart) or 1.0)
+    near = tolerances.PARALLEL * norm(apart)
     return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and (off == 0.0 or off <= near)
 
 
