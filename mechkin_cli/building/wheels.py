@@ -430,7 +430,7 @@ def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
     apart = subtract(b.o, a.o)
     off = norm(cross(a.z, apart))
     near = tolerances.PARALLEL * norm(apart)
-    return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and (off == 0.0 or off <= near)
+    return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and off <= near
 
 
 def rack_relation(
