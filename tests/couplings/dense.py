@@ -569,7 +569,7 @@ class Dense:
         for row in range(rows):
             share = row / (rows - 1)
             values = {name: law[0] + share * (law[1] - law[0]) for name, law in laws.items()}
-            steps = 4
+            steps = 16  # or Newton's method may jump past a dead centre
             for k in range(1, steps + 1):
                 between = {n: before[n] + k / steps * (values[n] - before[n]) for n in laws}
                 state = self.closed(state, between)

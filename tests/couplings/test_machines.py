@@ -146,6 +146,25 @@ def test_powers_are_in_balance_on_a_mount_that_moves() -> None:
     assert np.max(result["row.power_error"]) < 1e-13
 
 
+SWEPT = (
+    "motion: {inputs: {L.theta: {from: 0, to: 1, count: 3}, R.theta: {from: 0, to: 2, count: 3}}}"
+)
+ALL = {
+    "rack and helical wheels": MOVED,
+    "sun and planet": PLANET.format(far=40, tip=20, wheels="teeth: [30, 30]"),
+    "ring": PLANET.format(far=20, tip=40, wheels="teeth: [60, 30], internal: true"),
+    "bevel wheels": DIFFERENTIAL + SWEPT,
+}
+
+
+@pytest.mark.parametrize("text", ALL.values(), ids=ALL.keys())
+def test_errors_are_bounded_by_the_file_s_own_numbers(text: str) -> None:
+    """So that no number of a coupling is lost to double-double."""
+    result = mk.loads(text).analyze()
+    assert np.all(result["row.error_bound"] < 1e-13)
+    assert result.certificate.is_one_branch
+
+
 WHEELS = "G: {type: gear, joints: [A, B], teeth: [20, 40], pressure_angle: 0.35, helix: 0.3}"
 ALIKE = {
     "radii": (WHEELS, WHEELS.replace("teeth: [20, 40]", "radii: [20 mm, 40 mm]")),

@@ -192,3 +192,44 @@ def test_friction_beside_teeth_that_push_apart_is_refused() -> None:
     assert mk.loads(text + words % "").analyze()["B.theta"][-1] == pytest.approx(-45.0)
     with pytest.raises(InvalidFile, match="pushes wheels apart"):
         mk.loads(text + words % ", pressure_angle: 20")
+
+
+RUBBING = (
+    HEAD
+    + """
+links:
+  w1: {mass: 1, center_of_mass: [0, 0], inertia: 100}
+  w2: {mass: 2, center_of_mass: [60, 0], inertia: 300}
+joints:
+  A: {type: R, links: [ground, w1], point: [0, 0]}
+  B: {type: R, links: [ground, w2], point: [60, 0]}
+loads:
+  - {type: torque, joint: B, value: 4 N*m}
+  - {type: friction, joint: A, coefficient: 0.1, radius: 5}
+  - {type: friction, joint: B, coefficient: 0.2, radius: 8}
+couplings: {G: {type: gear, joints: [A, B], teeth: [20, 40]}}
+motion: {inputs: {A.theta: {from: 0, to: 90, step: 45, rate: 10 rad/s}}}
+responses:
+  r:
+    start: {A.theta: 0, A.theta_dot: 10 rad/s}
+    efforts: {A.theta: 3 N*m}
+    time: {from: 0, to: 0.02, step: 0.01}
+"""
+)
+
+
+def test_bearings_rub_by_the_force_of_teeth() -> None:
+    """Moments about both axes, linear in the force F of the teeth and the acceleration."""
+    model = mk.loads(RUBBING)
+    result = model.analyze()
+    force = 4000.0 / (40.0 - 0.2 * 8.0)
+    np.testing.assert_allclose(result["norm(B.force)"], force, rtol=1e-12)
+    np.testing.assert_allclose(result["A.effort"], force * (20.0 + 0.1 * 5.0), rtol=1e-12)
+    matrix = [[100e-6, 0.02 + 0.1 * 0.005], [-0.5 * 300e-6, 0.04 - 0.2 * 0.008]]
+    acceleration, force = np.linalg.solve(matrix, [3.0, 4.0])
+    moved = model.respond("r")
+    assert set(moved["row.status"]) == {"ok"}
+    np.testing.assert_allclose(moved["norm(A.force)"], force, rtol=1e-10)
+    time = moved["time"]
+    turn = np.degrees(10.0 * time + acceleration * time * time / 2.0)
+    np.testing.assert_allclose(moved["A.theta"], turn, rtol=1e-10, atol=1e-12)
