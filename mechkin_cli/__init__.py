@@ -11,6 +11,7 @@ Of a model
     m.analyze()  m.respond()           the runs; m.analyses(): all of the file
     m.modes()                          the ways to assemble it
     m.ranges()                         how far an input can go: dead centres, circuits
+    m.cam("K")                         the cam of a coupling with a follower: profile, undercut
     m.mobility()                       what can move
     m.solve({"O1.theta": 161.5})       one position
     m.with_parameters({"P1": 0.48})    the model with other values

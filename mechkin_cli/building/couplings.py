@@ -14,7 +14,8 @@ import numpy as np
 
 from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
-from mechkin_cli.building.law_reading import Over, read_law
+from mechkin_cli.building.law_reading import Over, note_bends, read_law
+from mechkin_cli.building.law_shapes import PiecewiseLaw
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
@@ -22,6 +23,7 @@ from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
 from mechkin_cli.mechanism import (
     CoordinateLaw,
     ExpressionOf,
+    Follower,
     Joint,
     Problem,
     Relation,
@@ -32,6 +34,8 @@ from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyCoupling,
     CableCoupling,
+    ExpressionLaw,
+    FollowerSection,
     FrictionAtJoint,
     FunctionCoupling,
     GearCoupling,
@@ -113,7 +117,7 @@ def refuse_friction(
 ) -> None:
     """Notes teeth that push wheels apart, and belts without pretension, where joints rub: friction
     is solved for by reactions that are linear in it."""
-    if not any(isinstance(load, FrictionAtJoint) for load in loads):
+    if not any(isinstance(load, FrictionAtJoint) and load.law != "viscous" for load in loads):
         return
     for name, relation in couplings.items():
         if relation.pushes_apart and relation.tensions:
@@ -190,7 +194,67 @@ def _followed(
     if law is None:
         return None
     terms = (Term(second, follows, 1.0), Term(first, coordinate, -1.0, law))
-    return Relation(terms, dimensions[1] == LENGTH)
+    follower = None
+    if section.follower is not None:
+        follower = _follower(fields, (*path, "follower"), section.follower, dimensions)
+    return Relation(terms, dimensions[1] == LENGTH, follower=follower)
+
+
+def _follower(
+    fields: Fields, path: Path, section: FollowerSection, dimensions: tuple[Dimension, Dimension]
+) -> Follower | None:
+    """The follower of a cam; None where errors are noted."""
+    errors = fields.error_count
+    swings = section.type == "oscillating"
+    for is_right, text, hint in (
+        (dimensions[0] == ANGLE, "a cam turns, this one slides", "leave out follower"),
+        (
+            (dimensions[1] == ANGLE) == swings,
+            f"a {section.type} follower has {'an angle' if swings else 'a length'} as coordinate",
+            f"write type: {'translating' if swings else 'oscillating'}",
+        ),
+    ):
+        if not is_right:
+            fields.error("follower", path, text, hint)
+            return None
+    base, offset = (
+        fields.number((*path, key), text, LENGTH)
+        for key, text in (("base_radius", section.base_radius), ("offset", section.offset))
+    )
+    radius, arm, distance = (
+        0.0 if text is None else fields.number((*path, key), text, LENGTH)
+        for key, text in (
+            ("radius", section.radius),
+            ("arm", section.arm),
+            ("distance", section.distance),
+        )
+    )
+    if fields.error_count > errors:
+        return None
+    for key, value in (("base_radius", base), ("radius", radius), ("arm", arm)):
+        if getattr(section, key) is not None and not value > 0.0:
+            text, hint = f"{key} is positive", f"write a positive {key}"
+            measured = fields.units.text(value, LENGTH)
+            fields.error("follower", (*path, key), text, hint, measured=measured)
+            return None
+    if not _reaches(section, base + radius, offset, arm, distance):
+        text = "the follower does not reach the base circle"
+        hint = "change offset" if not swings else "change arm or distance"
+        fields.error("follower", path, text, hint)
+        return None
+    return Follower(swings, section.contact, base, radius, offset, arm, distance)
+
+
+def _reaches(
+    section: FollowerSection, prime: float, offset: float, arm: float, distance: float
+) -> bool:
+    """Whether the follower can touch the base circle, with the centre of its roller or its edge on
+    a circle of radius `prime`."""
+    if section.type == "translating":
+        return section.contact == "flat" or abs(offset) < prime
+    if section.contact == "flat":
+        return abs(prime + offset) < distance
+    return abs(distance - arm) < prime < distance + arm
 
 
 def _law(
@@ -209,10 +273,18 @@ def _law(
     path = (*path, "law")
     if isinstance(section.law, TableLaw):
         return _by_table(fields, (*path, "file"), section.law.file, section.law, dimensions)
+    if isinstance(section.law, ExpressionLaw):
+        text = section.law.value
+        return _by_expression(fields, (*path, "value"), section.of, text, dimensions)
     errors = fields.error_count
-    over = Over(dimensions[0], 0.0, None, in_si=True)
+    over = Over(dimensions[0], 0.0, in_si=True)
     law = read_law(fields, path, section.law, dimensions[1], over)
-    return None if fields.error_count > errors else CoordinateLaw(law.at)
+    if fields.error_count > errors:
+        return None
+    assert isinstance(law, PiecewiseLaw)  # no expression
+    if not law.is_recorded:  # else noted when the file was read
+        note_bends(fields, path, section.law, dimensions[1], over)
+    return CoordinateLaw(law.at)
 
 
 def _by_expression(

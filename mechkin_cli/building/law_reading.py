@@ -76,7 +76,7 @@ from mechkin_cli.schema import (
     TableLaw,
 )
 from mechkin_cli.tape import JetNumber, as_recorded, is_traced, orders_of
-from mechkin_cli.tolerances import COURSE_SAME
+from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
 if TYPE_CHECKING:
@@ -294,13 +294,14 @@ def _note_jumps(reading: _Reading, law: PiecewiseLaw) -> None:
     """Notes where the rate or else the acceleration jumps between two segments, of each the first
     place and how many there are."""
     fields, over = reading.fields, reading.over
-    least, most = over.met or (-inf, inf)
-    found = [(at, jump) for at, jump in law.jumps() if least < at < most]
+    met = over.met or (-inf, inf)
+    found = [(at, jump) for at, jump in law.jumps() if met[0] < at < met[1]]
     for order, (code, severity, word, hint) in enumerate(_JUMPS, start=1):
         jumping = [(at, jump) for at, jump in found if jump[order] and not jump[1:order].any()]
         if not jumping:
             continue
-        at, jump = max(jumping, key=lambda one: abs(one[1][order]))
+        most = max(abs(jump[order]) for _, jump in jumping)
+        at, jump = next(one for one in jumping if abs(one[1][order]) >= most * (1.0 - COURSE_JUMP))
         unit = fields.units.label
         where = f"{_written(reading, at, over.dimension):.6g} {unit(over.dimension)}"
         more = f", the largest of {len(jumping)} such jumps" if len(jumping) > 1 else ""

@@ -100,15 +100,17 @@ class PiecewiseLaw:
         parts = zip(self._starts.tolist(), self.pieces[1:], strict=True)
         return [start for start, piece in parts if not piece.goes_on]
 
+    @property
+    def is_recorded(self) -> bool:
+        """Whether some of its numbers are recorded ones."""
+        return any(isinstance(number, Recorded) for column in self._columns for number in column)
+
     def jumps(self) -> list[tuple[float, Floats]]:
         """Where pieces meet that are not one function, and by how much each order (4,) jumps there;
         what is rounding is 0. Of a law that repeats itself its start is such a place, too."""
-        last = len(self.pieces) - 1
-        pairs = [(k, k + 1, start) for k, start in enumerate(self._starts.tolist()) if k]
-        if self.period is not None:
-            pairs.append((last, 1, float(self._starts[0])))
-        else:
-            pairs.insert(0, (0, 1, float(self._starts[0])))
+        first = 0 if self.period is None else len(self.pieces) - 1
+        befores = [first, *range(1, len(self.pieces) - 1)]
+        pairs = zip(befores, range(1, len(self.pieces)), self._starts.tolist(), strict=True)
         found = []
         for before, behind, at in pairs:
             if self.pieces[behind].goes_on:

@@ -317,6 +317,38 @@ MOBILITY = Command(
     """,
     (FILE, SET, JSON, QUIET),
 )
+CAM = Command(
+    "cam",
+    "cam:cam",
+    """Find the profile of a cam, and what is extreme in it.
+
+    Of a coupling (function or table) with a `follower:`. Lists lift, pressure angle and radius of
+    curvature, undercut and lift-off with their places, and writes the table (CSV) and the profile
+    (DXF, SVG) into out/STEM, or a folder of your choice.
+    """,
+    (
+        FILE,
+        Word(
+            "coupling",
+            "The coupling (default: the only one with a follower).",
+            ("--coupling",),
+            "text",
+            "NAME",
+        ),
+        Word(
+            "points",
+            "Steps of the table and the profile over a turn.",
+            ("--points",),
+            "whole",
+            "N",
+            default=360,
+        ),
+        Word("out", "Folder to write to.", ("-o", "--out"), "path", "FOLDER"),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
 PLOT = Command(
     "plot",
     "plot:plot",
@@ -493,7 +525,7 @@ BENCH = Command(
 COMMANDS = {
     command.name: command
     for command in (
-        *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY),
+        *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
         *(PLOT, STUDY, TABLES, SCHEMA, BENCH),
     )
 }

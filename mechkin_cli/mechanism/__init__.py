@@ -43,9 +43,9 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint Extent InputConstraint Mesh PairConstraint "
-        "Relation Tension Term",
-        "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation LoadLaw joined_curve "
+        "constraint": "Constraint DistanceConstraint Extent Follower InputConstraint Mesh "
+        "PairConstraint Relation Tension Term",
+        "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
         "smooth_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "

@@ -94,11 +94,27 @@ class Extent(NamedTuple):
     most: float | None = None
 
 
+class Follower(NamedTuple):
+    """What a disc cam moves: it `oscillates` about a pivot or slides, with a `contact` by a knife's
+    edge, a roller of a `radius` or a flat face. Lengths in m: the cam's base circle; by how much a
+    slide's line passes the cam's axis, or a face its pivot; an oscillating one's arm and the
+    distance of both axes."""
+
+    oscillates: bool
+    contact: str
+    base_radius: float
+    radius: float = 0.0
+    offset: float = 0.0
+    arm: float = 0.0
+    distance: float = 0.0
+
+
 class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
     strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing. `extents`: those of a cable."""
+    other with (N) when it transmits nothing. `extents`: those of a cable;
+    `follower`: what a cam moves, which is nothing to the motion."""
 
     terms: tuple[Term, ...]
     length: bool
@@ -107,6 +123,7 @@ class Relation(NamedTuple):
     tensions: tuple[tuple[str, Tension], ...] = ()
     pull: tuple[Attached, Attached, float] | None = None
     extents: tuple[Extent, ...] = ()
+    follower: Follower | None = None
 
     @property
     def has_teeth(self) -> bool:

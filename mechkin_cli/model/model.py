@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from mechkin_cli import fit, mobility, modes, sensitivities, studies, variants, view
+from mechkin_cli import cams, fit, mobility, modes, sensitivities, studies, variants, view
 from mechkin_cli.analysis import (
     Analysis,
     Design,
@@ -17,7 +17,7 @@ from mechkin_cli.analysis import (
     run_name,
     run_sweep,
 )
-from mechkin_cli.arguments import Setting, a_path, a_text, settings, texts
+from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Certificate
     from mechkin_cli.building import ViewSettings
+    from mechkin_cli.cams import Cam
     from mechkin_cli.fit import Fit
     from mechkin_cli.mechanism import ResponseProblem
     from mechkin_cli.mobility import Mobility
@@ -463,6 +464,55 @@ class Model(Listed):
             a_text("input", input, '"O1.theta"')
         names = texts("outputs", outputs, '["O4.theta"]')
         return modes.find_ranges(self.session, input, names)
+
+    def cam(self, coupling: str | None = None, points: int = cams.POINTS) -> Cam:
+        """The profile of a disc cam, of a function or a table with a `follower`.
+
+        Args:
+            coupling: its name; None: the only one with a follower.
+            points: steps of the table over a turn, or over the range of a table.
+
+        Returns:
+            Pitch curve, profile, pressure angles and radii of curvature in the file's units, what
+            is extreme, and where it is undercut; where the file has a sweep with forces, also where
+            the follower would leave the cam. `files()` are its table and drawings.
+
+        Raises:
+            InvalidFile: the mechanism cannot be solved as it is driven.
+            UsageError: an unknown coupling, one without a follower, or no points.
+
+        Example:
+            >>> from mechkin_cli import loads
+            >>> m = loads('''
+            ... format: 1
+            ... plane: xy
+            ... units: {length: mm, angle: deg}
+            ... links: {cam: {}, follower: {}}
+            ... joints:
+            ...   A: {type: R, links: [ground, cam], point: [0, 0]}
+            ...   B: {type: P, links: [ground, follower], point: [0, 50], axis: [0, 1]}
+            ... couplings:
+            ...   K:
+            ...     type: function
+            ...     of: A.theta
+            ...     gives: B.s
+            ...     value: 10 mm*(1 - cos(theta))
+            ...     follower: {type: translating, contact: flat, base_radius: 30 mm}
+            ... ''')
+            >>> cam = m.cam("K")
+            >>> round(float(cam.radius.min()), 9), round(float(cam.radius.max()), 9)
+            (40.0, 40.0)
+        """
+        if coupling is not None:
+            a_text("coupling", coupling, '"K"')
+        points = a_whole_number("points", points, "steps over a turn", least=4)
+        swept = None if self.problem.motion.rows < 2 else self._swept
+        return cams.cam_of(self.problem, coupling, points, swept)
+
+    def _swept(self, names: Sequence[str]) -> list[Any]:
+        """Some quantities in the rows of the sweep, in the file's units."""
+        analysis = self.analyze(names, tables=[])
+        return [analysis[name] for name in names]
 
     def mobility(self) -> Mobility:
         """What can move: Kutzbach's count, the true mobility, idle freedoms, redundant constraints.

@@ -33,8 +33,9 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FunctionCoupling "
-        "GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling TableCoupling",
+        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FollowerSection "
+        "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
+        "TableCoupling",
         "curves": "Curve Surface",
         "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",

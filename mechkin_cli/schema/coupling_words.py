@@ -154,11 +154,11 @@ LINEAR_KEYS: Final = dict.fromkeys(
 
 FUNCTION_KEYS: Final = {
     **dict.fromkeys(
-        ("law", "expression", "function", "f", "formula", "lift"),
+        ("expression", "function", "f", "formula", "lift"),
         "the key is value: an expression of the leading coordinate, 10 mm*(1 - cos(A.theta))",
     ),
     **dict.fromkeys(
-        ("joints", "from", "to", "input", "output", "over", "cam", "follower"),
+        ("joints", "from", "to", "input", "output", "over", "cam"),
         "write of: A.theta, the leading coordinate, and gives: S.s, the following one",
     ),
     **dict.fromkeys(("table", "file", "points"), "write type: table, table: lift.csv"),
@@ -168,7 +168,7 @@ FUNCTION_KEYS: Final = {
 TABLE_KEYS: Final = {
     **dict.fromkeys(("file", "path", "csv", "values"), "the key is table: lift.csv"),
     **dict.fromkeys(
-        ("joints", "of", "from", "to", "input", "output", "cam", "follower"),
+        ("joints", "of", "from", "to", "input", "output", "cam"),
         "write over: A.theta, the leading coordinate, and gives: S.s, the following one",
     ),
     **dict.fromkeys(("law", "value", "expression"), "an expression goes with type: function"),

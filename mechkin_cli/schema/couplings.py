@@ -76,7 +76,46 @@ class LinearCoupling(Section):
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
 
 
-CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag), SchemaName("CoordinateLaw")]
+CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag)]
+
+
+class FollowerSection(Section):
+    """The follower of a disc cam, which turns with the leading coordinate, counter-clockwise; its
+    coordinate grows as it rises."""
+
+    type: Literal["translating", "oscillating"]
+    """Whether it slides or turns about a pivot."""
+    contact: Literal["knife", "roller", "flat"]
+    """What touches the cam: an edge, a roller, or a flat face, square to a slide."""
+    base_radius: Length
+    """Radius of the cam's base circle, on which the follower lies where its coordinate is 0."""
+    radius: Length | None = None
+    """Radius of the roller; left out, none, of another contact."""
+    offset: Length = "0"
+    """How far right of the cam's axis the line of a translating follower passes, as it rises
+    upward; of an oscillating one with a flat face, how far that lies below its pivot."""
+    arm: Length | None = None
+    """Of an oscillating follower, from its pivot to the roller's centre or the edge; left out,
+    none, of another follower."""
+    distance: Length | None = None
+    """Of an oscillating follower, from the cam's axis to its pivot; left out, none, of a
+    translating one."""
+
+    def check(self) -> None:
+        """What the contact and the motion need is there, and nothing else."""
+        swings, flat = self.type == "oscillating", self.contact == "flat"
+        needed = {
+            "radius": self.contact == "roller",
+            "arm": swings and not flat,
+            "distance": swings,
+        }
+        for key, is_needed in needed.items():
+            given = getattr(self, key) is not None
+            what = f"a {self.type} follower with a {self.contact} contact"
+            if is_needed and not given:
+                raise refuse("missing-key", f"{what} needs {key}", f"add {key}: 20 mm")
+            if given and not is_needed:
+                raise refuse("no-such-key", f"{what} has no {key}", f"remove {key}", key)
 
 
 class FunctionCoupling(Section):
@@ -96,6 +135,8 @@ class FunctionCoupling(Section):
     """What it is by a law of motion that runs over the leading coordinate instead of time, so that
     its start, its duration and the extents of its segments are angles or lengths; left out,
     `value`."""
+    follower: FollowerSection | None = None
+    """The follower of a cam, for `mechkin cam`; left out, none."""
 
     def check(self) -> None:
         """Exactly one of value and law."""
@@ -122,6 +163,15 @@ class TableCoupling(JoinedTable):
     """The coordinate of the first column."""
     gives: Coordinate
     """The coordinate of the second column."""
+    follower: FollowerSection | None = None
+    """The follower of a cam, for `mechkin cam`; left out, none."""
+
+    def check(self) -> None:
+        """The slope does not jump."""
+        super().check()
+        if self.interpolation == "linear":
+            text = "the slope of a linear table jumps at its points, where forces would be infinite"
+            raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
 
 
 class Toothed(Section):

@@ -373,12 +373,19 @@ def _whole_power(base: JetNumber, count: int) -> JetNumber:
     return product if count > 0 else 1.0 / product
 
 
+def _step(operation: str, x: Any) -> Any:
+    """A sign, or the nearest whole number, of a float, of rows or of a recorded number."""
+    if isinstance(x, Recorded):
+        return x.apply(operation)
+    return np.rint(x) if operation == "WHOLE" else np.sign(x)
+
+
 _ONE: dict[str, Callable[[JetNumber], JetNumber]] = {
     **{operation: _through(slopes) for operation, slopes in SLOPES.items()},
     "NEGATE": lambda a: JetNumber([_opposite(order) for order in a.orders]),
     "MAGNITUDE": lambda a: (a < 0.0).choose(-a, a),
-    "SIGN": lambda a: JetNumber([of_one("SIGN", a.orders[0]), 0.0, 0.0, 0.0]),
-    "WHOLE": lambda a: JetNumber([of_one("WHOLE", a.orders[0]), 0.0, 0.0, 0.0]),
+    "SIGN": lambda a: JetNumber([_step("SIGN", a.orders[0]), 0.0, 0.0, 0.0]),
+    "WHOLE": lambda a: JetNumber([_step("WHOLE", a.orders[0]), 0.0, 0.0, 0.0]),
 }
 _TWO: dict[str, Callable[[JetNumber, JetNumber], JetNumber]] = {
     "ADD": lambda a, b: JetNumber([*map(_sum, a.orders, b.orders)]),

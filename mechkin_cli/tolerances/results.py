@@ -364,3 +364,7 @@ LINEAR: Final = 0.1
 TOLD_APART: Final = 1e-5
 """Angles of assemblies (rad), slides and places of joints (parts of the mechanism's size) that are
 nearer than this look alike in a list of six digits."""
+
+CAM_CLOSED: Final = 1e-9
+"""Both ends of a cam's profile that are nearer than this part of its size are one point: rounding
+leaves 1e-15, a follower that does not come back a thousandth."""

@@ -57,6 +57,7 @@ ORDER = [
     "view",
     "plots",
     "analysis",
+    "cams",
     "variants",
     "sensitivities",
     "fit",

@@ -285,6 +285,62 @@ def test_laws_of_cams_over_an_angle(name: str) -> None:
         np.testing.assert_allclose(result[f"B.{word}"], moves[order], atol=1e-13 * scale)
 
 
+SEGMENTS = """law: {law: sequence, start: 0.5, segments: [
+      {for: 60 deg, to: 20 mm, law: cycloidal}, {for: 90 deg, law: dwell},
+      {for: 120 deg, to: 0 m, law: 3-4-5}, {for: 90 deg, law: dwell}]}"""
+
+
+def cam(x: Any) -> Any:
+    """Its lift in m, over any turn."""
+    u = (x - mp.mpf("0.5")) / mp.pi * 180 % 360
+    if u < 60:
+        return mp.mpf("0.02") * RISES["cycloidal"](u / 60)
+    if u < 150:
+        return mp.mpf("0.02")
+    return mp.mpf("0.02") * (1 - RISES["3-4-5"]((u - 150) / 120)) if u < 270 else mp.mpf(0)
+
+
+def test_a_cam_whose_segments_span_a_turn_lifts_in_every_turn() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    model = mk.loads(text.replace("from: 0.1, to: 12.7", "from: -9.1, to: 12.7"))
+    assert [str(d) for d in model.diagnostics if d.code != "unused-parameter"] == []
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.linspace(-9.1, 12.7, 64)
+    moves = expected(cam, turn, (10.0, 3.0, 7.0))
+    for order, word in enumerate(("s", "s_dot", "s_ddot", "s_dddot")):
+        scale = np.abs(moves[order]).max()
+        np.testing.assert_allclose(result[f"B.{word}"], moves[order], atol=2e-13 * scale)
+    by_turn = np.array([float(mp.diff(cam, mp.mpf(x))) for x in turn])
+    effort = 0.5 * 3.0 + (2.0 * moves[2] - 5.0) * by_turn
+    np.testing.assert_allclose(result["A.effort"], effort, atol=1e-11 * np.abs(effort).max())
+    assert set(model.certify().status) == {"proven"}
+
+
+def test_what_jumps_between_the_segments_of_a_cam_is_said() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    said = [str(d) for d in mk.loads(text.replace("cycloidal", "constant-rate")).diagnostics]
+    (warning,) = (line for line in said if "warning" in line)
+    # 20 mm over 60 deg from where the sequence begins to where it dwells
+    assert "the rate of this sequence jumps at 0.5 rad, the largest of 2 such jumps" in warning
+    assert f"{0.02 / (np.pi / 3):.6g} m/rad" in warning
+
+
+def test_a_cam_that_is_left_open_is_refused() -> None:
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEGMENTS)
+    with pytest.raises(InvalidFile, match=r"does not end where it began: 0\.01 m"):
+        mk.loads(text.replace("to: 0 m,", "to: 10 mm,"))
+
+
+def test_a_law_as_an_expression_is_the_value() -> None:
+    law = 'law: {law: expression, value: "r*(1 - cos(A.theta))"}'
+    text = YOKE + TURNING
+    found = mk.loads(text.replace('value: "r*(1 - cos(theta))"', law)).analyze()
+    alike = mk.loads(text).analyze()
+    np.testing.assert_array_equal(found["B.s_dddot"], alike["B.s_dddot"])
+    np.testing.assert_array_equal(found["K.force"], alike["K.force"])
+
+
 def test_a_textbooks_digits_of_a_rise() -> None:
     """Cycloidal, h = 20 mm, beta = 60 deg, 5 deg behind its begin."""
     law = "law: {law: cycloidal, from: 0 m, to: 20 mm, duration: 60 deg}"
@@ -311,3 +367,76 @@ def test_a_law_is_recorded_alike_whatever_its_numbers_are() -> None:
             alone = model.with_parameters({"lift": lift}).analyze()
             np.testing.assert_array_equal(table["B.s"][number], alone["B.s"])
             np.testing.assert_array_equal(table["B.s_ddot"][number], alone["B.s_ddot"])
+
+
+SEQUENCE = (
+    "law: {law: sequence, from: 0 m, segments: [{for: 90 deg, law: modified-sine, to: 20 mm}, "
+    "{for: 90 deg, law: dwell}, {for: 120 deg, law: 3-4-5, to: 0 m}, {for: 60 deg, law: dwell}]}"
+)
+
+
+def test_a_sequence_of_a_turn_is_proven_and_its_errors_known_in_every_turn() -> None:
+    """Rows on the joints of its segments, too; proofs go on over them."""
+    text = (YOKE + TURNING).replace('value: "r*(1 - cos(theta))"', SEQUENCE)
+    model = mk.loads(
+        text.replace("from: 0.1, to: 12.7, count: 64", "from: 0, to: 800 deg, count: 81")
+    )
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    turn = np.arange(0.0, 801.0, 10.0) % 360.0
+    lift = result["B.s"]
+    np.testing.assert_allclose(lift[(turn >= 90.0) & (turn <= 180.0)], 0.02, rtol=1e-13)
+    np.testing.assert_allclose(lift[turn >= 300.0], 0.0, atol=1e-16)
+    u = (turn - 180.0) / 120.0
+    back = 0.02 * (1.0 - u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
+    falling = (turn >= 180.0) & (turn <= 300.0)
+    np.testing.assert_allclose(lift[falling], back[falling], atol=1e-15)
+    certificate = model.certify()
+    assert set(certificate.status) == {"proven"}
+    assert certificate.is_one_branch
+    assert (result.errors.digits or 0) >= 13
+
+
+def test_tables_are_proven_and_their_errors_known(tmp_path: Path) -> None:
+    """Of a whole turn over its end, and of a part up to both ends."""
+    places = [2.0 * np.pi * k / 24 for k in range(25)]
+    turned = [
+        (x, 0.2 - 0.2 * float(np.cos(2.0 * np.pi * (k % 24) / 24))) for k, x in enumerate(places)
+    ]
+    part = [(0.0, 0.0), (1.0, 0.1), (2.0, 0.3), (3.0, 0.2), (5.0, 0.0)]
+    for rows, range_of in ((turned, "from: -4, to: 9"), (part, "from: 0, to: 5")):
+        moved = TURNING.replace("from: 0.1, to: 12.7", range_of)
+        model = tabled(tmp_path, TABLE + moved, rows)
+        assert set(model.analyze()["row.status"]) == {"ok"}
+        certificate = model.certify()
+        assert set(certificate.status) == {"proven"}
+        assert certificate.is_one_branch
+        assert (model.analyze().errors.digits or 0) >= 13
+
+
+def test_a_table_whose_slope_would_jump_is_refused(tmp_path: Path) -> None:
+    linear = TABLE.replace("gives: B.s}", "gives: B.s, interpolation: linear}")
+    with pytest.raises(InvalidFile, match="write interpolation: monotone"):
+        tabled(tmp_path, linear + TURNING, [(0.0, 0.0), (13.0, 1.0)])
+
+
+def test_a_response_under_forces_follows_the_law() -> None:
+    """Reduced to the crank: (I + m g'^2) theta'' + m g' g'' theta'^2 = M + F g', by an integrator
+    of its own at 30 digits."""
+    text = YOKE + (
+        "loads: [{type: force, joint: B, value: 5}, {type: torque, joint: A, value: 1}]\n"
+        "responses: {r: {start: {A.theta: 0.3, A.theta_dot: 1}, time: {from: 0, to: 2, count: 5}}}"
+    )
+    result = mk.loads(text).respond("r")
+    assert set(result["row.status"]) == {"ok"}
+
+    def slopes(_: Any, y: Any) -> Any:
+        turn, rate = y
+        one, two = mp.mpf("0.2") * mp.sin(turn), mp.mpf("0.2") * mp.cos(turn)
+        return [rate, (1 + 5 * one - 2 * one * two * rate**2) / (0.5 + 2 * one**2)]
+
+    with mp.workdps(20):
+        path = mp.odefun(slopes, 0, [mp.mpf("0.3"), mp.mpf(1)], tol=mp.mpf("1e-13"))
+        turns = [float(path(t)[0]) for t in result["time"]]
+    np.testing.assert_allclose(result["A.theta"], turns, rtol=1e-8)
+    np.testing.assert_allclose(result["B.s"], 0.2 * (1.0 - np.cos(turns)), rtol=1e-8)

@@ -90,6 +90,24 @@ def test_answers_are_copied(again) -> None:
         assert repr(again(answer)) == repr(answer)
 
 
+CAM = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {cam: {}, follower: {}}
+joints:
+  A: {type: R, links: [ground, cam], point: [0, 0]}
+  B: {type: P, links: [ground, follower], point: [0, 50], axis: [0, 1]}
+couplings:
+  K:
+    type: function
+    of: A.theta
+    gives: B.s
+    law: {law: cycloidal, from: 0, to: 9 mm, duration: 60 deg}
+    follower: {type: translating, contact: flat, base_radius: 30 mm}
+"""
+
+
 @pytest.fixture(scope="module")
 def answers() -> list[Listed]:
     """One of every class of answers, and a few more."""
@@ -111,6 +129,7 @@ def answers() -> list[Listed]:
         model.modes(certify=True),
         model.ranges(),
         model.mobility(),
+        mk.loads(CAM).cam(points=8),
         model.vary({"P1": [0.49, 0.5]}, ["O4.theta"]),
         response.vary({"P1": [0.49, 0.5]}, ["O4.theta"], run=response.runs[0]),
         model.sensitivities(["O4.theta"], ["P1"]),
