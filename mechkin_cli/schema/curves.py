@@ -166,3 +166,34 @@ class Surface(Section):
         for key in ("axis", "radius"):
             if getattr(self, key) is not None and self.at is not None:
                 raise refuse("other-form", f"{key} does not go with at", "leave it out", key)
+
+
+EXAMPLES: dict[tuple[str, str], Any] = {
+    ("Curve", "line"): [[0, 0, 0], [80, 0, 20]],
+    ("Curve", "arc"): [[0, 0, 0], [40, 20, 0], [80, 0, 0]],
+    ("Curve", "center"): [90, 0, 0],
+    ("Curve", "at"): ["30 mm*cos(u)", "30 mm*sin(u)", "5 mm*u/(1 rad)"],
+    ("Curve", "from"): "-360 deg",
+    ("Curve", "to"): "360 deg",
+    ("Curve", "points"): [[0, 0, 0], [40, 20, 5], [80, 0, 10]],
+    ("Curve", "closed"): True,
+    ("PlaneCurve", "closed"): True,
+    ("PlaneCurve", "line"): [[0, 0], [80, 20]],
+    ("PlaneCurve", "arc"): [[0, 0], [40, 20], [80, 0]],
+    ("PlaneCurve", "center"): [90, 0],
+    ("PlaneCurve", "at"): ["40 mm*cos(u)", "25 mm*sin(u)"],
+    ("PlaneCurve", "from"): "0 deg",
+    ("PlaneCurve", "to"): "360 deg",
+    ("PlaneCurve", "points"): [[0, 0], [40, 20], [80, 0]],
+    ("SphereGrooveJoint", "curve"): {"center": [90, 0, 0], "axis": [0, 0, 1]},
+    ("SpherePlaneJoint", "surface"): {"sphere": [0, 0, 0], "radius": "50 mm"},
+    ("PinInSlotJoint", "curve"): {"center": [90, 0]},
+    ("Surface", "sphere"): [0, 0, 0],
+    ("Surface", "cylinder"): [0, 0, 0],
+    ("Surface", "torus"): [0, 0, 0],
+    ("Surface", "tube"): "8 mm",
+    ("Surface", "at"): ["v*cos(u)", "v*sin(u)", "5 mm*cos(2*u)"],
+    ("Surface", "u"): ["0 deg", "360 deg"],
+    ("Surface", "v"): ["10 mm", "80 mm"],
+}
+"""Of values in editors and in the format's pages, by section and key."""

@@ -28,6 +28,7 @@ from mechkin_cli.schema.base import (
     field_descriptions,
     fields_of,
 )
+from mechkin_cli.schema.curves import EXAMPLES
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
@@ -232,22 +233,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Cylinder", "to"): "Q",
     ("LimitSection", "restitution"): 0.6,
     ("Crossing", "value"): "O1.theta - O2.theta",
-    ("Curve", "line"): [[0, 0, 0], [80, 0, 20]],
-    ("Curve", "arc"): [[0, 0, 0], [40, 20, 0], [80, 0, 0]],
-    ("Curve", "center"): [90, 0, 0],
-    ("Curve", "at"): ["30 mm*cos(u)", "30 mm*sin(u)", "5 mm*u/(1 rad)"],
-    ("Curve", "from"): "-360 deg",
-    ("Curve", "to"): "360 deg",
-    ("Curve", "points"): [[0, 0, 0], [40, 20, 5], [80, 0, 10]],
-    ("Curve", "closed"): True,
-    ("PlaneCurve", "closed"): True,
-    ("PlaneCurve", "line"): [[0, 0], [80, 20]],
-    ("PlaneCurve", "arc"): [[0, 0], [40, 20], [80, 0]],
-    ("PlaneCurve", "center"): [90, 0],
-    ("PlaneCurve", "at"): ["40 mm*cos(u)", "25 mm*sin(u)"],
-    ("PlaneCurve", "from"): "0 deg",
-    ("PlaneCurve", "to"): "360 deg",
-    ("PlaneCurve", "points"): [[0, 0], [40, 20], [80, 0]],
+    **EXAMPLES,
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
     ("FollowingInput", "with"): "2*O1.theta",
@@ -317,16 +303,6 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
             ("to", "40 mm"),
         )
     },
-    ("SphereGrooveJoint", "curve"): {"center": [90, 0, 0], "axis": [0, 0, 1]},
-    ("SpherePlaneJoint", "surface"): {"sphere": [0, 0, 0], "radius": "50 mm"},
-    ("PinInSlotJoint", "curve"): {"center": [90, 0]},
-    ("Surface", "sphere"): [0, 0, 0],
-    ("Surface", "cylinder"): [0, 0, 0],
-    ("Surface", "torus"): [0, 0, 0],
-    ("Surface", "tube"): "8 mm",
-    ("Surface", "at"): ["v*cos(u)", "v*sin(u)", "5 mm*cos(2*u)"],
-    ("Surface", "u"): ["0 deg", "360 deg"],
-    ("Surface", "v"): ["10 mm", "80 mm"],
     ("SweptInput", "from"): 0,
     ("SweptInput", "step"): 5,
     ("SweptInput", "to"): 360,
