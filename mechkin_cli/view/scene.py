@@ -119,7 +119,8 @@ class Scene:
         """Corners (m) of the box of all joints' and named points that are followed, over all poses;
         of the drawing where there is no pose."""
         mechanism = self.problem.mechanism
-        drawn = [at for _, at in mechanism.joint_points()] + [*mechanism.points.values()]
+        places = (*(at for _, at in mechanism.joint_points()), *mechanism.points.values())
+        drawn = [at for at in places if at.link in self.links]
         seen = [at for at in drawn if at.link not in self._left_out] or drawn
         poses = [one.poses for run in self.branches for one in run if one.poses.size]
         corners = [
