@@ -70,6 +70,11 @@ class Joint(NamedTuple):
         return is_written(self.name) and not self.type.is_free
 
     @property
+    def is_telescope(self) -> bool:
+        """Whether it is the slide of a cylinder, whose links are its own."""
+        return is_written(self.name) and not (is_written(self.first) or is_written(self.second))
+
+    @property
     def point(self) -> Attached:
         """The joint's point: what runs on a plane or in a groove of the second link rides on the
         first, other points on the second."""

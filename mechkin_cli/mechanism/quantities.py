@@ -158,6 +158,8 @@ def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
         for word, (kind, dimension) in _JOINT_WRENCH.items():
             if kind in ("moment", "total_moment") and not joint.type.has_point:
                 continue
+            if kind == "force" and joint.is_telescope:
+                continue  # a cylinder's force is that along it
             yield Wanted(f"{joint.name}.{word}", kind, joint.name, dimension, True)
 
 
@@ -333,7 +335,8 @@ def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
     loads, told = (_LOADS_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
     for joint in mechanism.joints.values():
         bears = joint.type.has_point and (mechanism.plane or joint.type.axis is not None)
-        for kind, (_, dimension) in loads.items() if bears and is_written(joint.name) else ():
+        bears = bears and is_written(joint.name) and not joint.is_telescope
+        for kind, (_, dimension) in loads.items() if bears else ():
             yield Wanted(f"{joint.name}.{kind}", kind, joint.name, dimension, False, told=told)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.mechanism import CrossingEnd, Limit, eliminated, is_angle
+from mechkin_cli.mechanism import ORDERS, CrossingEnd, Limit, eliminated, is_angle
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.response.integration import Beginning, Impact, MotionEnd, MotionRows
@@ -56,6 +56,44 @@ def touched_limit(response: ResponseProblem, moved: MotionRows) -> CrossingEnd |
     if not isinstance(stop, CrossingEnd) or stop.limit is None:
         return None
     return None if stop.limit.restitution is None else stop
+
+
+def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
+    """A motion that begins at a limit and would go beyond it, as one that the limit ends at once;
+    else the motion itself."""
+    for number, stop in enumerate(result.response.stops):
+        if not isinstance(stop, CrossingEnd) or stop.limit is None or stop.at is None:
+            continue
+        side = 1.0 if stop.direction == "up" else -1.0
+        value, rate, pushed = (
+            side * float(np.asarray(result.quantity(f"{stop.limit.name}{order}").value)[0])
+            for order in ORDERS[:3]
+        )
+        unit = 1.0 if is_angle(stop.limit.coordinate) else result.session.layout.length
+        still = tolerances.KINK_ROUNDING * unit
+        outward = rate > still or (abs(rate) <= still and pushed > still)
+        if abs(value - side * stop.at) > tolerances.AT_LIMIT * unit or not outward:
+            continue
+
+        def cut(array: NDArray[Any]) -> NDArray[Any]:
+            found = np.array(array)
+            found[..., 1] = found[..., 0]  # the stop's own place
+            if found.dtype == np.float64:
+                found[..., 2:] = np.nan
+            return found
+
+        report = moved.report._replace(
+            end=MotionEnd.STOPPED,
+            stop=number,
+            rows=1,
+            time=float(result.response.moments.values[0]),
+            crossings=[],
+            touches=[],
+        )
+        chart = Chart(*(cut(array) for array in moved.chart))
+        states, turns, work = (cut(array) for array in (moved.states, moved.turns, moved.work))
+        return MotionRows(report, states, chart, turns, work, cut(moved.flags))
+    return moved
 
 
 class ImpactAt:
@@ -228,6 +266,8 @@ class ImpactAt:
         made = [answer for answer in answers if answer is not None]
         outward = [float(row[0]) for row in rates]
         active = [k for k, rate in enumerate(outward) if rate > 0.0]
+        if not active:
+            return [0], [0.0], made[:1]  # it stands there, and may rest
         tried: list[list[int]] = []
         while active and active not in tried:
             tried.append(active)

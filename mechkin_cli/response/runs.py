@@ -29,7 +29,13 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
-from mechkin_cli.response.impacts import ImpactAt, impact_notes, joined, touched_limit
+from mechkin_cli.response.impacts import (
+    ImpactAt,
+    impact_notes,
+    joined,
+    stopped_at_start,
+    touched_limit,
+)
 from mechkin_cli.response.integration import (
     Beginning,
     Impact,
@@ -412,6 +418,9 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
 def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
     """The rows with those behind impacts at limits that have a restitution, and of rests there."""
     result = rows_of(one, moved)
+    if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
+        moved = stopped_at_start(result, moved)
+        result = rows_of(one, moved)
     impacts: list[Impact] = []
     contacts: list[Contact] = []
     ended = ""
@@ -494,15 +503,23 @@ def _rested(
         still = at_rest(moved, times.size, times.size, times.size + 1)
         return -holding(rows_of(replace(one, response=response), still)) / lever
 
-    begin, times = moved.report.time, one.response.moments.values[moved.report.rows :]
+    begin, moments, first = moved.report.time, one.response.moments.values, moved.report.rows
+    times = moments[first:]
     at = leaves(push, begin, times)
     rows = times.size if at is None else int(np.searchsorted(times, at, side="right"))
-    places = 1 + rows + (at is not None and rows < times.size)
-    still = at_rest(moved, 1 + rows, places, times.size + 2)
-    if at is not None and rows < times.size:
+    # what began at rest does so in its first row, too
+    own = int(
+        first > 0 and moments[first - 1] == begin and not moved.chart.rates[:, first - 1].any()
+    )
+    count = 1 + own + rows
+    is_left = at is not None and rows < times.size
+    still = at_rest(moved, count, count + is_left, times.size + own + 2)
+    if at is not None and is_left:
         still = replace(still, report=still.report._replace(time=at, end=MotionEnd.STOPPED))
+    before = replace(moved, report=moved.report._replace(rows=first - own))
     limit, side = touch.first
-    return joined(moved, still, work), Contact(limit, times[:rows], -side * push(times[:rows]))
+    held = moments[first - own : first + rows]
+    return joined(before, still, work), Contact(limit, held, -side * push(held))
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:

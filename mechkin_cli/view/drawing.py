@@ -34,7 +34,6 @@ from mechkin_cli.mechanism import (
     JointType,
     Mechanism,
     diagonal,
-    is_written,
 )
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.cams import DrawnCam, drawn_cams
@@ -349,8 +348,7 @@ class _Scene:
         self.result = result
         self.settings = settings
         self.mechanism = result.problem.mechanism
-        moving = (name for name in self.mechanism.links if name != GROUND_NAME)
-        self.links = [GROUND_NAME, *filter(is_written, moving)]
+        self.links = [GROUND_NAME, *self.mechanism.shown_links]
         poses = link_poses(result, self.links)
         solved = np.flatnonzero(result.solved)
         home = np.tile(np.array(HOME), (1, len(self.links), 1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import random
 from math import atan2, cos, hypot, pi, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -140,6 +141,17 @@ def test_a_platform_on_six_cylinders_stands_and_is_carried() -> None:
         forces = np.linalg.solve(np.vstack([along.T, lever.T]), -loads)
         told = [result[f"C{k}.force"][row] for k in range(6)]
         np.testing.assert_allclose(told, forces, rtol=1e-11, atol=1e-10)
+
+
+@pytest.mark.parametrize("text", [BOOM, SPATIAL], ids=["plane", "space"])
+def test_a_cylinder_is_drawn_and_its_rows_are_proven(text: str, tmp_path: Path) -> None:
+    motion = "motion: {inputs: {C.s: {from: 0.4, to: 1, step: 0.1}}}\n"
+    tables = "tables: [{name: lift, columns: [C.s, O.theta, C.force, C.pressure]}]\n"
+    model = mk.loads(text + motion + tables)
+    page = tmp_path / "view.html"
+    model.view(page)
+    assert '"C.tube"' in page.read_text(encoding="utf-8")
+    assert set(model.analyze().result.proof) == {2}
 
 
 @pytest.mark.parametrize(

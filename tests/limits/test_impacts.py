@@ -79,6 +79,35 @@ def test_a_slide_rests_in_finite_time(e: float) -> None:
     assert "rests" in {d.code for d in result.diagnostics}
 
 
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_what_begins_at_a_limit_rests_there(e: float) -> None:
+    text = SLIDE.format(e=e, to=1.0).replace("{S.s: 0}", "{S.s: -2}")
+    result = mk.loads(text).respond("fall")
+    np.testing.assert_array_equal(result["S.s"], np.full(11, -2.0))
+    np.testing.assert_array_equal(result["S.s_ddot"], np.zeros(11))
+    np.testing.assert_allclose(result["S.effort"], 20.0, rtol=1e-13)
+    assert set(result["row.status"]) == {"ok"}
+
+
+def test_what_begins_at_a_limit_outwards_rebounds_or_ends_at_once() -> None:
+    text = SLIDE.format(e=0.5, to=0.5).replace("{S.s: 0}", "{S.s: -2, S.s_dot: -8}")
+    result = mk.loads(text).respond("fall")
+    time = result["time"][1:]
+    np.testing.assert_allclose(result["S.s"][1:], -2.0 + 4.0 * time - 5.0 * time**2, atol=1e-12)
+    assert impacts_of(result)[0].impulses[0] == pytest.approx(2.0 * 12.0, rel=1e-13)
+    ended = mk.loads(text.replace(", restitution: 0.5", "")).respond("fall")
+    assert ended["time"].tolist() == [0.0]
+    assert ended["row.event"][0] == "S.s at its limit -2 m"
+
+
+def test_what_begins_at_a_limit_inwards_goes() -> None:
+    text = SLIDE.format(e=0.5, to=0.5).replace("{S.s: 0}", "{S.s: -2, S.s_dot: 4}")
+    result = mk.loads(text).respond("fall")
+    time = result["time"]
+    np.testing.assert_allclose(result["S.s"], -2.0 + 4.0 * time - 5.0 * time**2, atol=1e-12)
+    assert not impacts_of(result)
+
+
 def test_of_several_freedoms_a_rest_ends_the_response() -> None:
     start = "{A.theta: 0.9, B.theta: 0.3, A.theta_dot: 1, B.theta_dot: 3}"
     bounds = "limits: {B.theta: {max: 0.8, restitution: 0}}\n"
