@@ -203,11 +203,11 @@ def _balances(fields: Fields, file: MechanismFile, problem: Problem) -> tuple[An
 
 
 def _view(fields: Fields, file: MechanismFile, problem: Problem) -> ViewSettings | None:
-    if file.view is None and not file.couplings:
+    if file.view is None and not file.couplings and not file.cylinders:
         return None
     from mechkin_cli.building.view import build_view
 
-    return build_view(fields, file.view, file.couplings, problem.mechanism)
+    return build_view(fields, file.view, file.couplings, file.cylinders, problem.mechanism)
 
 
 def read_fields(

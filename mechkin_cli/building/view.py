@@ -13,7 +13,7 @@ from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.units import LENGTH, TIME
 
 if TYPE_CHECKING:
-    from mechkin_cli.schema import AnyCoupling, PartBetween, ShapeOfLink, ViewSection
+    from mechkin_cli.schema import AnyCoupling, Cylinder, PartBetween, ShapeOfLink, ViewSection
     from mechkin_cli.units import Dimension
 
 
@@ -76,13 +76,16 @@ def build_view(
     fields: Fields,
     section: ViewSection | None,
     couplings: Mapping[str, AnyCoupling],
+    cylinders: Mapping[str, Cylinder],
     mechanism: Mechanism,
 ) -> ViewSettings:
-    """The settings of the section, and how couplings look; errors are noted in `fields`."""
+    """The settings of the section, and how couplings and cylinders look; errors are noted in
+    `fields`."""
     drawn = ((), ()) if fields.error_count else drawn_couplings(fields, couplings, mechanism)
     wheels, belts = drawn
+    tubes = () if fields.error_count else tuple(_cylinders(fields, cylinders, mechanism))
     if section is None:
-        return ViewSettings(wheels=wheels, belts=belts)
+        return ViewSettings(wheels=wheels, belts=belts, between=tubes)
     view = _View(fields, mechanism)
     camera = section.camera
     return ViewSettings(
@@ -91,7 +94,7 @@ def build_view(
         shapes={
             name: view.shape(name, shape) for name, shape in view.of_links("shapes", section.shapes)
         },
-        between=tuple(view.between(section.between)),
+        between=(*tubes, *view.between(section.between)),
         joint_radius=view.positive("joint_radius", section.joint_radius, LENGTH),
         paths=None
         if section.paths is None
@@ -103,6 +106,18 @@ def build_view(
         wheels=wheels,
         belts=belts,
     )
+
+
+def _cylinders(
+    fields: Fields, cylinders: Mapping[str, Cylinder], mechanism: Mechanism
+) -> Iterator[DrawnBetween]:
+    """Cylinders of a file without errors, from eye to eye, a little wider than their bore."""
+    for name, section in cylinders.items():
+        ends = mechanism.points[section.first], mechanism.points[section.last]
+        radius = None
+        if section.bore is not None:
+            radius = 0.6 * fields.number(("cylinders", name, "bore"), section.bore, LENGTH)
+        yield DrawnBetween("cylinder", ends, radius)
 
 
 class _View:

@@ -405,19 +405,6 @@ class Mechanism:
     def _box_diagonal(self) -> float:
         return diagonal([at.vector for _, at in self.joint_points()])
 
-    @cached_property
-    def shown_links(self) -> tuple[str, ...]:
-        """The moving links in pictures: those of the file, and those that its joints and cylinders
-        join."""
-        joined = {
-            link
-            for joint in self.joints.values()
-            if is_written(joint.name)
-            for link in (joint.first, joint.second)
-        }
-        shown = (name for name in self.links if is_written(name) or name in joined)
-        return tuple(name for name in shown if name != GROUND_NAME)
-
     def joint_points(self) -> tuple[tuple[str, Attached], ...]:
         """Every joint's point on each of its links, by joint name; welds have none."""
         return self._joint_points

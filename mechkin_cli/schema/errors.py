@@ -319,8 +319,9 @@ BRAKE = (
     'N*m*sign(A.theta_dot)"}'
 )
 CYLINDER = (
-    "a hydraulic cylinder is two links, tube and rod, with a P between them, whose s is driven, "
-    "and a joint at either end (R in a plane, S in space): mechkin new lift --template cylinder-arm"
+    "a cylinder stands between two named points in a section of the file: cylinders: {C: {from: P, "
+    "to: Q, stroke: [600 mm, 900 mm], bore: 80 mm}}; its length C.s may be an input: mechkin new "
+    "lift --template excavator"
 )
 MOTOR = (
     "prescribe a motion under motion: inputs:, or give a torque or force under responses: {NAME: "

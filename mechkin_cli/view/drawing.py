@@ -34,6 +34,7 @@ from mechkin_cli.mechanism import (
     JointType,
     Mechanism,
     diagonal,
+    is_written,
 )
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.cams import DrawnCam, drawn_cams
@@ -296,6 +297,9 @@ PICTURE_NAME = "picture.svg"
 
 WIDTH, HEIGHT, MARGIN = 200.0, 150.0, 24.0
 MOST_PATH_POINTS = 120
+TUBE = 0.6
+"""Length of a cylinder's tube in parts of that from eye to eye."""
+
 LEAST_PITCH = 2.5
 """From tooth to tooth on the picture: below it wheels are circles."""
 
@@ -348,7 +352,8 @@ class _Scene:
         self.result = result
         self.settings = settings
         self.mechanism = result.problem.mechanism
-        self.links = [GROUND_NAME, *self.mechanism.shown_links]
+        moving = (name for name in self.mechanism.links if name != GROUND_NAME)
+        self.links = [GROUND_NAME, *filter(is_written, moving)]
         poses = link_poses(result, self.links)
         solved = np.flatnonzero(result.solved)
         home = np.tile(np.array(HOME), (1, len(self.links), 1))
@@ -366,6 +371,7 @@ class _Scene:
             *self._feet(),
             *self._paths(),
             *self._belts(),
+            *self._cylinders(),
             *(m for _, marks in [*links, *joints] for m in marks),
         ]
 
@@ -480,6 +486,18 @@ class _Scene:
             seen = self._placed(belt.link, belt_line(belt))
             places = tuple(self._on_picture(one) for one in seen)
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
+
+    def _cylinders(self) -> Iterator[Mark]:
+        """Cylinders between two points: a rod, and over most of it a tube."""
+        for part in self.settings.between:
+            if part.kind == "cylinder":
+                foot, eye = (
+                    self._on_picture(self._placed(at.link, np.array([at.vector]))[0])
+                    for at in part.ends
+                )
+                yield line(foot, eye, width=2.0)
+                along = eye[0] - foot[0], eye[1] - foot[1]
+                yield from bar(foot, moved(foot, along, TUBE), THICK, round_ends=False)
 
     def _symbols(self) -> Iterator[Item]:
         for joint in self.joints:

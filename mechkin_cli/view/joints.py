@@ -40,11 +40,13 @@ if TYPE_CHECKING:
 
 
 def drawn_joints(mechanism: Mechanism) -> list[Joint]:
-    """The joints that are drawn: those of the machine that have a place."""
+    """The joints that are drawn: those of the machine that have a place, between its own links."""
     return [
         joint
         for joint in mechanism.joints.values()
-        if is_written(joint.name) and joint.type.has_point and not joint.type.is_free
+        if all(map(is_written, (joint.name, joint.first, joint.second)))
+        and joint.type.has_point
+        and not joint.type.is_free
     ]
 
 

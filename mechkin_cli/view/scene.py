@@ -14,7 +14,7 @@ from mechkin_cli.arguments import a_path
 from mechkin_cli.assembly import HOME, NEAR
 from mechkin_cli.building import ViewSettings
 from mechkin_cli.diagnostics import Diagnostic, UsageError
-from mechkin_cli.mechanism import GROUND_NAME, diagonal
+from mechkin_cli.mechanism import GROUND_NAME, diagonal, is_written
 from mechkin_cli.modes import UNNAMED
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.sweep import refuse_loaded_spin
@@ -86,7 +86,8 @@ class Scene:
     @cached_property
     def links(self) -> list[str]:
         """Names of the links, ground first."""
-        return [GROUND_NAME, *self.problem.mechanism.shown_links]
+        moving = (name for name in self.problem.mechanism.links if is_written(name))
+        return [GROUND_NAME, *(name for name in moving if name != GROUND_NAME)]
 
     @cached_property
     def branches(self) -> list[list[BranchScene]]:
@@ -118,7 +119,8 @@ class Scene:
         """Corners (m) of the box of all joints' and named points that are followed, over all poses;
         of the drawing where there is no pose."""
         mechanism = self.problem.mechanism
-        drawn = [at for _, at in mechanism.joint_points()] + [*mechanism.points.values()]
+        places = (*(at for _, at in mechanism.joint_points()), *mechanism.points.values())
+        drawn = [at for at in places if at.link in self.links]
         seen = [at for at in drawn if at.link not in self._left_out] or drawn
         poses = [one.poses for run in self.branches for one in run if one.poses.size]
         corners = [

@@ -117,7 +117,7 @@ FEATURES = {
     "an oil film is a law of friction": ("hydrodynamic", "lubrication", "oil_film"),
     "links are rigid": ("flexible", "compliant", "beam", "flexure"),
     "an effort may be an expression": ("control", "controller", "controllers", "servo", "pid"),
-    "a P between them, whose s is driven": ("cylinder", "hydraulic", "piston", "jack"),
+    "a cylinder stands between two named points": ("cylinder", "hydraulic", "piston", "jack"),
     "wheels and racks are couplings of joints": ("gear", "gearbox", "transmission", "pinion"),
     "a worm is a gear whose axes pass each other": ("worm", "worm_gear"),
     "bevel wheels are a gear whose axes meet": ("bevel",),

@@ -150,7 +150,7 @@ def test_a_cylinder_is_drawn_and_its_rows_are_proven(text: str, tmp_path: Path) 
     model = mk.loads(text + motion + tables)
     page = tmp_path / "view.html"
     model.view(page)
-    assert '"C.tube"' in page.read_text(encoding="utf-8")
+    assert '"kind":"cylinder"' in page.read_text(encoding="utf-8")
     assert set(model.analyze().result.proof) == {2}
 
 

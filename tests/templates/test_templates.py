@@ -50,6 +50,7 @@ PLANAR = {
     "planetary",
     "belt",
     "cam",
+    "excavator",
 }
 IN_A_PLANE = {"R", "P", "W", "Ps"}
 
@@ -401,6 +402,48 @@ def test_the_cams_follower() -> None:
     assert off(rows["lobe.force"], contact) < 1e-10
     assert off(rows["A.effort"], contact * slope) < 1e-9
     assert rows["lobe.force"].min() > 0.0
+
+
+EXCAVATOR = (
+    # pivot, eyes of its cylinder before and behind it, mass centres and masses that it carries
+    ((0.0, 0.0), (0.6, -0.6), (2.0, 1.6), "lift"),
+    ((4.0, 2.0), (1.8, 2.0), (3.7, 2.7), "crowd"),
+    ((4.5, -0.5), (4.3, 1.6), (4.95, -0.35), "curl"),
+)
+WEIGHTS = ((900.0, 1.9, 1.3), (450.0, 4.1, 1.1), (700.0, 4.9, -0.9))
+
+
+def test_the_excavators_joints_and_cylinders() -> None:
+    """Angles by the law of cosines; a cylinder's force by the moment of all weights beyond the
+    pivot that it spans."""
+    rows = rows_of("excavator")
+    to = [complex(*at) for at, *_ in EXCAVATOR]
+    turns = []
+    for (pivot, foot, eye, name), joint in zip(EXCAVATOR, "ABC", strict=True):
+        a, b = complex(*foot) - complex(*pivot), complex(*eye) - complex(*pivot)
+        cosine = (abs(a) ** 2 + abs(b) ** 2 - rows[f"{name}.s"] ** 2) / (2.0 * abs(a) * abs(b))
+        home = np.angle(b / a)
+        turn = np.sign(home) * np.arccos(cosine) - home
+        assert off(np.radians(rows[f"{joint}.theta"]), turn) < 1e-12, joint
+        turns.append(np.exp(1j * turn))
+    # places of pivots and mass centres: each link turns with all before it
+    pivots, whole, centres = [np.zeros_like(turns[0])], np.ones_like(turns[0]), []
+    for k, (_, x, y) in enumerate(WEIGHTS):
+        whole = whole * turns[k]
+        centres.append(pivots[k] + whole * (complex(x, y) - to[k]))
+        if k < 2:
+            pivots.append(pivots[k] + whole * (to[k + 1] - to[k]))
+    for k, (pivot, foot, eye, name) in enumerate(EXCAVATOR):
+        moment = sum(
+            9.80665e-3 * WEIGHTS[n][0] * (centres[n] - pivots[k]).real for n in range(k, 3)
+        )
+        a = complex(*foot) - complex(*pivot)
+        b = (complex(*eye) - complex(*pivot)) * turns[k]
+        # on the link before the pivot, from where the turned eye is seen
+        lever = (np.conj(b) * (b - a)).imag / np.abs(b - a)
+        assert off(rows[f"{name}.force"], moment / lever) < 1e-9, name
+    area = np.pi / 4.0 * 0.125**2
+    assert off(rows["lift.pressure"], rows["lift.force"] / area) < 1e-8
 
 
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:

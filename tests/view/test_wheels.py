@@ -247,3 +247,14 @@ motion: {{inputs: {{A.theta: {{from: 0, to: 360, step: 30}}}}}}
     lines = np.stack([carried(disc, point) for point in cam.line], axis=1)
     apart = np.linalg.norm(lines - centres[:, None], axis=2).min(axis=1)
     assert apart == pytest.approx(0.009, abs=2e-5)
+
+
+def test_cylinders_are_drawn_from_eye_to_eye() -> None:
+    """As tubes a little wider than their bores; what they are made of is no joint of the page."""
+    shown = data(mk.loads(template_text("excavator")), modes=False)
+    ties = shown["runs"][0]["ties"]
+    assert [tie["kind"] for tie in ties] == ["cylinder"] * 3
+    assert [tie["links"] for tie in ties] == [[0, 1], [1, 2], [2, 3]]
+    assert ties[0]["places"] == [pytest.approx([0.6, -0.6, 0.0]), pytest.approx([2.0, 1.6, 0.0])]
+    assert [tie["radius"] for tie in ties] == pytest.approx([0.075, 0.066, 0.054])
+    assert [joint["name"] for joint in shown["joints"]] == ["A", "B", "C"]
