@@ -19,8 +19,8 @@ def build_limits(
     joints: Mapping[str, Joint],
     couplings: Mapping[str, Relation],
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:`, the strokes of cylinders, the ends of curves and surfaces
-    and the tables of couplings; errors are noted in `fields`."""
+    """Where coordinates end, by `limits:`, the strokes of cylinders, the ends of curves and of
+    surfaces and the tables of couplings; errors are noted in `fields`."""
     every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
         name: (("limits", name), written) for name, written in file.limits.items()
     }

@@ -148,7 +148,8 @@ class Track:
             (inside,) = self.wrapped((at,))
             piece = np.clip(np.searchsorted(edges, inside, side="right") - 1, 0, len(pieces) - 1)
             turns = np.rint((at - inside) / (high - low)) if self.closed[0] else 0.0
-            return turns * sums[-1] + sums[piece] + self._length(edges[piece], inside)
+            length: Floats = turns * sums[-1] + sums[piece] + self._length(edges[piece], inside)
+            return length
 
         start = np.array([0.0 if low < 0.0 < high else low])
         found: Floats = from_begin(u) - from_begin(start)

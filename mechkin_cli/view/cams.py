@@ -50,7 +50,8 @@ class DrawnCam(NamedTuple):
     def line(self) -> Floats:
         """The outline (n, 3) as drawn on its link, m."""
         x, y = np.array(self.on.x), np.array(self.on.y)
-        return np.array(self.on.o) + self.outline[:, :1] * x + self.outline[:, 1:] * y
+        place: Floats = np.array(self.on.o) + self.outline[:, :1] * x + self.outline[:, 1:] * y
+        return place
 
 
 def drawn_cams(mechanism: Mechanism) -> Iterator[DrawnCam]:
