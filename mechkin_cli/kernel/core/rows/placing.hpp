@@ -28,7 +28,7 @@ inline void place_joint(const Plan& p, Workspace& w, int k) {
   if (j.type == TREE_L) return place_hung(p, w, k);
   Pose pose = placed(j.at, pose_of(w, j.parent));
   if (w.stands[k]) w.frame[k] = pose;
-  find_course(p, j, w.q, 1, w.function, w.course + k);
+  if (j.function >= 0) find_course(p, j, w.q, 1, w.function, w.course + k);
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     entry.place(pose, j, w.course + k, w.q + j.state);
   });
@@ -39,7 +39,7 @@ inline void place_joint(const Plan& p, Workspace& w, int k) {
 inline void place_standing(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   Pose pose = w.frame[k];
-  find_course(p, j, w.q, 1, w.function, w.course + k);
+  if (j.function >= 0) find_course(p, j, w.q, 1, w.function, w.course + k);
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
     entry.place(pose, j, w.course + k, w.q + j.state);
   });
