@@ -241,6 +241,8 @@ def _unique(session: Session, state: Floats, condition: float) -> float:
     """Distance from an assembly (states,) within which there is no other; 0 where none is known."""
     if not all(closing.has_coordinates for closing in session.graph.closings):
         return 0.0
+    if session.layout.carried:  # how much a curve bends is not known
+        return 0.0
     least = inf
     for block in session.graph.blocks:
         loops = [_reach(session.layout, c, state) for c in block.closings]

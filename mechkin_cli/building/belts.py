@@ -202,10 +202,10 @@ def _strands(
         square = add(scale(sine, along), scale(side * cosine, aside))
         strand = add(scale(cosine, along), scale(-side * sine, aside))
         point = add(first.axis.o, scale(radii[0], square))
-        apart = 0.0 if pretension else -half
+        apart = -half if pretension == 0.0 else 0.0
         forces.append((point, scale(side * half, strand), scale(apart, strand)))
     mesh = Mesh(carrier, *forces[0], (*first.way, *second.back), forces[1])
-    if not pretension:
+    if pretension == 0.0:
         tight, slack = Tension(0.0, 2.0 * half, 0.0), Tension(0.0, 0.0, 0.0)
         return relation._replace(mesh=mesh, tensions=(("tight", tight), ("slack", slack)))
     tensions = (

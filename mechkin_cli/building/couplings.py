@@ -117,7 +117,7 @@ def refuse_friction(
 ) -> None:
     """Notes teeth that push wheels apart, and belts without pretension, where joints rub: friction
     is solved for by reactions that are linear in it."""
-    if not any(isinstance(load, FrictionAtJoint) for load in loads):
+    if not any(isinstance(load, FrictionAtJoint) and load.law != "viscous" for load in loads):
         return
     for name, relation in couplings.items():
         if relation.pushes_apart and relation.tensions:

@@ -28,6 +28,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
+from mechkin_cli.building.tracks import along_line, carried_joint, is_carried
 from mechkin_cli.diagnostics import Diagnostic, Number, nearest_hint
 from mechkin_cli.mechanism import (
     GROUND,
@@ -163,9 +164,12 @@ def build_joints(
 
 def _build(fields: Fields, name: str, section: AnyJoint) -> Joint:
     path: Path = ("joints", name)
+    first, second = section.links
+    if is_carried(section):
+        assert isinstance(section, PointJoint)
+        return carried_joint(fields, name, section, points_of(fields, path, section))
     kind = joint_type(section.type, fields.plane)
     halves = DRAWINGS[kind.drawing.kind](fields, path, section, kind.drawing)
-    first, second = section.links
     lead = 0.0
     if isinstance(section, HelicalJoint):
         lead = lead_of(fields, (*path, "lead"), section.lead)
@@ -215,7 +219,10 @@ def _ball_on(
 ) -> Halves:
     """Ground axes at the sphere's centre; on the second link z along its normal or groove."""
     first, second = points_of(fields, path, section)
-    z = directions_of(fields, path, section, *drawing.keys)[1]
+    if getattr(section, "curve", None) is None:
+        z = directions_of(fields, path, section, *drawing.keys)[1]
+    else:
+        z = along_line(fields, path, section)
     on_second = frame_about(z, perpendicular(z), second)
     return Halves(upright(first), on_second, (upright(first), upright(second)))
 
@@ -226,7 +233,10 @@ def _plane(fields: Fields, path: Path, section: PlanarJoint, drawing: Drawing) -
     points = points_of(fields, path, section)
     errors = fields.error_count
     normals = directions_of(fields, path, section, along_z)
-    x = directions_of(fields, path, section, along_x)
+    if getattr(section, "curve", None) is None:
+        x = directions_of(fields, path, section, along_x)
+    else:
+        x = (along_line(fields, path, section),) * 2
     directions: list[Vector] = []
     for i in range(2):
         if i == 1 and (normals[1], x[1]) == (normals[0], x[0]):

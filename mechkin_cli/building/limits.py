@@ -7,8 +7,10 @@ from math import inf
 
 from mechkin_cli.building.cylinders import SLIDE
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
+from mechkin_cli.building.tracks import track_ends
 from mechkin_cli.mechanism import Joint, Limit, Relation, dimension_of
 from mechkin_cli.schema import LimitSection, MechanismFile
+from mechkin_cli.units import DIMENSIONLESS
 
 
 def build_limits(
@@ -17,8 +19,8 @@ def build_limits(
     joints: Mapping[str, Joint],
     couplings: Mapping[str, Relation],
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:`, the strokes of cylinders and the tables of couplings;
-    errors are noted in `fields`."""
+    """Where coordinates end, by `limits:`, the strokes of cylinders, the ends of curves and
+    surfaces, and the tables of couplings; errors are noted in `fields`."""
     every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
         name: (("limits", name), written) for name, written in file.limits.items()
     }
@@ -32,12 +34,16 @@ def build_limits(
             continue
         every[name] = ("cylinders", cylinder, "stroke"), section.stroke
     limits = {limit.name: limit for limit in _limits(fields, every, joints)}
-    for limit in _of_tables(fields, couplings):
+    for limit in (*_of_tracks(fields, file, joints), *_of_tables(fields, couplings)):
         other = limits.get(limit.name, limit)
-        limits[limit.name] = other._replace(
-            low=max(other.low, limit.low), high=min(other.high, limit.high)
-        )
+        ends = max(limit.low, other.low), min(limit.high, other.high)
+        limits[limit.name] = other._replace(low=ends[0], high=ends[1])
     return tuple(limits.values())
+
+
+def _of_tracks(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]) -> Iterator[Limit]:
+    for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
+        yield Limit(joint, coordinate, low, high, fields.document.key_place(path))
 
 
 def _of_tables(fields: Fields, couplings: Mapping[str, Relation]) -> Iterator[Limit]:
@@ -71,4 +77,13 @@ def _limits(
             text = f"the limits of {name} leave it no room"
             fields.error("no-room", (*path, high), text, hint)
             continue
-        yield Limit(joint, coordinate, ends[0], ends[1], fields.document.key_place(path))
+        restitution = None
+        if isinstance(written, LimitSection) and written.restitution is not None:
+            place = (*path, "restitution")
+            restitution = fields.number(place, written.restitution, DIMENSIONLESS)
+            if not (restitution >= 0.0 and restitution <= 1.0):
+                text = "a restitution is a number from 0 to 1"
+                fields.error("no-restitution", place, text, "write the part of the rate")
+                continue
+        here = fields.document.key_place(path)
+        yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)

@@ -20,19 +20,17 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
     without,
 )
+from mechkin_cli.building.friction import build_friction
 from mechkin_cli.building.tables import unknown_run
 from mechkin_cli.diagnostics import Diagnostic, Number, nearest_hint
 from mechkin_cli.expressions import ExpressionError, literal, number_of
 from mechkin_cli.mechanism import (
     GROUND_NAME,
-    JOINT_TYPES,
-    PLANE_JOINT_TYPES,
     ZERO,
     Amount,
     Attached,
     Damper,
     Drives,
-    FrictionLaw,
     Joint,
     JointLoad,
     LinkLoad,
@@ -45,20 +43,14 @@ from mechkin_cli.mechanism import (
     Vector,
     Wanted,
     add,
-    cross,
-    dot,
     is_angle,
-    norm,
     scale,
-    subtract,
-    unit,
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import (
     AnyLoad,
     DamperAtJoint,
     DamperBetweenPoints,
-    FallingCoefficient,
     FollowingInput,
     ForceOnJoint,
     ForceOnLink,
@@ -71,19 +63,17 @@ from mechkin_cli.schema import (
     TorqueOnJoint,
     TorqueOnLink,
 )
-from mechkin_cli.tolerances import GRAVITY_ON_EARTH, LARGEST_FLANK, LARGEST_NUMBER, PARALLEL
+from mechkin_cli.tolerances import GRAVITY_ON_EARTH, LARGEST_NUMBER
 from mechkin_cli.units import (
     ACCELERATION,
     ANGLE,
     DAMPING,
-    DIMENSIONLESS,
     FORCE,
     LENGTH,
     MOMENT,
     STIFFNESS,
     TORSIONAL_DAMPING,
     TORSIONAL_STIFFNESS,
-    VELOCITY,
     Dimension,
     parse_unit,
 )
@@ -330,14 +320,15 @@ class LoadBuilder:
         joint = self._joint(path, section.joint)
         if joint is None:
             return
-        if any(
+        if section.law != "viscous" and any(
             isinstance(item, Rubbing) and item.joint == joint.name and set(runs) & set(self._acting)
             for runs, item in self._of_runs
         ):
             text = f"the friction of {joint.name} is given twice"
             self.fields.error("friction", (*path, "joint"), text, "keep one of the two")
-        elif (rubbing := _build_friction(self.fields, path, section, joint)) is not None:
-            self._put(rubbing)
+        else:
+            for item in build_friction(self.fields, path, section, joint):
+                self._put(item)
 
     def _joint(self, path: Path, name: str) -> Joint | None:
         if self.fields.is_refused(name):
@@ -449,127 +440,3 @@ def note_own_motors(fields: Fields, section: MotionSection | None, names: tuple[
     text += "its own" if len(own) == 1 else "their own"
     hint = "write drive: tie where the motor of the input that it follows moves it, else drive: own"
     fields.note(Diagnostic("own-motor", "note", text, place, hint=hint))
-
-
-# Friction of a joint: the keys of its law, coefficients, lengths and directions.
-
-_FRICTION = "friction"
-_FRICTION_LENGTHS = ("radius", "length", "collar", "width")
-_FRICTION_KEYS = (*_FRICTION_LENGTHS, "across", "flank")
-
-
-def _build_friction(
-    fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint
-) -> Rubbing | None:
-    """The friction of a joint; None, and errors in `fields`, where it cannot have this one."""
-    law = joint.type.friction
-    if law is None:
-        types = PLANE_JOINT_TYPES if joint.type.space == 3 else JOINT_TYPES
-        known = ", ".join(letter for letter, entry in types.items() if entry.friction)
-        text = f"{joint.name} is of type {joint.letter}, for which there is no law of friction"
-        fields.error(_FRICTION, (*path, "joint"), text, f"friction is known for {known}")
-        return None
-    errors = fields.error_count
-    _check_friction_keys(fields, path, section, joint, law)
-    coefficients = _coefficients(fields, path, section)
-    radius, length, collar, width = (
-        _length_of(fields, path, section, key) for key in _FRICTION_LENGTHS
-    )
-    flank, across = _flank(fields, path, section), _across(fields, path, section, joint)
-    if fields.error_count > errors:
-        return None
-    place = fields.document.place(path)
-    return Rubbing(joint.name, *coefficients, radius, length, collar, width, flank, across, place)
-
-
-def _check_friction_keys(
-    fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint, law: FrictionLaw
-) -> None:
-    known = (*law.needs, *law.may)
-    takes = f"it takes {', '.join(('coefficient', *known))}"
-    for key in _FRICTION_KEYS:
-        is_written = getattr(section, key) is not None
-        if is_written and key not in known:
-            text = f"friction of {joint.name}, a joint of type {joint.letter}, has no {key}"
-            fields.key_error(_FRICTION, (*path, key), text, takes)
-        elif key in law.needs and not is_written:
-            text = f"friction of {joint.name}, a joint of type {joint.letter}, needs a {key}"
-            fields.error(_FRICTION, path, text, takes)
-    if section.across is not None and section.width is None and "across" in known:
-        text = "across is the direction of a width, and there is none"
-        fields.key_error(_FRICTION, (*path, "across"), text, "give width, too, or leave out across")
-
-
-def _coefficients(
-    fields: Fields, path: Path, section: FrictionAtJoint
-) -> tuple[float, float, float | None]:
-    """At rest, sliding, and the speed over which it falls from one to the other."""
-    coefficient = section.coefficient
-    path = (*path, "coefficient")
-    if not isinstance(coefficient, FallingCoefficient):
-        number = _coefficient(fields, path, coefficient)
-        return number, number, None
-    at_rest = _coefficient(fields, (*path, "static"), coefficient.static)
-    sliding = _coefficient(fields, (*path, "sliding"), coefficient.sliding)
-    if at_rest < sliding:
-        text = "the static coefficient is smaller than that of sliding"
-        hint = "static friction is never below sliding friction: exchange the two values"
-        fields.error(_FRICTION, (*path, "static"), text, hint)
-    if coefficient.speed is None:
-        return at_rest, sliding, None
-    errors = fields.error_count
-    speed = fields.number((*path, "speed"), coefficient.speed, VELOCITY)
-    if fields.error_count == errors and not speed > 0.0:
-        text = "the speed from static to sliding friction must be positive"
-        hint = "leave it out where the coefficient falls at once"
-        fields.error(_FRICTION, (*path, "speed"), text, hint)
-    return at_rest, sliding, speed
-
-
-def _coefficient(fields: Fields, path: Path, text: str) -> float:
-    number = fields.number(path, text, DIMENSIONLESS)
-    if number < 0.0:
-        fields.error(
-            _FRICTION, path, "a coefficient of friction is not negative", "write its magnitude"
-        )
-    return number
-
-
-def _length_of(fields: Fields, path: Path, section: FrictionAtJoint, key: str) -> float | None:
-    text = getattr(section, key)
-    if text is None:
-        return None
-    errors = fields.error_count
-    number = fields.number((*path, key), text, LENGTH)
-    if fields.error_count == errors and not number > 0.0:
-        fields.error(
-            _FRICTION, (*path, key), f"the {key} of friction must be positive", "give its size"
-        )
-    return number
-
-
-def _flank(fields: Fields, path: Path, section: FrictionAtJoint) -> float | None:
-    if section.flank is None:
-        return None
-    angle = fields.number((*path, "flank"), section.flank, ANGLE)
-    if abs(angle) <= LARGEST_FLANK:
-        return angle
-    hint = "give half the angle of the thread: 15 deg for trapezoidal, 30 deg for metric threads"
-    fields.error(_FRICTION, (*path, "flank"), "such a flank stands nearly along the axis", hint)
-    return None
-
-
-def _across(fields: Fields, path: Path, section: FrictionAtJoint, joint: Joint) -> Attached | None:
-    """The direction of the width, square to the axis."""
-    if section.across is None:
-        return None
-    errors = fields.error_count
-    across, axis = fields.direction((*path, "across"), section.across), joint.axis
-    if fields.error_count > errors:
-        return None
-    if norm(cross(across, axis.vector)) <= PARALLEL:
-        text = f"the width of {joint.name} cannot run along its axis"
-        fields.error(_FRICTION, (*path, "across"), text, "give a direction square to the axis")
-        return None
-    along = scale(dot(across, axis.vector), axis.vector)
-    return Attached(axis.link, unit(subtract(across, along)))

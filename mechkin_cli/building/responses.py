@@ -303,12 +303,26 @@ class _ResponseBuilder:
             driven=driven.inputs,
             course=driven.course,
             moments=clock.time,
-            stops=(*stops.build(path, section.stop), *self._limits()),
+            stops=(*self._stops(path, section, stops), *self._limits()),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, clock.time),
             mechanism=replace(mechanism, drives=None),
             load_laws=laws,
         )
+
+    def _stops(
+        self, path: Path, section: written.Response, builder: StopBuilder
+    ) -> tuple[Stop, ...]:
+        """The stops that are written; none counts over impacts, at which a new motion begins."""
+        stops = builder.build(path, section.stop)
+        if all(limit.restitution is None for limit in self.problem.limits):
+            return stops
+        for i, stop in enumerate(section.stop):
+            if isinstance(stop, written.Turns) or stop.count > 1:
+                text = "with limits that have a restitution a stop does not count"
+                hint = "end at a value: {value: A.theta, at: 720 deg}; or leave out the restitution"
+                self.fields.error("counted-stop", (*path, "stop", i), text, hint)
+        return stops
 
     def _limits(self) -> Iterator[CrossingEnd]:
         """The stops at the limits of coordinates."""
@@ -319,7 +333,7 @@ class _ResponseBuilder:
                     dimension = dimension_of(limit.coordinate)
                     words = f"{limit.name} at its limit {self.fields.units.text(at, dimension)}"
                     law = LoadLaw((limit.name,), limit.place, parse(limit.name))
-                    yield CrossingEnd(words, limit.place, law, dimension, at, direction, 1)
+                    yield CrossingEnd(words, limit.place, law, dimension, at, direction, 1, limit)
 
     def recorded(
         self, name: str, section: written.Response, known: ResponseProblem

@@ -415,7 +415,11 @@ def _through(wheel: Joint, between: Joint, base: str, carrier: str) -> Turning:
         (*(t._replace(factor=sign * t.factor) for t in of_own), *of_base)
         for of_own, of_base in ((own.terms, with_base.terms), (own.slides, with_base.slides))
     )
-    return Turning(terms, slides, with_base.axis, (*own.way, *with_base.way))
+    # the wheel is where its own joint's point is
+    on_wheel, on_base = frame_on(wheel, base), frame_on(between, base)
+    height = dot(subtract(on_wheel.o, on_base.o), on_base.z)
+    axis = with_base.axis._replace(o=add(with_base.axis.o, scale(height, with_base.axis.z)))
+    return Turning(terms, slides, axis, (*own.way, *with_base.way))
 
 
 def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
@@ -425,8 +429,8 @@ def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
     a, b = frame_on(one, link), frame_on(other, link)
     apart = subtract(b.o, a.o)
     off = norm(cross(a.z, apart))
-    near = tolerances.PARALLEL * (norm(apart) or 1.0)
-    return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and (off == 0.0 or off <= near)
+    near = tolerances.PARALLEL * norm(apart)
+    return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and off <= near
 
 
 def rack_relation(

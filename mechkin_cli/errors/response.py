@@ -24,6 +24,7 @@ from mechkin_cli.errors.rows import (
     AS_DRIVEN,
     CROSSED,
     FRICTION,
+    IMPACTS,
     OTHER_RATES,
     STOP,
     TABLE_LOADS,
@@ -65,6 +66,8 @@ def repetition(result: Result) -> Repeated:
         return Repeated(result, wide_run(result))
     if result.problem.mechanism.frictions:
         raise NotRepeated(FRICTION)
+    if result.impacts:
+        raise NotRepeated(IMPACTS)
     if result.report is not None and result.report.crossings:
         raise NotRepeated(CROSSED)
     try:

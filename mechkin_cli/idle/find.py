@@ -26,6 +26,7 @@ from mechkin_cli.mechanism import (
     Mechanism,
     Part,
     Screw,
+    Track,
     Vector,
     add,
     cross,
@@ -191,6 +192,13 @@ class General:
                     frame._replace(o=scale(1.0 / self.size, subtract(frame.o, self.origin)))
                     for frame in (part.before, part.after)
                 )
+                if part.track is not None:
+                    part = part._replace(at=self._on_track(part.track, part.at))
+                    way = scale(1.0 / self.size, part.way)
+                    own = tuple((w, scale(1.0 / self.size, v)) for w, v in part.screws(pitch))
+                    screws += own if passed is GROUND else [_displaced(s, passed) for s in own]
+                    passed = passed.carry(GROUND._replace(o=way))
+                    continue
                 part = part._replace(before=before, after=after)
                 own = part.screws(pitch)
                 screws += own if passed is GROUND else [_displaced(s, passed) for s in own]
@@ -199,6 +207,14 @@ class General:
             self._seen[joint.name, joint.first] = passed, screws
             self._seen[joint.name, joint.second] = back, [_displaced(s, back) for s in screws]
         return self._seen[joint.name, link]
+
+    def _on_track(self, track: Track, at: tuple[float, ...]) -> tuple[float, ...]:
+        """General parameters between the ends of a track, or those as drawn."""
+        if self._drawn:
+            return at
+        self._next += 1
+        share = abs(_TURNS[self._next % len(_TURNS)][0])
+        return tuple(low + (0.1 + 0.8 * share) * (high - low) for low, high in track.ends)
 
     def _moved(self, part: Part, pitch: float) -> Frame:
         """A part at general coordinates: from the drawing after it to the drawing before it."""

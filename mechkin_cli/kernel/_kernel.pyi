@@ -36,6 +36,8 @@ class TreeCode(IntEnum):
     S = 4
     W = 5
     L = 6
+    G = 7
+    A = 8
 
 class FreeCode(IntEnum):
     ALONG = ...
@@ -270,6 +272,7 @@ class PlanBuilder:
     def add_axis(
         self, place: int, slide: bool, link: int, vector: Triple, other: int, other_vector: Triple
     ) -> int: ...
+    def set_course(self, joint: int, function: int, axes: Sequence[int]) -> None: ...
     def add_free_motion(
         self, place: int, slide: bool, code: int, link: int, vector: Triple
     ) -> None: ...

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.problem import *
     from mechkin_cli.mechanism.quantities import *
     from mechkin_cli.mechanism.response import *
+    from mechkin_cli.mechanism.track import *
     from mechkin_cli.mechanism.vectors import *
     from mechkin_cli.mechanism.wanted import *
 
@@ -44,7 +45,8 @@ __getattr__, __dir__ = lazy_names(
     {
         "constraint": "Constraint DistanceConstraint Extent Follower InputConstraint Mesh "
         "PairConstraint Relation Tension Term",
-        "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation LoadLaw joined_curve",
+        "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
+        "smooth_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
@@ -65,6 +67,7 @@ __getattr__, __dir__ = lazy_names(
         "response_quantities strands_of",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem StartValue Stop TurnsEnd",
+        "track": "Track",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "
         "perpendicular scale subtract turned_shortest turned_tensor unit upright",
         "wanted": "Wanted",

@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.tape import differ
+from mechkin_cli.tolerances import AT_LIMIT
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from mechkin_cli.diagnostics import Place
@@ -68,18 +71,28 @@ class Moments(NamedTuple):
 
 class Limit(NamedTuple):
     """Where a coordinate ends (rad, m): its least and its largest value, infinite where there is
-    none; `place` in the file."""
+    none; `place` in the file. A response rebounds there by the `restitution`, where there is one,
+    else it ends."""
 
     joint: str
     coordinate: str
     low: float
     high: float
     place: Place
+    restitution: float | None = None
 
     @property
     def name(self) -> str:
         """The coordinate's full name, `O1.theta`."""
         return f"{self.joint}.{self.coordinate}"
+
+    def beyond(self, values: Floats, length: float) -> Floats:
+        """By how much values of the coordinate lie beyond its limits: negative below the least,
+        positive above the largest one, 0 within or at them, as far as rounding of a mechanism of
+        some `length` (m) leaves it open; nan stays."""
+        slack = AT_LIMIT * (1.0 if is_angle(self.coordinate) else length)
+        below, above = values - self.low, values - self.high
+        return np.where(above > slack, above, np.where(below < -slack, below, 0.0 * values))
 
 
 class MotionInputs(NamedTuple):

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Literal
 
-from mechkin_cli.mechanism.vectors import ZERO, Frame, Vector, add, cross, scale
+from mechkin_cli.mechanism.track import Track
+from mechkin_cli.mechanism.vectors import ZERO, Frame, Vector, add, cross, scale, subtract
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import cos, square_root
-from mechkin_cli.units import ANGLE, Dimension
+from mechkin_cli.units import LENGTH, Dimension
 
 if TYPE_CHECKING:
     from mechkin_cli.diagnostics import Place
@@ -26,11 +27,12 @@ Screw = tuple[Vector, Vector]
 class Freedom(NamedTuple):
     """A freedom of an elementary displacement: its motion, and along which axis of the frame.
 
-    A thread turns and slides in one; the three turns of a ball have no coordinate of their own.
-    Turns are `counted` where something else goes by their number.
+    A thread turns and slides in one; the three turns of a ball have no coordinate of their own; a
+    carriage goes along a curve or over a surface by a parameter, a plain number. Turns are
+    `counted` where something else goes by their number.
     """
 
-    motion: Literal["turn", "slide", "thread", "ball"]
+    motion: Literal["turn", "slide", "thread", "ball", "carriage"]
     axis: Literal["x", "y", "z"] = "z"
     counted: bool = False
 
@@ -76,7 +78,12 @@ class Elementary(NamedTuple):
     @property
     def has_axis(self) -> bool:
         """Whether it has one axis, the z of its frame."""
-        return bool(self.freedoms) and not self.is_ball
+        return bool(self.freedoms) and not (self.is_ball or self.is_carriage)
+
+    @property
+    def is_carriage(self) -> bool:
+        """Whether it goes along a curve or over a surface."""
+        return "carriage" in self.motions
 
     @property
     def slides(self) -> tuple[bool, ...]:
@@ -86,6 +93,7 @@ class Elementary(NamedTuple):
 
 _TURN, _SLIDE, _THREAD = Freedom("turn"), Freedom("slide"), Freedom("thread")
 _COUNTED = Freedom("turn", counted=True)
+_CARRIAGE = Freedom("carriage")
 _BALL = (Freedom("ball", "x"), Freedom("ball", "y"), Freedom("ball", "z"))
 
 ELEMENTARY = {
@@ -97,9 +105,11 @@ ELEMENTARY = {
     "W": Elementary("W", 5, (), 0),
     "L": Elementary("L", 6, (), 0),
     "T": Elementary("T", 2, (_COUNTED,), 1),
+    "G": Elementary("G", 7, (_CARRIAGE,), 1),
+    "A": Elementary("A", 8, (_CARRIAGE, _CARRIAGE), 2),
 }
 """By letter; W keeps two frames together, L hangs a body between two points, T is a turn that is
-counted: to the kernel a thread without lead."""
+counted: to the kernel a thread without lead; G goes along a curve, A over a surface."""
 
 
 COUNTED_AS = {"R": ("T",), "C": ("T", "P")}
@@ -108,12 +118,19 @@ COUNTED_AS = {"R": ("T",), "C": ("T", "P")}
 
 class Part(NamedTuple):
     """An elementary displacement of a joint's chain; its frame as drawn on the body before and
-    after it, and its coordinate where these are as drawn (m)."""
+    after it, and its coordinate where these are as drawn (m).
+
+    A carriage has its `track`, which rides on the body before it (`sense` 1) or after it (-1) and
+    leads from the frames' origin; `at`: its parameters as drawn.
+    """
 
     letter: str
     before: Frame
     after: Frame
     drawn: float = 0.0
+    track: Track | None = None
+    sense: float = 1.0
+    at: tuple[float, ...] = ()
 
     @property
     def type(self) -> Elementary:
@@ -123,8 +140,16 @@ class Part(NamedTuple):
     def reversed(self) -> Part:
         """The same part passed the other way: the same coordinate about the reversed axis."""
         if not self.type.has_axis:
-            return Part(self.letter, self.after, self.before, self.drawn)
+            back = self._replace(before=self.after, after=self.before)
+            return back._replace(sense=-self.sense) if self.track else back
         return Part(self.letter, self.after.flipped(), self.before.flipped(), self.drawn)
+
+    @property
+    def way(self) -> Vector:
+        """How far it is displaced as drawn."""
+        if self.track is None:
+            return scale(self.drawn, self.before.z)
+        return scale(self.sense, subtract(self.track.place(self.at), self.before.o))
 
     def counted(self) -> tuple[Part, ...]:
         """The parts that count its turns; itself where it has none."""
@@ -134,6 +159,8 @@ class Part(NamedTuple):
 
     def screws(self, pitch: float) -> tuple[Screw, ...]:
         """The unit screws of its freedoms as drawn on the body before it; `pitch` in m per rad."""
+        if self.track is not None:
+            return tuple((ZERO, scale(self.sense, slope)) for slope in self.track.slopes(self.at))
         return screws_at(self.letter, self.before, pitch)
 
 
@@ -341,14 +368,16 @@ class Coordinate(NamedTuple):
 
     @property
     def is_angle(self) -> bool:
-        """Whether it is an angle, else a length."""
-        return self.dimension == ANGLE
+        """Whether it is an angle, else a length; the parameter of a curve, a number, counts as an
+        angle."""
+        return self.dimension != LENGTH
 
 
 class Drawing(NamedTuple):
-    """How a pair's frames are drawn (building/joints.py), from which keys of its section."""
+    """How a pair's frames are drawn, from which keys of its section: the `kind` is one of those of
+    building/joints.py, or of a pair on a track (building/tracks.py)."""
 
-    kind: Literal["axis", "ball", "ball on", "plane", "two axes", "square axes", "slotted", "weld"]
+    kind: str
     keys: tuple[str, ...] = ()
     cure: str = ""
 
@@ -451,6 +480,11 @@ class JointType:
     def has_slip(self) -> bool:
         """Whether its point rides on the first link and moves along the second."""
         return self.point_on == FIRST
+
+    @cached_property
+    def is_carried(self) -> bool:
+        """Whether it goes along a curve or over a surface."""
+        return any(ELEMENTARY[letter].is_carriage for letter in self.parts)
 
     @cached_property
     def is_threaded(self) -> bool:

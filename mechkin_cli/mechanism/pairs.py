@@ -23,7 +23,7 @@ from mechkin_cli.mechanism.pair_type import (
     PairStep,
 )
 from mechkin_cli.record import replace
-from mechkin_cli.units import ANGLE, LENGTH, Dimension
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
 
 _X1, _Y1, _Z1 = DrawnDirection(FIRST, "x"), DrawnDirection(FIRST, "y"), DrawnDirection(FIRST)
 _X2, _Y2, _Z2 = DrawnDirection(SECOND, "x"), DrawnDirection(SECOND, "y"), DrawnDirection(SECOND)
@@ -39,6 +39,11 @@ def _length(
     name: str, freedom: int, axis: DrawnDirection = _Z2, *, on_thread: bool = False
 ) -> Coordinate:
     return Coordinate(name, LENGTH, freedom, axis, on_thread)
+
+
+def _parameter(name: str, freedom: int) -> Coordinate:
+    """Of a curve or surface: a plain number, in SI where it stands for an angle or a length."""
+    return Coordinate(name, DIMENSIONLESS, freedom)
 
 
 def _turns(freedom: int) -> tuple[Coordinate, Coordinate]:
@@ -238,6 +243,47 @@ _IN_PLANE = (
     replace(JOINT_TYPES["W"], closing="W2"),
 )
 
+_ON_CURVE = "on a curve"
+
+_CARRIED = (
+    JointType(
+        f"Sg {_ON_CURVE}",
+        (PairStep("S"), PairStep("G")),
+        (_parameter("u", 3),),
+        Drawing("ball on track"),
+        point_on=FIRST,
+        shape="Sg",
+    ),
+    JointType(
+        "Sp on a surface",
+        (PairStep("S"), PairStep("A")),
+        (_parameter("u", 3), _parameter("v", 4)),
+        Drawing("ball on track"),
+        point_on=FIRST,
+        shape="Sp",
+    ),
+    # parts of the others
+    JointType("G", (PairStep("G"),), (_parameter("u", 0),), Drawing("ball on track")),
+    JointType(
+        "A",
+        (PairStep("A"),),
+        (_parameter("u", 0), _parameter("v", 1)),
+        Drawing("ball on track"),
+    ),
+)
+_PIN_ON_CURVE = JointType(
+    f"Ps {_ON_CURVE}",
+    (PairStep("R"), PairStep("G")),
+    (_angle("theta", 0), _parameter("u", 1)),
+    Drawing("pin on track"),
+    point_on=FIRST,
+    shape="Sg",
+    space=3,
+)
+CARRIED_TYPES = {entry.letter: entry for entry in (*_CARRIED, _PIN_ON_CURVE)}
+"""The pairs along curves and over surfaces, which close no loop: a closing pair has no parameter
+that tells where on its curve it is."""
+
 PLANE_JOINT_TYPES = {entry.letter: replace(entry, space=3) for entry in _IN_PLANE}
 """The pairs that a plane file may have, by letter: what their links do in the plane z = 0, turns
 about z and slides square to it, and closing equations of that plane alone."""
@@ -303,6 +349,8 @@ def joint_type(letter: str, plane: bool = False, counted: bool = False) -> Joint
         return replace(own, steps=steps, closing=None)
     types = PLANE_JOINT_TYPES if plane else JOINT_TYPES
     kind, _, rest = letter.partition(" ")
+    if letter in CARRIED_TYPES:
+        return CARRIED_TYPES[letter]
     if letter in _AS_COUNTED:
         return joint_type(_AS_COUNTED[letter], plane, counted=True)
     if kind == "along":
@@ -333,15 +381,15 @@ def dimension_of(coordinate: str) -> Dimension:
     >>> dimension_of("theta1") == ANGLE
     True
     """
-    return ANGLE if coordinate in _angles() else LENGTH
+    return _dimensions().get(coordinate, LENGTH)
 
 
 def is_angle(coordinate: str) -> bool:
-    """Whether coordinates of this name are angles."""
-    return coordinate in _angles()
+    """Whether coordinates of this name are angles, or the numbers that count as such."""
+    return dimension_of(coordinate) != LENGTH
 
 
 @cache
-def _angles() -> frozenset[str]:
-    entries = (*_TABLE, *_IN_PLANE)
-    return frozenset(c.name for entry in entries for c in entry.named if c.is_angle)
+def _dimensions() -> dict[str, Dimension]:
+    entries = (*_TABLE, *_IN_PLANE, *CARRIED_TYPES.values())
+    return {c.name: c.dimension for entry in entries for c in entry.named}

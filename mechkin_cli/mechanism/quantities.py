@@ -25,9 +25,7 @@ from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
     ACCELERATION,
-    ANGLE,
     ANGULAR_ACCELERATION,
-    ANGULAR_JERK,
     ANGULAR_RATE,
     DIMENSIONLESS,
     ENERGY,
@@ -53,8 +51,6 @@ REACTION_LEVEL = Wanted("reaction level", "reaction_level", GROUND_NAME, FORCE, 
 ACTUATION = Wanted("actuation", "actuation", GROUND_NAME, DIMENSIONLESS, False)
 """The least rate of the actuators, all together, in a motion of length one."""
 
-_OF_ANGLES = (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)
-_OF_LENGTHS = (LENGTH, VELOCITY, ACCELERATION, JERK)
 _GROUND: dict[str, tuple[Kind, Dimension]] = {
     "shaking_force": ("shaking_force", FORCE),
     "shaking_moment": ("shaking_moment", MOMENT),
@@ -140,9 +136,11 @@ def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:
 def _of_coordinates(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
         for known in joint.type.named:
-            for order, dimension in enumerate(_OF_ANGLES if known.is_angle else _OF_LENGTHS):
-                name = f"{joint.name}.{known.name}{ORDERS[order]}"
+            dimension = known.dimension
+            for order, suffix in enumerate(ORDERS):
+                name = f"{joint.name}.{known.name}{suffix}"
                 yield Wanted(name, "coordinate", joint.name, dimension, False, known.name, order)
+                dimension = dimension / TIME
 
 
 def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:

@@ -23,7 +23,7 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.mechanism.held import LockedFreedom
     from mechkin_cli.mechanism.model import JointLoad, Mechanism
-    from mechkin_cli.mechanism.motion import Assembly, Course
+    from mechkin_cli.mechanism.motion import Assembly, Course, Limit
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -50,7 +50,8 @@ class CrossingEnd:
     """Ends a response where the value of `law` passes `at` (SI) the `count`th time, rising (`up`),
     falling or either; without `at`, where the condition `law` holds the `count`th time.
 
-    `words` are what a row says of it: `O1.theta = 45 deg`.
+    `words` are what a row says of it: `O1.theta = 45 deg`. `limit`: that of a coordinate, where it
+    is one.
     """
 
     words: str
@@ -60,6 +61,7 @@ class CrossingEnd:
     at: float | None
     direction: Direction
     count: int
+    limit: Limit | None = None
 
 
 @dataclass(frozen=True)

@@ -166,7 +166,9 @@ class LoopPart:
         """An orthonormal basis (k, count) of those of some `motions` (columns, k) from a place that
         move but one link, or two that are joined."""
         numbers = self.loops.number
-        twists = self.loops.twists(*self.loops.poses.at(np.empty((0, 1)), state[:, None]))
+        twists = self.loops.twists(
+            *self.loops.poses.at(np.empty((0, 1)), state[:, None]), state[None]
+        )
         seen = twists[0][:, :, self.columns] @ motions
         links = [link for link in self.mechanism.links if link != GROUND_NAME]
         groups = [{link} for link in links]
@@ -281,7 +283,7 @@ class Configuration:
     def twists(self) -> dict[str, Floats]:
         """Twists (6, freedoms) of all bodies for unit rates of the joints' freedoms."""
         loops = self.body.loops
-        twists = loops.twists(*self._arrays)[0]
+        twists = loops.twists(*self._arrays, self.state[None])[0]
         return {name: twists[k] for name, k in loops.number.items()}
 
     @cached_property
@@ -381,6 +383,11 @@ def _scattered(body: Body, random: RandomStarts) -> Configuration:
     for carrier in body.layout.carriers:
         if carrier.part.type.is_ball:
             state[carrier.state : carrier.state + 4] = random.quaternions(1)[:, 0]
+            continue
+        if carrier.part.track is not None:
+            for k, (low, high) in enumerate(carrier.part.track.ends):
+                at = 0.5 * (low + high) + random.between(0.5 * (high - low), 1)[0]
+                state[carrier.state + k] = at
             continue
         for k, freedom in enumerate(carrier.part.type.freedoms):
             half = body.size / body.layout.length if freedom.is_slide else np.pi

@@ -19,12 +19,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import GROUND_NAME, Attached, Joint, Mechanism, RigidLink, screws_at
+from mechkin_cli.mechanism import (
+    GROUND_NAME,
+    Attached,
+    Joint,
+    Mechanism,
+    Part,
+    RigidLink,
+    screws_at,
+)
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs, Session, quaternion_product, turned_quaternion
 from mechkin_cli.structure import SolverGraph, TreeEdge
@@ -218,12 +226,20 @@ class Loops:
         self.opened, self.layout, self.poses = opened, layout, poses
         number = {name: k for k, name in enumerate((GROUND_NAME, *poses.bodies))}
         self.number = number
-        spins, slides, edges = [], [], []
+        spins: list[Any] = []
+        slides: list[Any] = []
+        edges: list[int] = []
+        self._carried: list[tuple[int, int, Part]] = []
         for k, edge in enumerate(opened.graph.edges):
             carrier = layout.carriers[k]
             origin = (np.array(carrier.part.before.o) - poses.centre) / poses.size
             frame = carrier.part.before._replace(o=tuple(origin.tolist()))
-            for spin, slide in screws_at(carrier.part.letter, frame, edge.joint.pitch / poses.size):
+            if carrier.part.track is None:
+                own = screws_at(carrier.part.letter, frame, edge.joint.pitch / poses.size)
+            else:  # those of each state take their place
+                self._carried.append((len(edges), carrier.state, carrier.part))
+                own = carrier.part.screws(0.0)
+            for spin, slide in own:
                 spins.append(spin)
                 slides.append(slide)
                 edges.append(k)
@@ -327,7 +343,7 @@ class Loops:
         of all bodies and the states (rows, states) that they belong to."""
         one, two = self._copies, self._links
         misses = displacement(turns[:, one], places[:, one], turns[:, two], places[:, two])
-        screws = np.swapaxes(self.screws(turns, places), 1, 2)
+        screws = np.swapaxes(self.screws(turns, places, states), 1, 2)
         jacobian = self.signs[:, None, :] * screws[:, None]
         rows, size = len(turns), self.cut_rows
         misses, jacobian = misses.reshape(rows, size), jacobian.reshape(rows, size, self.count)
@@ -339,16 +355,23 @@ class Loops:
         self._curved(states, off, every)
         return np.concatenate([misses, off], axis=1), np.concatenate([jacobian, every], axis=1)
 
-    def screws(self, turns: Floats, places: Floats) -> Floats:
-        """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are."""
+    def screws(self, turns: Floats, places: Floats, states: Floats) -> Floats:
+        """Unit screws (rows, freedoms, 6) of all freedoms where the bodies are, at the states
+        (rows, states) that they belong to."""
         turn, place = turns[:, self._parents], places[:, self._parents]
         spins = (turn @ self._spins)[..., 0]
         slides = (turn @ self._slides)[..., 0] + _cross(place, spins)
+        for column, state, part in self._carried:
+            count = len(part.at)
+            for row, at in enumerate(states[:, state : state + count].tolist()):
+                ways = [way for _, way in part._replace(at=tuple(at)).screws(0.0)]
+                on_parent = np.array(ways).T / self.poses.size
+                slides[row, column : column + count] = (turn[row, column] @ on_parent).T
         return np.concatenate([spins, slides], axis=2)
 
-    def twists(self, turns: Floats, places: Floats) -> Floats:
+    def twists(self, turns: Floats, places: Floats, states: Floats) -> Floats:
         """Twists (rows, bodies, 6, freedoms) of all bodies for unit rates of the freedoms."""
-        screws = np.swapaxes(self.screws(turns, places), 1, 2)
+        screws = np.swapaxes(self.screws(turns, places, states), 1, 2)
         return np.asarray(self.passed[:, self._edges][:, None, :] * screws[:, None])
 
     def moved(self, states: Floats, steps: Floats) -> Floats:

@@ -30,7 +30,14 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
 
 EndKind = Literal[
-    "dead-centre", "branch-point", "hold-ends", "unbounded", "branch-lost", "full-turn", "far"
+    "dead-centre",
+    "branch-point",
+    "hold-ends",
+    "unbounded",
+    "branch-lost",
+    "full-turn",
+    "far",
+    "limit",
 ]
 
 
@@ -40,7 +47,7 @@ class End(NamedTuple):
     `hold-ends`: a coordinate that holds an idle freedom cannot be kept beyond it, where the
     mechanism itself is regular; `unbounded`: a slide grew out of bounds before it; `full-turn`: it
     came to an assembly that was met before, turns ago; `far`: not found within the reach that is
-    looked over.
+    looked over; `limit`: a coordinate comes to its limit.
     """
 
     kind: EndKind

@@ -43,6 +43,7 @@ from mechkin_cli.modes.circuits import (
     joined,
     undecided,
 )
+from mechkin_cli.modes.limits import LimitedWalk, beyond_notes
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
@@ -276,6 +277,12 @@ def _result(
         )
         for i in order
     )
+    beyond = beyond_notes(
+        problem,
+        [names[i] for i in order],
+        {name: values[order] for name, values in coordinates.items()},
+        session.layout.length,
+    )
     threads = any(joint.type.counts_turns for joint in problem.mechanism.joints.values())
     return Modes(
         modes=modes,
@@ -290,7 +297,7 @@ def _result(
         is_cut=assemblies.cut,
         bound=assemblies.bound,
         turns=problem.assembly.turns if threads else None,
-        diagnostics=(*problem.diagnostics, *notes),
+        diagnostics=(*problem.diagnostics, *notes, *beyond),
         proofs=prove_modes(session, place, assemblies.states[:, order]) if certify else None,
     )
 
@@ -459,7 +466,8 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
     first = path[:, row] if way is None else session.inputs.values[:, row]
     walker = Walker(session, leader, first, way)
     left_out = 0.0 if way else float(session.inputs.whole[number, row])
-    ranges, circuits = _Survey(session, named, walker, number, left_out, outputs).ranges()
+    survey = _Survey(session, named, walker, number, left_out, outputs)
+    ranges, circuits = survey.ranges()
     # in the order of the letters: A, B, ..., AA
     shown = tuple(tuple(sorted(modes, key=lambda m: (len(m), m))) for modes, _ in circuits)
     notes = (
@@ -467,6 +475,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
         *_hold_notes(walker),
+        *survey.limit_notes,
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
 
@@ -535,6 +544,8 @@ class _Survey:
         self.farther = turns * float(turn) if turn else 0.0
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
+        self.limited = [LimitedWalk(walker, limit) for limit in self.problem.limits]
+        self.limit_notes: list[Diagnostic] = []
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
@@ -567,15 +578,47 @@ class _Survey:
         origin, period = float(self.walker.inputs[self.walker.number]), self.walker.period
         shift = value - origin
         extremes = self._extremes(branch, shift)
-        if branch.upper.kind == "full-turn" and period is not None:
+        ends = self._within_limits(name, branch, value)
+        if ends is None and branch.upper.kind == "full-turn" and period is not None:
             limit = self._limit(End("full-turn", origin), 0.0)
             turns = round((branch.upper.value - branch.lower.value) / period)
             return Range(name, limit, limit, turns, 0, extremes)
-        lower, upper = (self._limit(end, shift) for end in (branch.lower, branch.upper))
+        lower, upper = (self._limit(end, shift) for end in ends or (branch.lower, branch.upper))
         if self.shown != self.walker.number and lower.value > upper.value:
             # an input that follows may fall while the other rises
             lower, upper = upper, lower
         return Range(name, lower, upper, 0, 0, extremes)
+
+    def _within_limits(self, name: str, branch: Branch, value: float) -> tuple[End, End] | None:
+        """The ends of a branch about a place where limits of coordinates end it; None where they do
+        not."""
+        start = next((place for place in branch.places if place[0] == value), None)
+        if start is None or not self.limited:
+            return None
+        ends = [branch.lower, branch.upper]
+        if branch.upper.kind == "full-turn":
+            turned = branch.upper.value - branch.lower.value
+            ends = [End("far", value - turned), End("far", value + turned)]
+        found: list[End] = []
+        for end, word in zip(ends, ("below", "above"), strict=True):
+            for walk in self.limited:
+                if walk.begin(start) is None:
+                    self._say(name, walk, "stands beyond it: its range is that without it")
+                    continue
+                at = walk.reached(start, end.value)
+                if at is not None:
+                    end = End("limit", at)
+                    self._say(name, walk, f"ends the range {word}")
+            found.append(end)
+        return (found[0], found[1]) if any(end.kind == "limit" for end in found) else None
+
+    def _say(self, name: str, walk: LimitedWalk, words: str) -> None:
+        text = f"a limit of {walk.limit.name}: mode {name} {words}"
+        if words.startswith("ends"):
+            text = f"a limit of {walk.limit.name} {words} of mode {name}"
+        note = Diagnostic("range-at-limit", "note", text, walk.limit.place)
+        if note not in self.limit_notes:
+            self.limit_notes.append(note)
 
     def _limit(self, end: End, shift: float) -> Limit:
         return Limit(end.kind, self._limit_value(end.value - shift))

@@ -37,7 +37,7 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation
+    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation, Track
     from mechkin_cli.show import Bools, Floats
 
 
@@ -215,6 +215,12 @@ class Layout:
         return sum(c.part.type.states for c in self.carriers)
 
     @cached_property
+    def carried(self) -> tuple[tuple[int, Track], ...]:
+        """The kernel joints that go along a curve or over a surface, with that."""
+        tracks = ((k, carrier.part.track) for k, carrier in enumerate(self.carriers))
+        return tuple((k, track) for k, track in tracks if track is not None)
+
+    @cached_property
     def functions(self) -> tuple[CoordinateLaw, ...]:
         """The functions of the plan, in order."""
         relations = self.mechanism.couplings.values()
@@ -226,10 +232,11 @@ class Layout:
         for name, relation in self.mechanism.couplings.items():
             for extent in relation.extents:
                 value = np.full(states.shape[1], float(extent.drawn))
-                for joint, coordinate, factor, _ in extent.terms:
-                    freedom = joint.freedom_number(coordinate)
-                    state = states[self.state(self.edge_number[joint.name], freedom)]
-                    value += float(factor) * joint.unit_of(coordinate, self.length) * state
+                for term in extent.terms:
+                    freedom = term.joint.freedom_number(term.coordinate)
+                    state = states[self.state(self.edge_number[term.joint.name], freedom)]
+                    unit = term.joint.unit_of(term.coordinate, self.length)
+                    value += float(term.factor) * unit * state
                 yield name, extent, value
 
     def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
@@ -312,6 +319,9 @@ def coordinate_axis(joint: Joint, coordinate: str) -> tuple[bool, Attached, Atta
     z1 . z2.
     """
     known = joint.type.coordinate[coordinate]
+    if joint.type.chain[known.freedom].motion == "carriage":
+        # the kernel knows the slope of the course
+        return False, Attached(joint.second, ZERO), Attached(joint.second, ZERO)
     if known.axis is not None:
         return not known.is_angle, joint.drawn(known.axis), Attached(joint.second, ZERO)
     axes = Attached(joint.first, joint.on_first.z), Attached(joint.second, joint.on_second.z)
@@ -330,6 +340,8 @@ def home_state(layout: Layout) -> Floats:
     for carrier in layout.carriers:
         if carrier.part.type.is_ball:
             state[carrier.state] = 1.0
+        elif carrier.part.track is not None:
+            state[carrier.state : carrier.state + len(carrier.part.at)] = carrier.part.at
         elif carrier.part.drawn != 0.0:
             state[carrier.state] = carrier.part.drawn / layout.length
     return state

@@ -173,6 +173,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         ),
         *_places(layout),
         *_axes(layout),
+        *_courses(layout),
         *_free_motions(layout),
         *_blocks(layout),
         *_inputs(layout),
@@ -192,7 +193,12 @@ def _tree_joints(layout: Layout) -> Iterator[PlanRecord]:
             "add_tree_joint",
             carrier.part.type.code,
             carrier.parent,
-            layout.graph.edges[carrier.edge].joint.pitch / layout.length,
+            (
+                layout.graph.edges[carrier.edge].joint.pitch
+                if carrier.part.track is None
+                else carrier.part.sense
+            )
+            / layout.length,
             layout.frame_on(carrier.parent, carrier.part.before),
         )
 
@@ -252,11 +258,13 @@ def _force_of(
 
 
 def _functions(layout: Layout) -> Iterator[PlanRecord]:
-    if not layout.functions:
+    if not layout.functions and not layout.carried:
         return
-    from mechkin_cli.plan.programs import function_record
+    from mechkin_cli.plan.programs import function_record, track_record
 
     yield from map(function_record, layout.functions)
+    for k, track in layout.carried:
+        yield track_record(track, layout.carriers[k].part.before.o)
 
 
 def _places(layout: Layout) -> Iterator[PlanRecord]:
@@ -287,6 +295,15 @@ def _axes(layout: Layout) -> Iterator[PlanRecord]:
             layout.link_number[two.link],
             layout.vector(two),
         )
+
+
+def _courses(layout: Layout) -> Iterator[PlanRecord]:
+    """The functions of carriages stand behind those of coordinates."""
+    for number, (k, track) in enumerate(layout.carried, start=len(layout.functions)):
+        joint = layout.graph.edges[layout.carriers[k].edge].joint
+        pairs = [(joint.name, name) for name in track.names]
+        axes = [layout.axis_number[pair] for pair in pairs if pair in layout.axis_number]
+        yield record("set_course", k, number, axes)
 
 
 def _free_motions(layout: Layout) -> Iterator[PlanRecord]:

@@ -21,7 +21,7 @@ from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of, regis
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Curve, Laws, LoadLaw, Wanted
+    from mechkin_cli.mechanism import CoordinateLaw, Curve, Laws, LoadLaw, Track, Vector, Wanted
     from mechkin_cli.plan.layout import Layout
 
 
@@ -151,12 +151,60 @@ def function_record(law: CoordinateLaw) -> PlanRecord:
     else:
         assert law.value is not None
         orders = orders_of(law.value(JetNumber([number(0), 1.0, 0.0, 0.0])))
-    outputs = [register(recorder, order) for order in orders]
-    parts = recorder.listed_in_turn([outputs[: order + 1] for order in ORDERS])
-    ends = [order + 1 for order in ORDERS]
-    constants, operations, operands, instructions, registers = parts
+    return _of_orders(1, curves, recorder, [[order] for order in orders])
+
+
+def track_record(track: Track, origin: Vector) -> PlanRecord:
+    """The record of a curve or surface: places from an origin of the drawing (m), with their
+    derivatives."""
+    count = len(track.names)
+    if track.knots:
+        return _knots_record(track, origin)
+    recorder = RowRecorder(count)
+    numbers = [recorder.number(register(recorder, number)) for number in track.numbers]
+    orders = track.orders([recorder.number(k) for k in range(count)], numbers)
+    values = [[a - b for a, b in zip(orders[0], origin, strict=True)], *orders[1:]]
+    return _of_orders(count, [], recorder, values)
+
+
+def _knots_record(track: Track, origin: Vector) -> PlanRecord:
+    recorder = RowRecorder(1 + len(ORDERS) * len(track.knots))
+    (low, high), period = track.ends[0], 0.0
+    curves = []
+    for curve in track.knots:
+        *_, knots = _curve(curve, 0)
+        if track.closed[0]:
+            period = high - low
+        curves.append((0, period, knots))
+    values = [
+        [recorder.number(1 + len(ORDERS) * k + order) for k in range(len(track.knots))]
+        for order in ORDERS
+    ]
+    moved: list[Any] = [a - b for a, b in zip(values[0], origin, strict=True)]
+    return _of_orders(1, curves, recorder, [moved, *values[1:]])
+
+
+def _of_orders(
+    arguments: int, curves: list[Any], recorder: RowRecorder, orders: Sequence[Sequence[Any]]
+) -> PlanRecord:
+    """The record of a function by the outputs of each order."""
+    outputs: list[int] = []
+    parts: list[list[int]] = []
+    for order in orders:
+        outputs = [*outputs, *(register(recorder, value) for value in order)]
+        parts.append(outputs)
+    constants, operations, operands, instructions, registers = recorder.listed_in_turn(parts)
+    ends = [len(part) for part in parts]
     return record(
-        "add_function", 1, curves, constants, operations, operands, instructions, registers, ends
+        "add_function",
+        arguments,
+        curves,
+        constants,
+        operations,
+        operands,
+        instructions,
+        registers,
+        ends,
     )
 
 

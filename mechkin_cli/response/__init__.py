@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": "Beginning integrate with_loads",
+        "integration": "Beginning Impact integrate with_loads",
         "result": "ResponseResult",
         "runs": "Prepared integrated prepare read respond watched_stop",
     },

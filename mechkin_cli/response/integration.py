@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
-    from mechkin_cli.mechanism import LoadLaw, Problem, ResponseProblem, Stop
+    from mechkin_cli.mechanism import Limit, LoadLaw, Problem, ResponseProblem, Stop
     from mechkin_cli.show import Floats
 
 
@@ -54,6 +54,18 @@ class Beginning(NamedTuple):
     state: Floats
     first: Floats
     tangents: Floats
+
+
+class Impact(NamedTuple):
+    """What limits gave at a moment (s): of each that pushed, the limit, the outward rate of its
+    coordinate before (rad/s, m/s), and the impulse (N*m*s, N*s); `rests`: the last coordinate does
+    not come off again."""
+
+    time: float
+    limits: tuple[Limit, ...]
+    rates: tuple[float, ...]
+    impulses: tuple[float, ...]
+    rests: bool = False
 
 
 class MotionEnd(IntEnum):

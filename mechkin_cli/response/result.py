@@ -29,7 +29,7 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Amount, ResponseProblem, Wanted
-    from mechkin_cli.response.integration import MotionReport
+    from mechkin_cli.response.integration import Impact, MotionReport
     from mechkin_cli.session import Chart, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
 
@@ -66,6 +66,7 @@ class ResponseResult(Result):
         events: the stop that each row is at, empty for a moment of the file.
         response: the file's.
         report: how the motion ended.
+        impacts: at limits of coordinates, in order.
     """
 
     def __init__(
@@ -80,10 +81,12 @@ class ResponseResult(Result):
         events: Sequence[str],
         response: ResponseProblem,
         report: MotionReport | None,
+        impacts: Sequence[Impact] = (),
     ) -> None:
         super().__init__(session, start, rows)
         self.chosen, self.chart, self.exchanged = chosen, chart, work
         self.events, self.response, self.report = tuple(events), response, report
+        self.impacts = tuple(impacts)
 
     @cached_property
     def solved(self) -> Bools:

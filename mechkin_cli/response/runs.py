@@ -29,8 +29,10 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import dataclass, replace
+from mechkin_cli.response.impacts import ImpactAt, impact_notes, joined, touched_limit
 from mechkin_cli.response.integration import (
     Beginning,
+    Impact,
     MotionEnd,
     MotionRows,
     WatchedStop,
@@ -356,7 +358,7 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            results[number] = rows_of(variants[number], rows)
+            results[number] = _rebounding(variants[number], rows, packing)
     return [results[number] for number in range(len(variants))]
 
 
@@ -396,6 +398,41 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         straight=first.chosen.problem.assembly.straight,
         packing=packing,
     )
+
+
+def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
+    """The rows with those behind impacts at limits that have a restitution."""
+    result = rows_of(one, moved)
+    impacts: list[Impact] = []
+    while (stop := touched_limit(one.response, moved)) is not None:
+        touch = ImpactAt(result, stop)
+        rebound = touch.rebound()
+        times = one.response.moments.values[moved.report.rows :]
+        if rebound is None or not times.size or len(impacts) == tolerances.MOST_IMPACTS:
+            break
+        impacts.append(rebound.impact)
+        (later,) = integrate(
+            [(one.free.plan, rebound.begun)],
+            rebound.impact.time,
+            np.array([rebound.impact.time, *times]),
+            stops=[watched_stop(each) for each in one.response.stops],
+            driven=one.driven,
+            tolerance=one.response.tolerance,
+            fixed_step=one.response.fixed_step,
+            straight=one.chosen.problem.assembly.straight,
+            packing=packing,
+        )
+        if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
+            impacts[-1] = impacts[-1]._replace(rests=True)
+            break
+        moved = joined(moved, later, rebound.work)
+        result = rows_of(one, moved)
+    if impacts:
+        result.impacts = tuple(impacts)
+        if impacts[-1].rests and stop is not None and stop.limit is not None:
+            result.events = (*result.events[:-1], f"{stop.limit.name} rests at its limit")
+        result.row_states.diagnostics += impact_notes(result, impacts)
+    return result
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:

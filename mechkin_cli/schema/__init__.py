@@ -13,6 +13,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.schema.base import *
     from mechkin_cli.schema.couplings import *
+    from mechkin_cli.schema.curves import *
     from mechkin_cli.schema.cylinders import *
     from mechkin_cli.schema.file import *
     from mechkin_cli.schema.json_schema import *
@@ -35,6 +36,7 @@ __getattr__, __dir__ = lazy_names(
         "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FollowerSection "
         "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
         "TableCoupling",
+        "curves": "Curve Surface",
         "cylinders": "Cylinder",
         "file": "AnyFile MechanismFile",
         "json_schema": "SCHEMAS json_schema_text",

@@ -112,6 +112,20 @@ def refuse(code: str, message: str, hint: str | None = None, *at: str | int) -> 
     return PydanticCustomError(code, "{text}", context)
 
 
+def one_of(section: Section, *keys: str) -> None:
+    """Refuses a section that has none of some keys, or more than one.
+
+    Raises:
+        PydanticCustomError: not exactly one of them is there.
+    """
+    given = [key for key in keys if getattr(section, key) is not None]
+    if not given:
+        raise refuse("missing-key", f"one of {', '.join(keys)} is needed", "add one of them")
+    if len(given) > 1:
+        text = f"{' and '.join(given)} are two choices"
+        raise refuse("two-choices", text, "keep one of them", given[1])
+
+
 def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
     """The names, if no two are the same."""
     for index, name in enumerate(names):

@@ -168,7 +168,7 @@ FUNCTION_KEYS: Final = {
 TABLE_KEYS: Final = {
     **dict.fromkeys(("file", "path", "csv", "values"), "the key is table: lift.csv"),
     **dict.fromkeys(
-        ("joints", "of", "from", "to", "input", "output", "cam", "follower"),
+        ("joints", "of", "from", "to", "input", "output", "cam"),
         "write over: A.theta, the leading coordinate, and gives: S.s, the following one",
     ),
     **dict.fromkeys(("law", "value", "expression"), "an expression goes with type: function"),

@@ -95,8 +95,8 @@ class FollowerSection(Section):
     """How far right of the cam's axis the line of a translating follower passes, as it rises
     upward; of an oscillating one with a flat face, how far that lies below its pivot."""
     arm: Length | None = None
-    """Of an oscillating follower, from its pivot to the roller or the edge; left out, none, of
-    another follower."""
+    """Of an oscillating follower, from its pivot to the roller's centre or the edge; left out,
+    none, of another follower."""
     distance: Length | None = None
     """Of an oscillating follower, from the cam's axis to its pivot; left out, none, of a
     translating one."""

@@ -310,9 +310,9 @@ ROLLING = (
     "drive: tie}, ...}} of a wheel of radius 20 mm"
 )
 OIL_FILM = (
-    "friction that depends on the speed is a load: {type: damper, joint: A, coordinate: theta, "
-    "damping: 0.1 N*m*s/rad}, or {type: torque, joint: A, value: an expression of A.theta_dot}; a "
-    "coefficient of friction may fall with it: {static: .15, sliding: .1, speed: 5 mm/s}"
+    "an oil film is a law of friction: {type: friction, joint: A, law: viscous, viscosity: 0.03 "
+    "Pa*s, clearance: 0.05 mm, radius: 20 mm, length: 40 mm}, or law: stribeck with a coefficient, "
+    "too; a coefficient may fall with the speed: {static: .15, sliding: .1, speed: 5 mm/s}"
 )
 BRAKE = (
     'a brake is a load that opposes the motion: {type: torque, joint: A, value: "-3 '
@@ -475,7 +475,8 @@ FRICTION_KEYS: Final = {
         ("static", "sliding", "speed", "mu_s", "mu_k", "kinetic", "stribeck"),
         "they belong to the coefficient: {static: .15, sliding: .1, speed: 5 mm/s}",
     ),
-    **dict.fromkeys(("viscous", "damping"), DAMPER),
+    **dict.fromkeys(("viscous", "petroff", "film"), OIL_FILM),
+    "damping": DAMPER,
     "diameter": "radius is half of it",
     "force": "a constant force of friction is a load: {type: force, joint: A, value: "
     "-3 N*sign(A.s_dot)}",

@@ -3,7 +3,7 @@
 from typing import Annotated, Any, ClassVar
 
 from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, refuse
-from mechkin_cli.schema.scalars import AngleOrLength
+from mechkin_cli.schema.scalars import AngleOrLength, Dimensionless
 
 
 class LimitSection(Section):
@@ -19,6 +19,9 @@ class LimitSection(Section):
     """The least value; left out, none."""
     max: AngleOrLength | None = None
     """The largest value; left out, none."""
+    restitution: Dimensionless | None = None
+    """Part of its rate, 0 to 1, with which the coordinate rebounds from the limit in a response;
+    left out, the response ends there."""
 
     def check(self) -> None:
         """There is a limit."""

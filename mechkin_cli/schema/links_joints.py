@@ -7,7 +7,16 @@ place is [x, y, z], or the name of a point.
 
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeVar
 
-from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, by_word, refuse
+from mechkin_cli.schema.base import (
+    FormChoice,
+    Limits,
+    SchemaName,
+    Section,
+    by_word,
+    one_of,
+    refuse,
+)
+from mechkin_cli.schema.curves import Curve, Surface
 from mechkin_cli.schema.scalars import (
     Angle,
     DirectionVector,
@@ -198,19 +207,37 @@ class SphericalJoint(PointJoint):
 
 
 class SpherePlaneJoint(PointJoint):
-    """Sp: a sphere of the first link on a plane of the second."""
+    """Sp: a sphere of the first link on a plane or another surface of the second."""
 
     type: Literal["Sp"]
-    normal: Direction
-    """Normal of the plane."""
+    normal: Direction | None = None
+    """Normal of the plane; left out, `surface`."""
+    surface: Surface | None = None
+    """The surface that the sphere's centre stays on, in the home drawing; left out, a plane."""
+
+    def check(self) -> None:
+        """A plane or a surface."""
+        super().check()
+        one_of(self, "normal", "surface")
 
 
 class SphereGrooveJoint(PointJoint):
-    """Sg: a sphere of the first link in a groove of the second; s > 0 along `groove`."""
+    """Sg: a sphere of the first link in a groove of the second.
+
+    Of a straight groove s > 0 along `groove`; along a curve u is the curve's parameter.
+    """
 
     type: Literal["Sg"]
-    groove: Direction
-    """Direction of the groove."""
+    groove: Direction | None = None
+    """Direction of the groove; left out, `curve`."""
+    curve: Curve | None = None
+    """The curve that the sphere's centre stays on, in the home drawing; left out, a straight
+    line."""
+
+    def check(self) -> None:
+        """A straight groove or a curve."""
+        super().check()
+        one_of(self, "groove", "curve")
 
 
 class UniversalJoint(PointJoint):

@@ -25,6 +25,7 @@ from mechkin_cli.schema.scalars import (
     Text,
     Torque,
     Velocity,
+    Viscosity,
 )
 
 
@@ -253,14 +254,40 @@ Coefficient = Annotated[
 ]
 
 
+_OF_FILM = ("viscosity", "clearance", "radius", "length")
+_OF_FILM_ALONE = _OF_FILM[:2]
+
+
 class FrictionLoad(InRuns):
     """Friction in space or in a plane."""
 
     type: Literal["friction"]
     joint: Name
     """The joint that rubs."""
-    coefficient: Coefficient
-    """Friction force per normal load; or static, sliding and the speed between them."""
+    law: Literal["dry", "viscous", "stribeck"] = "dry"
+    """`dry`, by a coefficient; `viscous`, by a film of oil that carries the load; `stribeck`, both
+    together; left out, dry."""
+    coefficient: Coefficient | None = None
+    """Friction force per normal load; or static, sliding and the speed between them. Dry friction
+    needs it; left out, `law: viscous`."""
+    viscosity: Viscosity | None = None
+    """Dynamic viscosity of the oil film, which it needs; left out, dry."""
+    clearance: Length | None = None
+    """Thickness of the oil film, the difference of the radii, which it needs; left out, dry."""
+
+    def check(self) -> None:
+        """A law has what it goes by."""
+        dry, film = ("coefficient",), _OF_FILM
+        needs = {"dry": dry, "viscous": film, "stribeck": (*dry, *film)}[self.law]
+        for key in needs:
+            if getattr(self, key) is None:
+                text = f"friction by the law {self.law} needs a {key}"
+                raise refuse("missing-key", text, f"it takes {', '.join(needs)}")
+        for key in (*dry, *_OF_FILM_ALONE):
+            if key not in needs and getattr(self, key) is not None:
+                text = f"friction by the law {self.law} has no {key}"
+                hint = "write law: viscous for an oil film, or law: stribeck for both"
+                raise refuse("two-choices", text, hint, key)
 
 
 class FrictionAtJoint(FrictionLoad):

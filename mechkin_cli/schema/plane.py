@@ -21,9 +21,11 @@ from mechkin_cli.schema.base import (
     Section,
     by_word,
     fields_of,
+    one_of,
     refuse,
     section_of,
 )
+from mechkin_cli.schema.curves import Curve, PlaneCurve
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.links_joints import (
     AnyJoint,
@@ -159,14 +161,22 @@ class PinInSlotJoint(PlanePointJoint):
     """Ps: a pin of the first link in a slot of the second.
 
     The second link turns by theta against the first, counter-clockwise; s is where the pin is along
-    the slot.
+    a straight slot, u the parameter of a curved one.
     """
 
     advice: ClassVar[dict[str, str]] = {"axis": _NORMAL, "groove": "the key is slot: [x, y]"}
 
     type: Literal["Ps"]
-    slot: PlaneDirection
-    """Direction of the slot, fixed in the second link, [x, y]; s grows along it."""
+    slot: PlaneDirection | None = None
+    """Direction of the slot, fixed in the second link, [x, y]; s grows along it; left out,
+    `curve`."""
+    curve: PlaneCurve | None = None
+    """The curve that the pin's centre stays on, in the home drawing; left out, a straight line."""
+
+    def check(self) -> None:
+        """A straight slot or a curve."""
+        super().check()
+        one_of(self, "slot", "curve")
 
 
 class PlaneWeldJoint(JointBase):
@@ -345,7 +355,8 @@ class _PinInSlot(PointJoint):
 
     type: str
     normal: Texts
-    slot: Texts
+    slot: Texts | None = None
+    curve: Curve | None = None
 
 
 def in_space(file: AnyFile) -> MechanismFile:
@@ -403,10 +414,29 @@ def _joint(joint: JointBase) -> AnyJoint:
         of_guide = {"point": _each(joint.point), "axis": _each(joint.axis), "zero": square}
         return section_of(PrismaticJoint, type=joint.type, links=links, **of_guide)
     if isinstance(joint, PinInSlotJoint):
-        of_slot = {"point": _each(joint.point), "normal": _ABOUT_Z, "slot": _flat(joint.slot)}
+        of_slot = {
+            "point": _each(joint.point),
+            "normal": _ABOUT_Z,
+            "slot": None if joint.slot is None else _flat(joint.slot),
+            "curve": None if joint.curve is None else _curve(joint.curve),
+        }
         return section_of(_PinInSlot, type=joint.type, links=links, **of_slot)  # type: ignore[return-value]
     assert isinstance(joint, PlaneWeldJoint)
     return section_of(WeldJoint, type="W", links=links)
+
+
+def _curve(curve: PlaneCurve) -> Curve:
+    places: dict[str, Any] = {
+        key: None if value is None else tuple(_flat(place) for place in value)
+        for key in ("line", "arc", "points")
+        for value in [getattr(curve, key)]
+    }
+    for key in ("center", "at"):
+        value = getattr(curve, key)
+        places[key] = None if value is None else _flat(value)
+        axis = None if curve.center is None else _ABOUT_Z
+    ends: dict[str, Any] = {"from": curve.first, "to": curve.last}
+    return section_of(Curve, **places, **ends, axis=axis, radius=curve.radius, closed=curve.closed)
 
 
 def _load(load: object) -> AnyLoad:

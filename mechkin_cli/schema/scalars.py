@@ -158,6 +158,7 @@ CoordinateJerk = Annotated[
     Expression, DimensionRule("third rate of the coordinate", ("0.3 rad/s^3", 0), "CoordinateJerk")
 ]
 Velocity = Annotated[Expression, DimensionRule("velocity", ("5 mm/s", 0.1), "Velocity")]
+Viscosity = Annotated[Expression, DimensionRule("dynamic viscosity", ("0.02 Pa*s",), "Viscosity")]
 Stiffness = Annotated[
     Expression,
     DimensionRule(

@@ -59,14 +59,15 @@ class Chain(NamedTuple):
 
 def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     """The chain of a block with one cut joint, upstream states as in `base` (states,); None where
-    an unknown is a thread or a ball or its turns are counted, or no loop of links is closed."""
+    an unknown is a thread, a ball or a carriage or its turns are counted, or no loop of links is
+    closed."""
     graph = layout.graph
     block = graph.blocks[number]
     if len(block.closings) != 1:
         return None
     constraint = graph.closings[block.closings[0]]
     kinds = [layout.carriers[layout.carrier_of(e, f)[0]].part.type for e, f in block.unknowns]
-    if any(kind.is_ball or kind.counts_turns for kind in kinds):
+    if any(kind.is_ball or kind.counts_turns or kind.is_carriage for kind in kinds):
         return None
     unknown = {layout.state(e, f) for e, f in block.unknowns}
     if constraint.slides or constraint.terms:
@@ -146,6 +147,9 @@ def _displacement(layout: Layout, carrier: Carrier, states: list[float]) -> Fram
             (2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)),
             (0.0, 0.0, 0.0),
         )
+    if carrier.part.track is not None:
+        at = tuple(states[state : state + len(carrier.part.at)])
+        return GROUND._replace(o=scale(1.0 / layout.length, carrier.part._replace(at=at).way))
     turn = along = 0.0
     for local, freedom in enumerate(kind.freedoms):
         if freedom.is_slide:

@@ -80,6 +80,20 @@ def upstream_states(layout: Layout, number: int) -> list[int]:
     ]
 
 
+def on_tracks(layout: Layout, number: int, states: Floats) -> NDArray[np.bool_]:
+    """Which columns of states lie between the ends of the open curves and surfaces that a block's
+    unknowns go along."""
+    inside = np.ones(states.shape[1], dtype=bool)
+    for k in dict.fromkeys(
+        layout.carrier_of(*each)[0] for each in layout.graph.blocks[number].unknowns
+    ):
+        carrier = layout.carriers[k]
+        if carrier.part.track is not None:
+            own = states[carrier.state : carrier.state + len(carrier.part.at)]
+            inside &= carrier.part.track.holds(own)
+    return inside
+
+
 def randomise(
     layout: Layout,
     number: int,
@@ -102,6 +116,9 @@ def randomise(
                 states[state : state + 4] = generator.quaternions(rows)
         elif within is not None and isfinite(within[1][state]):
             generator.skip(rows)
+        elif carrier.part.track is not None:
+            low, high = carrier.part.track.ends[local]
+            states[state] = 0.5 * (low + high) + generator.between(0.5 * (high - low), rows)
         elif carrier.part.type.slides[local]:
             states[state] = generator.between(reach, rows)
         else:
@@ -306,7 +323,8 @@ def pose_keys(
     by_turns: bool = False,
 ) -> Floats:
     """Numbers (keys, columns) that differ between assemblies: cosines and sines of turns, slides,
-    products of quaternions, of some of the kernel's joints (None: all).
+    products of quaternions, places on curves and surfaces, of some of the kernel's joints (None:
+    all).
 
     `left_out` are freedoms (tree edge, number) that do not matter; `by_turns`, places a whole turn
     apart differ where couplings count it, which have yet to say where other joints stand then.
@@ -334,6 +352,10 @@ def pose_keys(
         if carrier.part.type.is_ball:
             q = states[state : state + 4]
             keys.extend(q[i] * q[j] for i in range(4) for j in range(i, 4))
+            continue
+        if carrier.part.track is not None:
+            places = carrier.part.track.places_at(states[state : state + len(carrier.part.at)])
+            keys.extend(place / layout.length for place in places)
             continue
         for number in range(state, state + len(carrier.part.type.freedoms)):
             keys.extend(turns.get(number) or (states[number],))

@@ -26,6 +26,7 @@ from mechkin_cli.search.clusters import (
     counted_turns,
     first_of_each,
     most_turn,
+    on_tracks,
     pose_keys,
     randomise,
     thread_states,
@@ -184,7 +185,7 @@ def search_round(
     residual, closed = ends(request.plan, number, values, states)
     threads = thread_states(layout, number)
     turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
-    good = closed & turned.all(axis=0)
+    good = closed & turned.all(axis=0) & on_tracks(layout, number, states)
     share = states.shape[1] // len(searches)
     for i, search in enumerate(searches):
         part = slice(i * share, (i + 1) * share)
@@ -490,13 +491,18 @@ def _closed(
 
 
 def _wrap_angles(layout: Layout, states: Floats) -> None:
-    """Brings the angles of unknown turns into (-pi, pi], in place; threads keep their turns."""
+    """Brings the angles of unknown turns into (-pi, pi], and parameters of closed curves between
+    their ends, in place; threads keep their turns."""
     driven = {layout.state(edge, freedom) for edge, freedom in layout.graph.inputs}
     for carrier in layout.carriers:
         for number, freedom in enumerate(carrier.part.type.freedoms, start=carrier.state):
             if freedom.is_cyclic and number not in driven:
                 row = states[number]
                 row -= np.ceil((row - pi) / (2.0 * pi)) * (2.0 * pi)
+        if carrier.part.track is not None:
+            own = slice(carrier.state, carrier.state + len(carrier.part.at))
+            if driven.isdisjoint(range(own.start, own.stop)):
+                states[own] = carrier.part.track.wrapped(states[own])
 
 
 def all_assemblies(

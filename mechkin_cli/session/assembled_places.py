@@ -150,10 +150,7 @@ def is_drawn_assembled(mechanism: Mechanism) -> bool:
         if not part.type.is_ball
         for one, other in zip(part.before[:3], part.after[:3], strict=True)
     ]
-    apart = [
-        norm(subtract(add(part.before.o, scale(part.drawn, part.before.z)), part.after.o))
-        for part in parts
-    ]
+    apart = [norm(subtract(add(part.before.o, part.way), part.after.o)) for part in parts]
     for constraint in mechanism.constraints:
         if constraint.length is not None:
             foot, head = (at.vector for at in constraint.points)

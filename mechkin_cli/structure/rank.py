@@ -154,6 +154,11 @@ class Rates:
         parts = iter(joint.parts)
         for step in joint.type.steps:
             part = next(parts)
+            if part.track is not None:
+                ways = [scale(part.sense, way) for way in part.track.slopes(part.at)]
+                own = [Attached(joint.second, scale(1.0 / self.size, way)) for way in ways]
+                screws += [[*ZERO, *self._direction(way)] for way in own]
+                continue
             if ELEMENTARY[step.letter].is_ball and not part.type.is_ball:
                 turns = self._three_turns(joint, (part, next(parts), next(parts)))
                 screws += [[*turn, *cross(at, turn)] for turn in turns]

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number
-from mechkin_cli.mechanism import dimension_of, is_angle
+from mechkin_cli.mechanism import dimension_of
 from mechkin_cli.verdict import Status, has_forces
 
 if TYPE_CHECKING:
@@ -26,21 +25,12 @@ def limited(problem: Problem) -> dict[Wanted, Limit]:
     return {known[limit.name]: limit for limit in problem.limits if limit.name in known}
 
 
-def beyond(limit: Limit, values: Floats, length: float) -> Floats:
-    """By how much values of a coordinate (rad, m) lie beyond its limits: negative below the least,
-    positive above the largest one, 0 within or at them, as far as rounding of a mechanism of some
-    `length` (m) leaves it open; nan stays."""
-    slack = tolerances.AT_LIMIT * (1.0 if is_angle(limit.coordinate) else length)
-    below, above = values - limit.low, values - limit.high
-    return np.where(above > slack, above, np.where(below < -slack, below, 0.0 * values))
-
-
 def judge_limits(result: RunRows) -> None:
     """Gives the rows beyond limits their status, and names the limits."""
     problem, rows = result.problem, result.row_states
     for wanted, limit in limited(problem).items():
         values = np.broadcast_to(np.asarray(result.quantity(wanted.name).value), rows.reached.shape)
-        off = beyond(limit, values, result.session.layout.length)
+        off = limit.beyond(values, result.session.layout.length)
         out = rows.reached & (np.abs(off) > 0.0)
         if not out.any():
             continue

@@ -160,6 +160,9 @@ MOST_RESPONSE_STEPS: Final = 1_000_000
 """Attempted steps of one response: minutes of work for one mechanism, and far more than any of the
 kept ones needs (8 to 600)."""
 
+MOST_IMPACTS: Final = 10_000
+"""Impacts of one response: a ball that keeps 0.99 of its speed rests after 1100."""
+
 DENSE_ROWS: Final = 10
 """Rows within one step of a response from which on they are interpolated instead of stepped to:
 interpolation costs 18 to 50 times in energy, so it is for rows that are much denser than steps."""

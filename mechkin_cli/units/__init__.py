@@ -17,7 +17,8 @@ __getattr__, __dir__ = lazy_names(
     {
         "dimension": "ACCELERATION ANGLE ANGULAR_ACCELERATION ANGULAR_JERK ANGULAR_RATE DAMPING "
         "DIMENSIONLESS Dimension ENERGY FORCE INERTIA JERK LENGTH MASS MOMENT POWER STIFFNESS TIME "
-        "TORSIONAL_DAMPING TORSIONAL_STIFFNESS VELOCITY",
+        "TORSIONAL_DAMPING TORSIONAL_STIFFNESS VELOCITY "
+        "VISCOSITY",
         "units": "CompoundUnit Conversion FIELDS UNITS UnitError UnitSystem bounded_exponent "
         "compound conversion named_unit parse_unit",
     },

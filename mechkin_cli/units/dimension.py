@@ -106,6 +106,7 @@ POWER = Dimension(mass=1, length=2, time=-3)
 INERTIA = Dimension(mass=1, length=2)
 STIFFNESS = FORCE / LENGTH
 DAMPING = FORCE / VELOCITY
+VISCOSITY = DAMPING / LENGTH
 TORSIONAL_STIFFNESS = MOMENT / ANGLE
 TORSIONAL_DAMPING = MOMENT / ANGULAR_RATE
 
@@ -130,6 +131,7 @@ _PHRASES = {
     INERTIA: "a moment of inertia",
     STIFFNESS: "a stiffness",
     DAMPING: "a damping",
+    VISCOSITY: "a dynamic viscosity",
     TORSIONAL_STIFFNESS: "a torsional stiffness",
     TORSIONAL_DAMPING: "a torsional damping",
 }

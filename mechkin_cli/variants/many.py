@@ -31,7 +31,7 @@ from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
 from mechkin_cli.response import integrated, prepare, read
 from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
-from mechkin_cli.sweep import beyond, has_turns, is_slack, limited, slack_quantities
+from mechkin_cli.sweep import has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
 from mechkin_cli.variants.design import VariedDesign, base_of
 from mechkin_cli.variants.result import (
@@ -224,7 +224,7 @@ class _SweepRun:
         length = resolve.reading.variation.layout.length
         for wanted, limit in limited(self.problem).items():
             values = np.asarray(resolve(wanted.name).value).reshape(codes.shape)
-            codes[(np.abs(beyond(limit, values, length)) > 0.0) & has_forces(codes)] = int(
+            codes[(np.abs(limit.beyond(values, length)) > 0.0) & has_forces(codes)] = int(
                 Status.beyond_limit
             )
 

@@ -106,7 +106,7 @@ COUPLINGS = {
     "{type: belt, joints: [A, B], diameters: [3, 4]}": "radii: [30 mm, 50 mm]",
     "{type: belt, joints: [A, B], radii: [3, 4], tension: 3}": "pretension: 200 N",
     "{type: chain, joints: [A, B], radii: [3, 4]}": "pitch: 12.7 mm",
-    "{type: function, of: A.theta, gives: S.s, lift: 3}": "the key is value",
+    "{type: function, of: A.theta, gives: S.s, formula: 3}": "the key is value",
     "{type: table, of: A.theta, gives: S.s, file: a.csv}": "over: A.theta",
     "{type: linear, of: A.theta, gives: B.theta}": "terms: {A.theta: 1, B.theta: 2}",
 }

@@ -114,7 +114,7 @@ FEATURES = {
     "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
     "the wheel turns by a law of the crank": ("geneva", "maltese", "geneva_drive"),
     "prescribe the place of the pin": ("curved_groove", "curved_slot", "guide_curve"),
-    "friction that depends on the speed is a load": ("hydrodynamic", "lubrication", "oil_film"),
+    "an oil film is a law of friction": ("hydrodynamic", "lubrication", "oil_film"),
     "links are rigid": ("flexible", "compliant", "beam", "flexure"),
     "an effort may be an expression": ("control", "controller", "controllers", "servo", "pid"),
     "a P between them, whose s is driven": ("cylinder", "hydraulic", "piston", "jack"),

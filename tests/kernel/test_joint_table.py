@@ -145,14 +145,17 @@ def test_tree_displacements(letter: str) -> None:
     assert part.slides == slides
 
 
-def test_there_are_no_other_tree_displacements_but_the_hanging_of_legs() -> None:
-    assert len(_kernel.tree_table()) == len(TREE_LETTERS) + 1 == len(ELEMENTARY) + 1
+def test_there_are_no_other_tree_displacements_but_of_legs_and_carriages() -> None:
+    """Those along curves and over surfaces are tested by the pairs that have them: tests/curves."""
+    assert len(_kernel.tree_table()) == len(TREE_LETTERS) + 3 == len(ELEMENTARY) + 3
     # a turn that is counted is a thread to the kernel
     own = [
         one for one in elementary.ELEMENTARY.values() if not any(f.counted for f in one.freedoms)
     ]
     assert len(own) == len(_kernel.tree_table())
-    assert _kernel.tree_table()[-1]["freedoms"] == _kernel.tree_table()[-1]["states"] == 0
+    leg, curve, surface = _kernel.tree_table()[-3:]
+    assert leg["freedoms"] == leg["states"] == 0
+    assert [(one["freedoms"], one["states"]) for one in (curve, surface)] == [(1, 1), (2, 2)]
 
 
 PAIR = re.compile(

@@ -141,6 +141,66 @@ def test_one_position_says_that_it_is_beyond() -> None:
     assert model.solve({"A.theta": 0.7 * drawn.turn}).status == "beyond-limit"
 
 
+def first_at(drawn: Drawn, ends: tuple[float, float], way: float) -> float | None:
+    """The turn of the crank at which the rocker first comes to an end, by bisection; None where a
+    whole turn or a dead centre is before it."""
+
+    def off(turn: float, before: float) -> float | None:
+        there = drawn.angle(turn)
+        if there is None:
+            return None
+        assert drawn.start is not None
+        value = there - drawn.start
+        return value + 2.0 * pi * round((before - value) / (2.0 * pi))
+
+    before, last = 0.0, 0.0
+    for turn in np.linspace(0.0, way * 2.0 * pi, 4001)[1:]:
+        value = off(float(turn), before)
+        if value is None:
+            return None
+        if not ends[0] <= value <= ends[1]:
+            low, high = last, float(turn)
+            for _ in range(80):
+                middle = 0.5 * (low + high)
+                found = off(middle, before)
+                assert found is not None
+                low, high = (middle, high) if ends[0] <= found <= ends[1] else (low, middle)
+            return high
+        before, last = value, float(turn)
+    return None
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_ranges_end_where_the_first_limit_is(seed: int) -> None:
+    drawn = Drawn(seed)
+    ends = -drawn.rng.uniform(0.05, 0.4), drawn.rng.uniform(0.05, 0.4)
+    model = mk.loads(drawn.text(f"{{D.theta: [{ends[0]!r}, {ends[1]!r}]}}"))
+    picked = model.modes().picked
+    found = model.ranges()
+    (own,) = (one for one in found.ranges if one.mode == picked)
+    sides = [first_at(drawn, ends, way) for way in (-1.0, 1.0)]
+    if sides == [None, None]:
+        assert "limit" not in (own.lower.kind, own.upper.kind)
+        return
+    for end, side in zip((own.lower, own.upper), sides, strict=True):
+        assert (end.kind == "limit") == (side is not None)
+        if side is not None:
+            assert end.value == pytest.approx(side, abs=1e-9)
+    assert sum(d.code == "range-at-limit" for d in found.diagnostics) >= 1
+
+
+def test_the_limit_of_the_input_ends_its_range_and_modes_beyond_one_are_named() -> None:
+    drawn = Drawn(3)
+    model = mk.loads(drawn.text("{A.theta: [-1, 2], D.theta: [-3, 0.3]}"))
+    notes = [d for d in model.modes().diagnostics if d.code == "mode-beyond-limit"]
+    assert [d.message for d in notes] == ["mode A stands beyond a limit of D.theta"]
+    model = mk.loads(drawn.text("{A.theta: [-1, 2]}"))
+    for one in model.ranges().ranges:
+        assert (one.lower.kind, one.upper.kind) == ("limit", "limit")
+        assert one.lower.value == pytest.approx(-1.0, abs=1e-12)
+        assert one.upper.value == pytest.approx(2.0, abs=1e-12)
+
+
 def test_a_fall_ends_at_the_limit() -> None:
     responses = "responses: {fall: {start: {S.s: 0}, time: {from: 0, to: 1, step: 0.1}}}\n"
     result = mk.loads(SLIDE + "limits: {S.s: [-2, 3]}\n" + responses).respond("fall")

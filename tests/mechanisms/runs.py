@@ -62,21 +62,23 @@ def motions(name: str) -> dict[str, list[str]]:
 
 
 def closings(name: str) -> list[tuple[str, ...]]:
-    """Every choice of joints whose cut leaves a tree, driven and helical joints kept.
+    """Every choice of joints whose cut leaves a tree, driven, coupled and helical joints kept.
 
     None where legs close the loops: there is no choice.
     """
-    if any(closing.links for closing in model(name).graph.closings):
+    closed = model(name).graph.closings
+    if any(closing.links for closing in closed):
         return []
     mechanism = model(name).problem.mechanism
-    driven = {joint for joint, _ in model(name).graph.driven}
-    able = [n for n, j in mechanism.joints.items() if n not in driven and j.letter != "H"]
-    loops = len(model(name).graph.closings)
+    kept = {joint for joint, _ in model(name).graph.driven}
+    kept |= {term.joint.name for closing in closed for term in closing.terms}
+    able = [n for n, j in mechanism.joints.items() if n not in kept and j.letter != "H"]
+    loops = sum(not closing.terms for closing in closed)
     ends = {n: (j.first, j.second) for n, j in mechanism.joints.items()}
     return [
         cut
         for cut in combinations(able, loops)
-        if _is_tree([pair for n, pair in ends.items() if n not in cut])
+        if cut and _is_tree([pair for n, pair in ends.items() if n not in cut])
     ]
 
 

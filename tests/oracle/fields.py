@@ -74,6 +74,17 @@ def scalars(data: Document) -> Iterator[tuple[Place, str]]:
     for joint in data["joints"].values():
         if "lead" in joint:
             yield (joint, "lead"), "length"
+    for coupling in data.get("couplings", {}).values():
+        lengths = ("radius", "module", "pitch", "lead")
+        yield from (((coupling, key), "length") for key in lengths if key in coupling)
+        yield from (
+            ((coupling["radii"], i), "length") for i in range(len(coupling.get("radii", ())))
+        )
+        yield from (
+            ((coupling, key), "angle") for key in ("helix", "pressure_angle") if key in coupling
+        )
+        if "pretension" in coupling:
+            yield (coupling, "pretension"), "force"
     for load in data.get("loads", []):
         if load["type"] == "friction":
             lengths = ("radius", "length", "collar", "width")

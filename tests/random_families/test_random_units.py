@@ -29,7 +29,7 @@ from random_families.unit_systems import (
 )
 
 import mechkin_cli as mk
-from mechkin_cli.building.tables import quantities_of
+from mechkin_cli.building.tables import problem_of
 from mechkin_cli.schema.base import DimensionRule, Section, fields_of
 from mechkin_cli.schema.file import MechanismFile
 from mechkin_cli.verdict import SWEEP
@@ -114,7 +114,7 @@ def wanted_of(which: str) -> Answers:
 
 def read(model: mk.Model, run: str, words: dict[str, str]) -> Iterator[tuple[str, Any]]:
     """The quantities of a run, and the balances of a sweep."""
-    known = quantities_of(model.problem, run)
+    known = problem_of(model.problem, run).quantities()
     neither = NEITHER if run == SWEEP else NEITHER + COEFFICIENTS
     kinds = {
         name: kind_of(str(found.dimension))

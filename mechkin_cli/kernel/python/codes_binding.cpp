@@ -18,7 +18,9 @@ void bind_plan_codes(nb::module_& m) {
       .value("C", TREE_C)
       .value("S", TREE_S)
       .value("W", TREE_W)
-      .value("L", TREE_L);
+      .value("L", TREE_L)
+      .value("G", TREE_G)
+      .value("A", TREE_A);
   nb::enum_<LoadCode>(m, "LoadCode", nb::is_arithmetic(), "Kinds of loads.")
       .value("FORCE_GROUND", LOAD_FORCE_GROUND)
       .value("FORCE_LINK", LOAD_FORCE_LINK)

@@ -142,6 +142,7 @@ void bind_builder(nb::module_& m) {
            "sign"_a)
       .def("add_axis", raising(&PlanBuilder::add_axis), "place"_a, "slide"_a, "link"_a, "vector"_a, "other"_a,
            "other_vector"_a)
+      .def("set_course", raising(&PlanBuilder::set_course), "joint"_a, "function"_a, "axes"_a)
       .def("add_free_motion", raising(&PlanBuilder::add_free_motion), "place"_a, "slide"_a, "code"_a, "link"_a, "vector"_a)
       .def("add_block", raising(&PlanBuilder::add_block), "closing_joints"_a, "joints"_a, "unknown"_a,
            "charts"_a = 0)

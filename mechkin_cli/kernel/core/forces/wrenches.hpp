@@ -64,9 +64,26 @@ inline void apply_inertia(Balance& balance, bool accelerating) {
   balance.inertia = inertia, balance.outside = outside;
 }
 
+// The force of work one per unit of a parameter of a course and of none by another one, on the joint's second link: in the
+// plane of the slopes, of their dual basis.
+inline Vec3 along_course(const Plan& p, const Workspace& w, const CoordinateAxis& c) {
+  const TreeJoint& t = p.joints[c.carrier];
+  const Vec3* const slope = w.course[c.carrier].slope;
+  Vec3 own = slope[c.freedom];
+  if (p.functions.function[t.function].arguments > 1) {
+    const Vec3 other = slope[1 - c.freedom];
+    own -= (dot(own, other) / dot(other, other)) * other;
+  }
+  return w.pose[c.carrier].vector((Pack(p.place[c.place].sign) / dot(own, own)) * own);
+}
+
 // The wrench `value` along a coordinate, on the joint's second link.
 inline Wrench along_coordinate(const Plan& p, const Workspace& w, int axis, Pack value) {
   const CoordinateAxis& c = p.axis[axis];
+  if (c.carrier >= 0) {
+    const JointPlace& j = p.place[c.place];
+    return force_at(carried_point(w, j.point_on, j.point), value * along_course(p, w, c));
+  }
   const Vec3 direction = carried_vector(w, c.link[0], c.vector[0]) + carried_vector(w, c.link[1], c.vector[1]);
   if (!c.slide) return {value * direction, zero3()};
   const JointPlace& j = p.place[c.place];

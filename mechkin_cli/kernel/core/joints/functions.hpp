@@ -1,7 +1,7 @@
 // Functions of coordinates (plan/functions.hpp) in the unit's arithmetic.
 #pragma once
 
-#include "plan/plan.hpp"
+#include "joints/tree_joints.hpp"
 
 #if MECHKIN_ARITHMETIC == MECHKIN_INTERVALS
 #include "tape/enclosed_tape.hpp"
@@ -36,6 +36,25 @@ inline void run_function(const Plan& p, const Function& f, int order, Pack* r) {
 // Output k of a function from its registers.
 MECHKIN_INLINE const Pack& function_output(const Plan& p, const Function& f, int k, const Pack* r) {
   return r[p.functions.output[f.output_begin + k]];
+}
+
+
+// The course of a joint along a curve or over a surface, up to an order of its derivatives, at states q.
+inline void find_course(const Plan& p, const TreeJoint& j, const Pack* q, int order, Pack* registers, Course* c) {
+  if (j.function < 0) return;
+  const Function& f = p.functions.function[j.function];
+  for (int i = 0; i < f.arguments; ++i) registers[i] = q[j.state + i];
+  run_function(p, f, order, registers);
+  const Pack unit = j.pitch;
+  const auto vector = [&](int k) -> Vec3 {
+    return {unit * function_output(p, f, k, registers), unit * function_output(p, f, k + 1, registers),
+            unit * function_output(p, f, k + 2, registers)};
+  };
+  const int n = f.arguments;
+  c->place = vector(0);
+  for (int i = 0; i < n; ++i) c->slope[i] = vector(3 * (1 + i));
+  for (int i = 0; i < 2 * n - 1 && order > 1; ++i) c->bend[i] = vector(3 * (1 + n + i));
+  for (int i = 0; i < 3 * n - 2 && order > 2; ++i) c->third[i] = vector(3 * (3 * n + i));
 }
 
 }  // namespace

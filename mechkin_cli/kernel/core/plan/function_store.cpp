@@ -79,11 +79,15 @@ Result<int> FunctionStore::add(const FunctionRecord& r) {
   return (int)function_.size() - 1;
 }
 
-bool FunctionStore::is_of_one(int number) const {
+bool FunctionStore::has_shape(int number, int arguments, int components) const {
   const Function& f = function_[number];
-  for (int k = 0; k < FUNCTION_ORDERS; ++k)
-    if (f.outputs[k] != k + 1) return false;
-  return f.arguments == 1;
+  int outputs = 0, derivatives = 1;  // of an order: as many as ways to choose its arguments
+  for (int k = 0; k < FUNCTION_ORDERS; ++k) {
+    outputs += components * derivatives;
+    if (f.outputs[k] != outputs) return false;
+    derivatives = derivatives * (arguments + k) / (k + 1);
+  }
+  return f.arguments == arguments;
 }
 
 FunctionTable FunctionStore::view() const {

@@ -28,8 +28,8 @@ class FunctionStore {
   // The number of the function; refuses registers that are none, and numbers that are not finite.
   Result<int> add(const FunctionRecord& record);
   FunctionTable view() const;
-  // Whether a function has one argument and one component, with all derivatives.
-  bool is_of_one(int number) const;
+  // Whether a function has so many arguments and components, with all derivatives.
+  bool has_shape(int number, int arguments, int components) const;
   const std::vector<double>& constants() const { return constant_; }
 
  private:

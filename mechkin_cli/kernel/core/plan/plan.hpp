@@ -13,7 +13,7 @@
 #include "plan/program.hpp"
 
 // Displacements that carry links in the tree; other pairs are chains of these (joint_table.py).
-// TREE_L hangs the hung body between two points (hung_bodies.hpp).
+// TREE_L hangs the hung body between two points (hung_bodies.hpp); TREE_G carries along a curve, TREE_A over a surface.
 enum TreeCode : int {
   TREE_R = 0,
   TREE_P = 1,
@@ -22,7 +22,9 @@ enum TreeCode : int {
   TREE_S = 4,
   TREE_W = 5,
   TREE_L = 6,
-  TREE_CODES = 7
+  TREE_G = 7,
+  TREE_A = 8,
+  TREE_CODES = 9
 };
 
 // Pairs that close loops have their place in the list of pairs.hpp as code. PAIR_DISTANCE is no pair of the file format: the
@@ -42,8 +44,9 @@ struct TreeJointOf {
   int parent;  // link, -1: ground
   int state;   // first entry of the state vector
   int column;  // first column (freedom)
-  Number pitch;  // H: slide per radian
+  Number pitch;  // H: slide per radian; TREE_G, TREE_A: length units per m, negative where it carries backwards
   int hung;       // TREE_L: into Plan::hung
+  int function;   // TREE_G, TREE_A: of Plan::functions, places (m) along the frame's axes; else -1
   FrameOf<Number> at;    // the joint's frame in the parent link
 };
 
@@ -190,6 +193,7 @@ struct CoordinateAxisOf {
   int slide;
   int link[2];
   Number vector[2][3];
+  int carrier, freedom;  // of a parameter of a curve or surface, its tree joint: the force does work along that; else -1
 };
 
 // A drive: input and the axis it works on, -1 for a coordinate that no user knows; an H driven along s has

@@ -90,6 +90,8 @@ Refusal PlanBuilder::check_order() const {
           "every closing joint must belong to a block");
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     REQUIRE((joints_[k].type == TREE_L) == (joints_[k].hung >= 0), "TREE_L hangs a hung body");
+    REQUIRE((joints_[k].type == TREE_G || joints_[k].type == TREE_A) == (joints_[k].function >= 0),
+            "TREE_G and TREE_A have a course");
     REQUIRE(placed_by_[k] != NOT_PLACED, "every tree joint must be placed by a block or be of the rest");
   }
   for (const Term& t : term_) REQUIRE(t.axis < (int)axis_.size(), "a relation's coordinates have axes");

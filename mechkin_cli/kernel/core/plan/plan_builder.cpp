@@ -36,6 +36,8 @@ bool along_coordinate(int type) {
   return type == LOAD_COORDINATE || type == LOAD_COORDINATE_SPRING || type == LOAD_COORDINATE_DAMPER;
 }
 
+bool is_carriage(int type) { return type == TREE_G || type == TREE_A; }
+
 }  // namespace
 
 Result<PlanBuilder> PlanBuilder::make(double length, const Triple& origin, double size) {
@@ -84,7 +86,7 @@ Refusal PlanBuilder::add_tree_joint(int type, int parent, double pitch, const Fr
   const int k = (int)joints_.size();
   REQUIRE(parent >= -1 && parent < k, "a tree joint's parent must come before it");
   const int state = plan_.states, column = plan_.columns;
-  joints_.push_back({type, parent, state, column, pitch, -1, frame(at)});
+  joints_.push_back({type, parent, state, column, pitch, -1, -1, frame(at)});
   number(ARRAY_JOINT, k * sizeof(TreeJoint) + offsetof(TreeJoint, pitch), 1);
   number(ARRAY_JOINT, k * sizeof(TreeJoint) + offsetof(TreeJoint, at), 12);
   for (int f = 0; f < tree_type(type).freedoms; ++f) {
@@ -170,7 +172,7 @@ Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& ter
   for (const auto& [joint, sign, freedom, axis, function] : terms) {
     CHECK(check_joint(joint, "a relation of an unknown joint"));
     REQUIRE(function == -1 || (function >= 0 && function < functions_.view().functions), "a term of an unknown function");
-    REQUIRE(function == -1 || functions_.is_of_one(function), "a term is a function of its coordinate alone");
+    REQUIRE(function == -1 || functions_.has_shape(function, 1, 1), "a term is a function of its coordinate alone");
     REQUIRE(is_sign(sign), NO_SIGN);
     const TreeType& tree = tree_type(joints_[joint].type);
     REQUIRE(freedom == -1 || (freedom >= 0 && freedom < tree.freedoms && tree.states == tree.freedoms),
@@ -283,12 +285,26 @@ Result<int> PlanBuilder::add_axis(int place, bool slide, int link, const Triple&
   CHECK(check_link(link));
   CHECK(check_link(other));
   CHECK(check_finite(vector, other_vector));
-  CoordinateAxis axis = {place, slide, {link, other}, {}};
+  CoordinateAxis axis = {place, slide, {link, other}, {}, -1, 0};
   copy(vector, axis.vector[0]);
   copy(other_vector, axis.vector[1]);
   number(ARRAY_AXIS, axis_.size() * sizeof(CoordinateAxis) + offsetof(CoordinateAxis, vector), 6);
   axis_.push_back(axis);
   return (int)axis_.size() - 1;
+}
+
+Refusal PlanBuilder::set_course(int joint, int function, const std::vector<int>& axes) {
+  CHECK(open());
+  CHECK(check_joint(joint, "a course of an unknown joint"));
+  REQUIRE(is_carriage(joints_[joint].type) && joints_[joint].function < 0, "a course is set once, of a joint that needs it");
+  REQUIRE(function >= 0 && function < functions_.view().functions, "a course along an unknown function");
+  const int parameters = tree_type(joints_[joint].type).freedoms;
+  REQUIRE(functions_.has_shape(function, parameters, 3), "a course is a place by the joint's freedoms");
+  REQUIRE(axes.empty() || (int)axes.size() == parameters, "each parameter has its axis");
+  for (int a : axes) REQUIRE(a >= 0 && a < (int)axis_.size(), "a parameter's axis is none");
+  joints_[joint].function = function;
+  for (int f = 0; f < (int)axes.size(); ++f) axis_[axes[f]].carrier = joint, axis_[axes[f]].freedom = f;
+  return {};
 }
 
 Refusal PlanBuilder::add_free_motion(int place, bool slide, int code, int link, const Triple& vector) {

@@ -53,6 +53,9 @@ class PlanBuilder {
   Result<int> add_place(int reference, int first, int second, int point_on, const Triple& point, double sign);
   // An axis of a joint's coordinate, see CoordinateAxis; returns its number.
   Result<int> add_axis(int place, bool slide, int link, const Triple& vector, int other, const Triple& other_vector);
+  // What TREE_G or TREE_A goes along: a function, the signs and scale of which are the joint's pitch, and the axes of the
+  // parameters in their order.
+  Refusal set_course(int joint, int function, const std::vector<int>& axes);
   // The next free motion of a joint, see FreeMotion; those of one joint in a row.
   Refusal add_free_motion(int place, bool slide, int code, int link, const Triple& vector);
   // The next closing joints, the tree joints that they place, parents first, and the columns that they solve for.

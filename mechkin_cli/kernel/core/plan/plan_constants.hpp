@@ -65,7 +65,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
   for (int k = 0; k < first.links; ++k) {
     const auto& j = first.joints[k];
     joint[k] = {j.type, j.parent, j.state, j.column, lanes.number([&](const LanePlan& p) { return p.joints[k].pitch; }),
-                j.hung, {}};
+                j.hung, j.function, {}};
     lanes.frame(&joint[k].at, [&](const LanePlan& p) -> const auto& { return p.joints[k].at; });
   }
   for (int c = 0; c < first.closings; ++c) {
@@ -106,7 +106,7 @@ inline void widen_places(const LanePlan& first, const Constants& lanes, Plan* w,
   }
   for (int a = 0; a < first.axes; ++a) {
     const auto& from = first.axis[a];
-    axis[a] = {from.place, from.slide, {from.link[0], from.link[1]}, {}};
+    axis[a] = {from.place, from.slide, {from.link[0], from.link[1]}, {}, from.carrier, from.freedom};
     for (int term = 0; term < 2; ++term)
       lanes.numbers(axis[a].vector[term], 3, [&](const LanePlan& p) { return p.axis[a].vector[term]; });
   }

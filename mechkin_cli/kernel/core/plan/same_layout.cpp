@@ -16,7 +16,8 @@ bool same_counts(const Plan& a, const Plan& b) {
 }
 
 bool same_joint(const TreeJoint& a, const TreeJoint& b) {
-  return a.type == b.type && a.parent == b.parent && a.state == b.state && a.column == b.column && a.hung == b.hung;
+  return a.type == b.type && a.parent == b.parent && a.state == b.state && a.column == b.column && a.hung == b.hung &&
+         a.function == b.function;
 }
 
 bool same_closing(const ClosingJoint& a, const ClosingJoint& b) {

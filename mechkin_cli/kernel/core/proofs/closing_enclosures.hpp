@@ -20,6 +20,7 @@ struct Enclosures {
   Pack* jacobian;  // equations x columns
   TermCurve* curve;  // terms: of those that are functions
   Pack* function;    // registers of the largest function
+  Course* course;    // links, where there are functions
 };
 
 inline int equations_of(const Plan& p) {
@@ -44,9 +45,10 @@ inline void place_links(const Plan& p, Enclosures& w) {
       if (is_hung(p, k)) continue;
       const Pose* const parent = pose_at(w, j.parent);
       w.pose[k] = placed(j.at, parent);
+      find_course(p, j, w.q, 1, w.function, w.course + k);
       with_tree_joint(j.type, [&](auto entry) {
-        entry.place(w.pose[k], j, w.q + j.state);
-        entry.screws(w.pose[k], j, parent, w.screw + j.column);
+        entry.place(w.pose[k], j, w.course + k, w.q + j.state);
+        entry.screws(w.pose[k], j, parent, w.course + k, w.screw + j.column);
       });
     }
 }

@@ -55,6 +55,7 @@ inline Proof lay_out_proof(const Plan& p, Ledger& ledger) {
   w.at.jacobian = ledger.take<Pack>(equations * p.columns);
   w.at.curve = ledger.take<TermCurve>(p.functions.functions ? p.terms : 0);
   w.at.function = ledger.take<Pack>(p.functions.registers);
+  w.at.course = ledger.take<Course>(p.functions.functions ? p.links : 0);
   w.reads = ledger.take<unsigned char>(p.blocks * p.blocks);
   w.hangs = ledger.take<unsigned char>(p.blocks * p.blocks);
   w.inverse = ledger.take<Pack>(inverse);

@@ -30,13 +30,36 @@ inline void move_link(const Plan& p, Workspace& w, int k) {
   if (j.type == TREE_L) return move_hung(p, w, k, false);
   w.motion[k].velocity = motion_of(w, j.parent).velocity + joint_twist(p, w, k, w.rate);
 }
-// Its spatial acceleration, where the twists are known: V' = V_p' + S q'' + [V_p, S q']. With `again` only q'' and V_p' are
-// others than they were.
+// Sums over pairs and triples of parameters, of which one derivative stands for all orders: of c_ij a_i b_j and c_ijk a_i a_j a_k.
+inline Vec3 bent(const Course& c, int parameters, const Pack* a, const Pack* b) {
+  if (parameters == 1) return (a[0] * b[0]) * c.bend[0];
+  return (a[0] * b[0]) * c.bend[0] + (a[0] * b[1] + a[1] * b[0]) * c.bend[1] + (a[1] * b[1]) * c.bend[2];
+}
+inline Vec3 bent_again(const Course& c, int parameters, const Pack* a) {
+  if (parameters == 1) return (a[0] * a[0] * a[0]) * c.third[0];
+  const Pack three = 3.0;
+  return (a[0] * a[0] * a[0]) * c.third[0] + (three * (a[0] * a[0] * a[1])) * c.third[1] +
+         (three * (a[0] * a[1] * a[1])) * c.third[2] + (a[1] * a[1] * a[1]) * c.third[3];
+}
+// What a joint's screws, seen from its parent, change by along a curve or a surface: the second derivative of the place by
+// motion alone.
+inline Vec3 second_of_course(const Plan& p, Workspace& w, int k) {
+  const TreeJoint& j = p.joints[k];
+  find_course(p, j, w.q, 2, w.function, w.course + k);
+  const Pack* const rate = w.rate + j.column;
+  return w.pose[k].vector(bent(w.course[k], p.functions.function[j.function].arguments, rate, rate));
+}
+
+// Its spatial acceleration, where the twists are known: V' = V_p' + S q'' + [V_p, S q'], and of a course its bend. With
+// `again` only q'' and V_p' are others than they were.
 inline void accelerate_link(const Plan& p, Workspace& w, int k, bool again) {
   const TreeJoint& j = p.joints[k];
   if (j.type == TREE_L) return move_hung(p, w, k, true);
   const Motion& parent = motion_of(w, j.parent);
-  if (!again) w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
+  if (!again) {
+    w.convective[k] = bracket(parent.velocity, joint_twist(p, w, k, w.rate));
+    if (j.function >= 0) w.convective[k].linear += second_of_course(p, w, k);
+  }
   w.motion[k].acceleration = parent.acceleration + joint_twist(p, w, k, w.acceleration) + w.convective[k];
 }
 inline void move_block(const Plan& p, Workspace& w, const Block& b) {
@@ -128,7 +151,8 @@ MECHKIN_INLINE MotionToJerk motion_to_jerk(const Workspace& w, int link) {
   return {w.motion[link], w.link_jerk[link]};
 }
 
-// V'' = V_p'' + S q''' + 2 [V_p, S q''] + [V_p', S q'] + [V_p, [V_p, S q']], since S' = [V_p, S].
+// V'' = V_p'' + S q''' + 2 [V_p, S q''] + [V_p', S q'] + [V_p, [V_p, S q']], since S' = [V_p, S]. Of a course S q'' and
+// S q''' stand for the second and third derivatives of its place.
 inline void jerk_link(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   const MotionToJerk parent = motion_to_jerk(w, j.parent);
@@ -147,6 +171,14 @@ inline void jerk_link(const Plan& p, Workspace& w, int k) {
       third += w.jerk[j.column + i] * s;
     }
   });
+  if (j.function >= 0) {
+    find_course(p, j, w.q, 3, w.function, w.course + k);
+    const Course& c = w.course[k];
+    const int n = p.functions.function[j.function].arguments;
+    const Pack *const rate = w.rate + j.column, *const acceleration = w.acceleration + j.column;
+    second.linear += w.pose[k].vector(bent(c, n, rate, rate));
+    third.linear += w.pose[k].vector(Pack(3.0) * bent(c, n, rate, acceleration) + bent_again(c, n, rate));
+  }
   w.link_jerk[k] = parent.jerk + third + Pack(2.0) * bracket(parent.velocity, second) +
                    bracket(parent.acceleration, first) + bracket(parent.velocity, bracket(parent.velocity, first));
 }

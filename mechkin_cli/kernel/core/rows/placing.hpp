@@ -28,7 +28,10 @@ inline void place_joint(const Plan& p, Workspace& w, int k) {
   if (j.type == TREE_L) return place_hung(p, w, k);
   Pose pose = placed(j.at, pose_of(w, j.parent));
   if (w.stands[k]) w.frame[k] = pose;
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
+  find_course(p, j, w.q, 1, w.function, w.course + k);
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.place(pose, j, w.course + k, w.q + j.state);
+  });
   w.pose[k] = pose;
 }
 
@@ -36,14 +39,17 @@ inline void place_joint(const Plan& p, Workspace& w, int k) {
 inline void place_standing(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   Pose pose = w.frame[k];
-  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) { entry.place(pose, j, w.q + j.state); });
+  find_course(p, j, w.q, 1, w.function, w.course + k);
+  with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+    entry.place(pose, j, w.course + k, w.q + j.state);
+  });
   w.pose[k] = pose;
 }
 
 inline void find_screws(const Plan& p, Workspace& w, int k) {
   const TreeJoint& j = p.joints[k];
   with_tree_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-    entry.screws(w.pose[k], j, pose_of(w, j.parent), w.screw + j.column);
+    entry.screws(w.pose[k], j, pose_of(w, j.parent), w.course + k, w.screw + j.column);
   });
 }
 

@@ -151,7 +151,7 @@ MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, cons
       Twist screw[MAX_CLOSING_ROWS];
       with_tree_joint(t.type, [&](auto tree) __attribute__((always_inline)) {
         freedoms = tree.freedoms, states = tree.states;
-        tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), screw);
+        tree.screws(w.pose[p.loop[l].joint], t, pose_of(w, t.parent), w.course + p.loop[l].joint, screw);
       });
       for (int f = 0; f < freedoms; ++f) {
         Pack column[MAX_CLOSING_ROWS];

@@ -34,7 +34,7 @@ constexpr TreeType tree_type() {
 // in the order of TreeCode
 constexpr TreeType tree_types[TREE_CODES] = {tree_type<Turn>(),         tree_type<Slide>(),       tree_type<Screw>(),
                                              tree_type<TurnAndSlide>(), tree_type<Orientation>(), tree_type<Fixed>(),
-                                             tree_type<Fixed>()};
+                                             tree_type<Fixed>(),        tree_type<Carriage<1>>(), tree_type<Carriage<2>>()};
 
 // in the order of their codes
 template <class... All>

@@ -41,6 +41,7 @@ struct Workspace {
   Pack* law;                      // registers of Plan::law
   TermCurve* curve;               // terms: of those that are functions
   Pack* function;                 // registers of the largest function
+  Course* course;                 // links, where there are functions: of those along curves and over surfaces
   bool* moves;                    // links: whether Newton on the link's block moves it (find_moving)
   bool* stands;                   // links: whether it moves against a parent that carries it and does not
   Pose* frame;                    // links: the frames of such joints on their parents
@@ -104,6 +105,7 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->law = (Pack*)take((long)p.law.registers() * pack);
   w->curve = (TermCurve*)take((p.functions.functions ? p.terms : 0) * sizeof(TermCurve));
   w->function = (Pack*)take((long)p.functions.registers * pack);
+  w->course = (Course*)take((p.functions.functions ? p.links : 0) * sizeof(Course));
   return used;
 }
 

@@ -1,5 +1,7 @@
 #include "stepping/orbit.hpp"
 
+#include "rows/units.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +16,7 @@ int block_of(const Plan& plan, const TreeJoint& joint, int freedoms) {
   return block;
 }
 
-int tree_freedoms(const TreeJoint& j) { return j.type == TREE_S ? 3 : j.type == TREE_C ? 2 : j.type >= TREE_W ? 0 : 1; }
+int tree_freedoms(const TreeJoint& j) { return kernel_unit()->tree_types[j.type].freedoms; }
 
 // Of a quaternion the sign with which it lies nearer to another.
 double sign_against(const double* q, const double* other) {

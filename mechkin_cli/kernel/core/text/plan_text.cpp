@@ -143,6 +143,7 @@ constexpr Verb VERBS[] = {
     {"add_mesh", said<&PlanBuilder::add_mesh>},
     {"add_place", said<&PlanBuilder::add_place>},
     {"add_axis", said<&PlanBuilder::add_axis>},
+    {"set_course", said<&PlanBuilder::set_course>},
     {"add_free_motion", said<&PlanBuilder::add_free_motion>},
     {"add_block", said<&PlanBuilder::add_block>},
     {"set_rest", said<&PlanBuilder::set_rest>},

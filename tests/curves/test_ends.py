@@ -1,0 +1,204 @@
+"""Where curves end: rows beyond are never told as ok, nor are assemblies there modes; splines
+through points, and arcs, with their ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+import mechkin_cli as mk
+
+SLIDER = """
+format: 1
+plane: xy
+units: {length: mm}
+links: {slide: {}, follower: {}}
+joints:
+  S: {type: P, links: [ground, slide], point: [0, 0], axis: [1, 0]}
+  F: {type: P, links: [ground, follower], point: [0, 30], axis: [0, 1]}
+  D: {type: Ps, links: [pin, slide], point: [0, %s], curve: %s}
+  W: {type: W, links: [follower, pin]}
+motion: {inputs: {S.s: {from: %s, to: %s, step: %s, rate: 2, acceleration: 3, jerk: 4}}}
+"""
+
+
+def cam(height: str, curve: str, first: float, last: float, step: float) -> mk.Model:
+    """A follower over a slide whose curve lifts it: at S.s the curve's place x = -S.s."""
+    text = SLIDER % (height, curve, first, last, step)
+    # a weld at the follower's end keeps the pin from turning: the slot takes no moment
+    text = text.replace("pin, slide", "follower, slide").replace(
+        "  W: {type: W, links: [follower, pin]}\n", ""
+    )
+    return mk.loads(text)
+
+
+def test_rows_beyond_the_end_of_an_open_curve_are_not_ok() -> None:
+    curve = "{at: ['u', '20 mm + u^2/(200 mm)'], from: -50 mm, to: 40 mm}"
+    result = cam("20", curve, -60, 60, 10).analyze()
+    u = -np.arange(-60.0, 61.0, 10.0)
+    expected = ["ok" if -50.0 <= x <= 40.0 else "beyond-limit" for x in u]
+    assert list(result["row.status"]) == expected
+    inside = np.array(expected) == "ok"
+    np.testing.assert_allclose(
+        np.asarray(result["F.s"])[inside], u[inside] ** 2 / 200.0, atol=1e-10
+    )
+    np.testing.assert_allclose(1000.0 * np.asarray(result["D.u"]), u, atol=1e-10)
+
+
+@pytest.mark.parametrize("way", ["slot: [1, 0]", "curve: {line: [[-50, 20], [40, 20]]}"])
+def test_a_line_ends_where_it_is_drawn_to_end(way: str) -> None:
+    text = (SLIDER % ("20", "{}", -60, 60, 10)).replace("curve: {}", way)
+    text = text.replace("pin, slide", "follower, slide")
+    text = text.replace("  W: {type: W, links: [follower, pin]}\n", "")
+    status = list(mk.loads(text).analyze()["row.status"])
+    if way.startswith("slot"):
+        assert set(status) == {"ok"}
+    else:
+        assert status[:2] == ["beyond-limit", "beyond-limit"]
+        assert status[-1] == "beyond-limit"
+        assert set(status[2:-1]) == {"ok"}
+
+
+POINTS = [[-60.0, 20.0], [-30.0, 26.0], [0.0, 20.0], [25.0, 14.0], [60.0, 22.0]]
+
+
+def test_a_spline_through_points_is_that_of_its_chords() -> None:
+    model = cam("20", f"{{points: {POINTS}}}", -55, 55, 10)
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    points = np.array(POINTS)
+    chords = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    spline = CubicSpline(chords, points)
+    for row, u in enumerate(1000.0 * np.asarray(result["D.u"])):
+        (x, y), (dx, dy), (ddx, ddy), _ = (spline(u, order) for order in range(4))
+        assert -float(result["S.s"][row]) == pytest.approx(x, abs=1e-9)
+        assert float(result["F.s"][row]) == pytest.approx(y - 20.0, abs=1e-9)
+        rate = -2.0 / dx
+        second = (-3.0 - ddx * rate * rate) / dx
+        assert float(result["F.s_dot"][row]) == pytest.approx(dy * rate, abs=1e-9)
+        expected = ddy * rate * rate + dy * second
+        assert float(result["F.s_ddot"][row]) == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_closed_spline_goes_round() -> None:
+    """A block on a crank's arm is guided round by a closed slot, twice."""
+    angles = np.arange(8) * 2.0 * np.pi / 8
+    points = np.stack([(60 + 8 * np.cos(2 * angles)) * np.cos(angles), 50 * np.sin(angles)], axis=1)
+    text = f"""
+format: 1
+plane: xy
+units: {{length: mm}}
+links: {{arm: {{}}, block: {{}}}}
+joints:
+  A: {{type: R, links: [ground, arm], point: [0, 0]}}
+  P: {{type: P, links: [arm, block], point: [68, 0], axis: [1, 0]}}
+  D:
+    type: Ps
+    links: [block, ground]
+    point: [68, 0]
+    curve: {{points: {points.tolist()}, closed: true}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 720, step: 30}}}}}}
+"""
+    result = mk.loads(text).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    closed = np.concatenate([points, points[:1]])
+    chords = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(closed, axis=0).T))])
+    spline = CubicSpline(chords, closed, bc_type="periodic")
+    u = 1000.0 * np.asarray(result["D.u"])
+    np.testing.assert_allclose(u[24] - u[0], 2.0 * chords[-1], rtol=1e-12)
+    place = spline(u % chords[-1])
+    far = 68.0 + np.asarray(result["P.s"])
+    theta = np.radians(result["A.theta"])
+    np.testing.assert_allclose(
+        place, np.stack([far * np.cos(theta), far * np.sin(theta)], 1), atol=1e-9
+    )
+
+
+def test_assemblies_beyond_the_end_are_no_modes() -> None:
+    """An arm of 30 mm about the origin, its pin in half of a circle about (40, 0): one of two."""
+    text = """
+format: 1
+plane: xy
+units: {length: mm}
+links: {arm: {}}
+joints:
+  A: {type: R, links: [ground, arm], point: [0, 0]}
+  D: {type: Ps, links: [arm, ground], point: [18, 24], curve: %s}
+"""
+    full = mk.loads(text % "{center: [40, 0]}").modes()
+    half = "{at: ['40 mm + r*cos(u)', 'r*sin(u)'], from: 0 deg, to: 180 deg}"
+    parameters = "parameters: {r: 'sqrt(22^2 + 24^2)*1 mm'}\n"
+    upper = mk.loads(parameters + text.lstrip() % half).modes()
+    angle = np.degrees(2.0 * np.arctan2(24.0, 18.0))
+    found = sorted(mode.coordinates["A.theta"] for mode in full.modes)
+    np.testing.assert_allclose(found, [-angle, 0.0], atol=1e-9)
+    (only,) = upper.modes
+    assert only.coordinates["A.theta"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("curve", "words"),
+    [
+        ("{arc: [[0, 0], [1, 1], [2, 2]]}", "the three places of an arc lie on a line"),
+        ("{points: [[0, 0], [0, 0], [2, 2]]}", "this point is the one before it"),
+        ("{line: [[0, 0], [0, 0]]}", "the line has no length"),
+        ("{at: [u, 'u^2'], from: 0, to: 1 mm}", "expected a length"),
+        ("{at: [u, u], from: 1 mm, to: 0}", "the parameter ends before it begins"),
+        ("{at: [u, u], from: 1 mm, to: 20 deg}", "begin and end must be alike"),
+        ("{center: [0, 0], closed: true}", "closed goes with at or points"),
+        ("{center: [0, 0], points: [[0, 0], [1, 0], [2, 2]]}", "are two choices"),
+        ("{at: [u, u]}", "says where its parameter begins and ends"),
+        ("{center: [0, 20]}", "the radius is not positive"),
+    ],
+)
+def test_curves_that_are_none_are_refused_with_words(curve: str, words: str) -> None:
+    with pytest.raises(mk.InvalidFile) as error:
+        cam("20", curve, 0, 10, 10)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "curve",
+    [
+        "{center: [0, 60]}",
+        "{arc: [[-40, 30], [0, 20], [40, 30]]}",
+        "{at: [u, 20 mm], from: -1, to: 1}",
+    ],
+)
+def test_rows_on_curves_with_zeros_in_them_are_proven(curve: str) -> None:
+    """What is computed is the same whatever its numbers are: it is so of exact ones, too."""
+    model = cam("20", curve.replace("-1, to: 1", "-40 mm, to: 40 mm"), 2, 22, 5)
+    assert set(model.certify().status) == {"proven"}
+    errors = model.analyze(errors=True).errors
+    assert errors.digits is not None
+    assert errors.digits >= 12
+
+
+def test_nothing_is_claimed_of_a_spline_whose_knots_are_rounded() -> None:
+    model = cam("20", f"{{points: {POINTS}}}", -5, 5, 5)
+    assert set(model.certify().status) == {"not proven"}
+
+
+def test_loads_and_drives_work_on_the_parameter() -> None:
+    """A couple of Q on u does Q u' of work: of a follower over y(x), the drive's force is that of
+    Q du/dx, and of a drive at u the effort that holds a force F on the slide -F du/dx."""
+    curve = "{at: ['u^2/(40 mm) + u', '20 mm + u^2/(200 mm)'], from: -9 mm, to: 60 mm}"
+    text = SLIDER % ("20", curve, -40, 0, 10)
+    text = text.replace("pin, slide", "follower, slide")
+    text = text.replace("  W: {type: W, links: [follower, pin]}\n", "")
+    loaded = mk.loads(text + "loads: [{type: force, joint: S, value: 3 N}]\n")
+    result = loaded.analyze()
+    np.testing.assert_allclose(result["S.effort"], -3.0, rtol=1e-12)
+    inputs = "D.u: {from: 0.001, to: 0.031, step: 0.01, rate: 2}"
+    start = text.index("motion:")
+    driven = mk.loads(
+        f"{text[:start]}motion: {{inputs: {{{inputs}}}}}\n"
+        "loads: [{type: force, joint: S, value: 3 N}]\n"
+    ).analyze()
+    assert set(driven["row.status"]) == {"ok"}
+    u = np.asarray(driven["D.u"])
+    slope = u / 0.020 + 1.0
+    np.testing.assert_allclose(driven["S.s_dot"], -1000.0 * slope * 2.0, rtol=1e-12)
+    # told in N*mm, u in m
+    np.testing.assert_allclose(driven["D.effort"], 1000.0 * 3.0 * slope, rtol=1e-11)
