@@ -7,7 +7,7 @@ limits, if there are any.
 
 from __future__ import annotations
 
-from math import ceil, isfinite, pi
+from math import ceil, isfinite, ldexp, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,7 +91,7 @@ class LimitedWalk:
         count = tolerances.RANGE_SAMPLES
         parts = np.linspace(0.0, 1.0, count + 1)[:-1]
         # towards a dead centre the coordinate may go as the root of the distance
-        near = 1.0 - 0.25 ** np.arange(1, NEAR_END) / count
+        near = [1.0 - ldexp(1.0, -2 * k) / count for k in range(1, NEAR_END)]
         steps = first + (end - first) * np.concatenate([parts, near])
         followed = self.walker.follow(steps, state)
         reached = followed.reached

@@ -221,6 +221,8 @@ BY_KEY: Final[dict[str, Any]] = {
     "zero": {"ground": [1, 0, 0], "crank": [0, 1, 0]},
 }
 
+_FOLLOWER: Final = {"type": "translating", "contact": "flat", "base_radius": "40 mm"}
+
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
@@ -256,23 +258,10 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("FollowerSection", "distance"): "95 mm",
     ("FollowerSection", "offset"): "5 mm",
     ("FollowerSection", "radius"): "10 mm",
-    ("FunctionCoupling", "follower"): {
-        "type": "translating",
-        "contact": "flat",
-        "base_radius": "40 mm",
-    },
-    ("FunctionCoupling", "law"): {
-        "law": "cycloidal",
-        "from": 0,
-        "to": "20 mm",
-        "duration": "60 deg",
-    },
+    ("FunctionCoupling", "follower"): _FOLLOWER,
+    ("FunctionCoupling", "law"): {"law": "cycloidal", "from": 0, "to": "20 mm"},
     ("FunctionCoupling", "value"): "20 mm*(1 - cos(theta))",
-    ("TableCoupling", "follower"): {
-        "type": "translating",
-        "contact": "flat",
-        "base_radius": "40 mm",
-    },
+    ("TableCoupling", "follower"): _FOLLOWER,
     ("Kept", "of"): "O1.effort",
     ("Kept", "at"): "90 deg",
     ("Kept", "label"): "largest torque",
