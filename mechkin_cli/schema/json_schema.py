@@ -166,6 +166,7 @@ BY_KEY: Final[dict[str, Any]] = {
     "efforts": {"A.theta": "8 N*m - 0.4 N*m*s/rad*A.theta_dot"},
     "equations": ["crank", "rocker", "-O1"],
     "follow": ["O1"],
+    "follower": {"type": "translating", "contact": "flat", "base_radius": "40 mm"},
     "force": [0, 0, "-10 N"],
     "groove": [1, 0, 0],
     "hidden": ["frame"],
@@ -221,8 +222,6 @@ BY_KEY: Final[dict[str, Any]] = {
     "zero": {"ground": [1, 0, 0], "crank": [0, 1, 0]},
 }
 
-_FOLLOWER: Final = {"type": "translating", "contact": "flat", "base_radius": "40 mm"}
-
 BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Kept", "as"): ["peak", "rms"],
     ("MotionSection", "grid"): True,
@@ -253,15 +252,9 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("DeadCentre", "dead_centre"): "O4.theta",
     ("ExpressionLaw", "value"): "20 deg*sin(360 deg*time/(1 s))",
     ("FollowingInput", "with"): "2*O1.theta",
-    ("FollowerSection", "arm"): "80 mm",
-    ("FollowerSection", "base_radius"): "40 mm",
-    ("FollowerSection", "distance"): "95 mm",
-    ("FollowerSection", "offset"): "5 mm",
-    ("FollowerSection", "radius"): "10 mm",
-    ("FunctionCoupling", "follower"): _FOLLOWER,
+    **{("FollowerSection", key): "40 mm" for key in ("arm", "base_radius", "distance")},
+    **{("FollowerSection", key): "8 mm" for key in ("offset", "radius")},
     ("FunctionCoupling", "law"): {"law": "cycloidal", "from": 0, "to": "20 mm"},
-    ("FunctionCoupling", "value"): "20 mm*(1 - cos(theta))",
-    ("TableCoupling", "follower"): _FOLLOWER,
     ("Kept", "of"): "O1.effort",
     ("Kept", "at"): "90 deg",
     ("Kept", "label"): "largest torque",
