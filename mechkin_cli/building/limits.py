@@ -36,9 +36,8 @@ def build_limits(
     limits = {limit.name: limit for limit in _limits(fields, every, joints)}
     for limit in (*_of_tracks(fields, file, joints), *_of_tables(fields, couplings)):
         other = limits.get(limit.name, limit)
-        limits[limit.name] = other._replace(
-            low=max(other.low, limit.low), high=min(other.high, limit.high)
-        )
+        ends = max(limit.low, other.low), min(limit.high, other.high)
+        limits[limit.name] = other._replace(low=ends[0], high=ends[1])
     return tuple(limits.values())
 
 

@@ -113,8 +113,8 @@ class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
     strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing. `extents`: those of a cable. One that a cam keeps may
-    know its `follower`, which is nothing to the motion."""
+    other with (N) when it transmits nothing. `extents`: those of a cable;
+    `follower`: what a cam moves, which is nothing to the motion."""
 
     terms: tuple[Term, ...]
     length: bool

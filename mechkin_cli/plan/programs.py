@@ -172,10 +172,10 @@ def _knots_record(track: Track, origin: Vector) -> PlanRecord:
     (low, high), period = track.ends[0], 0.0
     curves = []
     for curve in track.knots:
-        over, _, _, knots = _curve(curve, 0)
+        *_, knots = _curve(curve, 0)
         if track.closed[0]:
             period = high - low
-        curves.append((over, curve.first, curve.last, period, knots))
+        curves.append((0, period, knots))
     values = [
         [recorder.number(1 + len(ORDERS) * k + order) for k in range(len(track.knots))]
         for order in ORDERS

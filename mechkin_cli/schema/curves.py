@@ -139,8 +139,8 @@ class Surface(Section):
     axis: DirectionVector | None = None
     """Axis of the surface; left out, z, or of a sphere square to the joint's point."""
     radius: Length | None = None
-    """Radius, of a torus that of the circle in its tube; left out of a sphere or a cylinder, the
-    joint's point lies on it."""
+    """Radius, of a torus that of the circle in its tube; left out, that of a sphere or a cylinder
+    on which the joint's point lies."""
     tube: Length | None = None
     """Radius of the tube of a torus; left out, none."""
     at: Annotated[tuple[Length, ...], _THREE] | None = None

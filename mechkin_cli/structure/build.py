@@ -180,7 +180,9 @@ def _with_couplings_apart(
             used = {k for c, loop in left if c.name != name for k, _ in loop}
             standing = {k for k, _ in one[1]} | _carrying(edges, (k for k, _ in one[1]))
             alone = [(k, f) for k, f in sorted(own) if k not in used | _carrying(edges, used)]
-            if len(own) == 1 and own == {(k, f) for k, f in open_ if k in standing}:
+            # what hangs between two points waits for both of them
+            hangs = any(edges[k].hung for k in standing)
+            if len(own) == 1 and not hangs and own == {(k, f) for k, f in open_ if k in standing}:
                 take(one, own.pop(), ahead)
             elif alone and len([1 for k, _ in open_ if k == alone[0][0]]) == 1:
                 take(one, alone[0], behind)

@@ -271,7 +271,7 @@ def test_coupled_wheels_by_with() -> None:
     data["links"]["wheel"] = {"mass": 1, "center_of_mass": [3, 0], "inertia": 0.5}
     data["joints"]["G"] = {"type": "R", "links": ["ground", "wheel"], "point": [3, 0]}
     data["motion"]["inputs"]["G.theta"] = {"with": "-2*O.theta", "drive": "tie"}
-    same(data, [*MOTION, "G.theta_ddot", "O.effort", "O.force.x"], 1e-11)
+    same(data, [*MOTION, "G.theta_ddot", "O.effort", "A.force.x"], 1e-11)
 
 
 def test_gravity_straight_down_is_along_minus_y() -> None:
