@@ -103,7 +103,7 @@ def _radii(
         key, texts = "teeth", section.teeth
         numbers = [fields.number((*path, key, i), t, DIMENSIONLESS) for i, t in enumerate(texts)]
         pitch = fields.number((*path, "pitch"), section.pitch, LENGTH)
-        if fields.error_count == errors and not pitch > 0.0:
+        if fields.error_count == errors and not pitch > tolerances.SMALLEST_DIVISOR:
             text = f"the pitch of a chain is {section.pitch}"
             fields.error("no-wheel", (*path, "pitch"), text, limit="more than 0")
         radii = [number * pitch / (2.0 * pi) for number in numbers]
@@ -113,7 +113,7 @@ def _radii(
         radii = numbers
     if fields.error_count == errors:
         for i, number in enumerate(numbers):
-            if not number > 0.0:
+            if not number > tolerances.SMALLEST_DIVISOR:
                 text = f"the {key} of a pulley are {texts[i]}"
                 hint = "give positive numbers; crossed: true turns pulleys opposite ways"
                 fields.error("no-wheel", (*path, key, i), text, hint, limit="more than 0")
@@ -255,7 +255,7 @@ def screw_relation(
     lead = fields.number((*path, "lead"), section.lead, LENGTH)
     if fields.error_count > errors:
         return None
-    if lead == 0.0:
+    if lead**2 <= tolerances.SMALLEST_DIVISOR**2:
         text = "a thread has a lead"
         hint = "give the length per turn, negative for a left-hand thread"
         fields.error("no-lead", (*path, "lead"), text, hint, limit="not 0")

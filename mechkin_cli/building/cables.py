@@ -154,7 +154,7 @@ def _place(
     radius = fields.number((*path, "radius"), part.radius, LENGTH)
     if fields.error_count > errors:
         return None
-    if not radius > 0.0:
+    if not radius > tolerances.SMALLEST_DIVISOR:
         text = f"the radius of a pulley is {part.radius}"
         fields.error("no-wheel", (*path, "radius"), text, limit="more than 0")
         return None

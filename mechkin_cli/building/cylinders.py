@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.diagnostics import nearest_hint
@@ -115,7 +116,7 @@ def _check_sizes(fields: Fields, path: Path, section: Cylinder) -> None:
         if text is None:
             continue
         sizes[key] = fields.number((*path, key), text, LENGTH)
-        if fields.error_count == errors and not sizes[key] > 0.0:
+        if fields.error_count == errors and not sizes[key] > tolerances.SMALLEST_DIVISOR:
             text = f"the {key} of a cylinder is a diameter above zero"
             fields.error("no-diameter", (*path, key), text, "write its diameter")
     if "rod" in sizes and fields.error_count == errors and not sizes["rod"] < sizes["bore"]:

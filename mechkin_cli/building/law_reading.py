@@ -76,7 +76,7 @@ from mechkin_cli.schema import (
     TableLaw,
 )
 from mechkin_cli.tape import JetNumber, as_recorded, is_traced, orders_of
-from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME
+from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME, SMALLEST_DIVISOR
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
 if TYPE_CHECKING:
@@ -335,7 +335,7 @@ def _sequence(reading: _Reading, law: Sequence) -> tuple[list[Piece], float | No
         key: Path = ("segments", k, "for")
         errors = fields.error_count
         length = reading.number(key, segment.extent, over.dimension)
-        if not length > 0.0:
+        if not length > SMALLEST_DIVISOR:
             if fields.error_count == errors:
                 measured = f"{length:g} {fields.units.label(over.dimension)}"
                 text = "a segment has a positive extent"
@@ -487,7 +487,7 @@ def _span(reading: _Reading, law: Rise) -> tuple[float, float]:
     else:
         duration = 0.0 if over.last is None else over.last - start
         key = ("start",) if law.start is not None else ()
-    if duration > 0.0:
+    if duration > SMALLEST_DIVISOR:
         return start, duration
     if fields.error_count == errors:
         hint = "give start and duration so that there is time for it"

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, number_of, scalar
 from mechkin_cli.kernel import functions
@@ -175,7 +176,7 @@ def _across(
 def _radius(fields: Fields, path: Path, text: str | None, drawn: float) -> float:
     errors = fields.error_count
     radius = drawn if text is None else fields.number((*path, "radius"), text, LENGTH)
-    if not radius > 0.0 and fields.error_count == errors:
+    if not radius > tolerances.SMALLEST_DIVISOR and fields.error_count == errors:
         hint = "give a positive radius, or draw the joint's point off the axis"
         fields.error(
             "no-radius", (*path, "radius") if text else path, "the radius is not positive", hint

@@ -372,7 +372,7 @@ def _ratio(fields: Fields, path: Path, section: GearCoupling) -> tuple[float, fl
     one, other = (fields.number((*path, key, i), text, dimension) for i, text in enumerate(texts))
     if fields.error_count == errors:
         for i, number in enumerate((one, other)):
-            if not number > 0.0:
+            if not number > tolerances.SMALLEST_DIVISOR:
                 text = f"the {key} of a wheel are {texts[i]}"
                 hint = "give positive numbers; internal: true is for a ring with its teeth inside"
                 fields.error("no-wheel", (*path, key, i), text, hint, limit="more than 0")
@@ -459,7 +459,7 @@ def rack_relation(
     pitch = along.o if section.at is None else place_at(fields, (*path, "at"), section.at)
     if fields.error_count > errors:
         return None
-    if not radius > 0.0:
+    if not radius > tolerances.SMALLEST_DIVISOR:
         text = f"the radius of a pinion is {section.radius}"
         fields.error(
             "no-wheel", (*path, "radius"), text, "give its pitch radius", limit="more than 0"

@@ -56,6 +56,9 @@ from mechkin_cli.units import UNITS, Dimension, UnitError, UnitSystem, conversio
 
 _NAMES_ARE = "names are those of parameters and directions, and of quantities such as J.theta"
 
+_IN_PI = frozenset({"+", "-", "*", "negate"})
+"""Operations whose result is in parts of pi if an operand is."""
+
 _OPERATIONS: dict[str, Callable[..., Quantity]] = {
     "+": operations.add_or_subtract,
     "-": operations.add_or_subtract,
@@ -180,7 +183,7 @@ class Expression(NamedTuple):
                         operand = of_infinite(node.symbol, operand, operands)
                     stack.append(operand)
                 elif isinstance(node, NumberNode):
-                    stack.append(Operand(literal(node), node.offset, node))
+                    stack.append(Operand(literal(node), node.offset, node, node.text == "pi"))
                 else:
                     quantity = _look_up(node, resolve)
                     some_infinite = some_infinite or is_infinite(quantity)
@@ -218,7 +221,15 @@ def _operate(node: OperationNode, operands: list[Operand], units: UnitSystem) ->
         raise site.error(
             f"{site.symbol} has no finite value{of_numbers}", "check the values of the parameters"
         )
-    return Operand(quantity, min(node.offset, *(operand.offset for operand in operands)))
+    start = min(node.offset, *(operand.offset for operand in operands))
+    return Operand(quantity, start, in_pi=_in_pi(node.symbol, operands))
+
+
+def _in_pi(symbol: str, operands: list[Operand]) -> bool:
+    """Whether a result is in parts of pi; divided by pi it may be in degrees."""
+    if symbol == "/":
+        return operands[0].in_pi and not operands[1].in_pi
+    return symbol in _IN_PI and any(operand.in_pi for operand in operands)
 
 
 def _literal(number: NumberNode) -> Quantity:

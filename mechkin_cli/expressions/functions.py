@@ -94,7 +94,8 @@ def _elementary(
 ) -> Callable[[Site, Operand], Quantity]:
     def apply(site: Site, operand: Operand) -> Quantity:
         value = site.periodic(operand) if argument == ANGLE else site.scalar(operand)
-        site.require(operand, argument)
+        if not (operand.in_pi and argument == ANGLE and operand.dimension.dimensionless):
+            site.require(operand, argument)
         return Quantity(of_one(operation, value), result)
 
     return apply

@@ -216,11 +216,15 @@ def lookup(quantities: Mapping[str, Quantity], known: Iterable[str] | None = Non
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operand:
-    """A value with the place of its text, and the number literal it comes from if it is one."""
+    """A value with the place of its text, and the number literal it comes from if it is one.
+
+    A number in parts of pi, such as 2*pi*time/(1 s), is an angle in radians where one is taken.
+    """
 
     quantity: Quantity
     offset: int
     number: NumberNode | None = None
+    in_pi: bool = False
 
     @property
     def value(self) -> Value:

@@ -179,6 +179,7 @@ def test_a_sine_and_its_derivatives(
 
 EXPRESSIONS = [
     ("20 mm*sin(360 deg*time/(7 s))", lambda t: 20 * mp.sin(2 * mp.pi * t / 7)),
+    ("20 mm*sin(2*pi*time/(7 s))", lambda t: 20 * mp.sin(2 * mp.pi * t / 7)),
     (
         "3 mm*exp(-time/(20 s))*cos(0.3 rad/s*time) + 1 mm",
         lambda t: 3 * mp.exp(-t / 20) * mp.cos(mp.mpf("0.3") * t) + 1,
@@ -232,7 +233,7 @@ BAD = [
     ("expression", "value: 0, formula: time", "unknown-key", "write value: 20 mm*time/(1 s)"),
     ("3-4-5", "from: 0, to: 1, duration: -1", "no-duration", "a positive time"),
     ("expression", 'value: "time"', "expression", "expected a length, found a time"),
-    ("expression", 'value: "1 mm*sin(2*pi*time/(1 s))"', "expression", "by 1 rad if it is in rad"),
+    ("expression", 'value: "1 mm*sin(2*time/(1 s))"', "expression", "by 1 rad if it is in rad"),
     ("expression", 'value: "1 mm*tiem/(1 s)"', "expression", "an expression of time"),
     ("expression", 'value: "2*O.s"', "expression", "{with: ...} follows other inputs"),
     ("expression", 'value: "2 mm*("', "expression", ""),

@@ -150,3 +150,42 @@ def test_factors_carry_their_coordinates_to_what_the_first_measures(terms: str, 
     with pytest.raises(InvalidFile) as told:
         mk.loads(SPACE.replace(gear, f"{{type: linear, terms: {{{terms}}}}}"))
     assert any(words in str(d) for d in told.value.diagnostics)
+
+
+PLANE = """
+format: 1
+plane: xy
+links: {a: {}, b: {}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [0.06, 0]}
+couplings:
+  K: COUPLING
+motion: {inputs: {A.theta: {from: 0, to: 10, step: 5}}}
+"""
+TINY = {
+    "teeth": "{type: gear, joints: [A, B], teeth: [TINY, 38]}",
+    "wheels": "{type: gear, joints: [A, B], radii: [TINY, 38]}",
+    "chain": "{type: chain, joints: [A, B], teeth: [TINY, 38], pitch: 5 mm}",
+    "pitch": "{type: chain, joints: [A, B], teeth: [20, 38], pitch: TINY}",
+    "belt": "{type: belt, joints: [A, B], radii: [TINY, 1]}",
+    "segment": (
+        "{type: function, of: A.theta, gives: B.theta, law: {law: sequence, segments: "
+        "[{for: TINY, to: 3 deg, law: cycloidal}, {for: 300 deg, law: dwell}]}}"
+    ),
+    "rise": (
+        "{type: function, of: A.theta, gives: B.theta, law: "
+        "{law: cycloidal, from: 0, to: 1, duration: TINY}}"
+    ),
+}
+
+
+@pytest.mark.parametrize("tiny", ["5e-324", "1e-308", "1e-200", "1e-80"])
+@pytest.mark.parametrize("coupling", TINY.values(), ids=TINY.keys())
+def test_what_numbers_are_divided_by_is_no_slip_of_the_pen(coupling: str, tiny: str) -> None:
+    text = PLANE.replace("COUPLING", coupling.replace("TINY", tiny))
+    with pytest.raises(InvalidFile) as told:
+        mk.loads(text)
+    found = {(d.code, d.place is not None) for d in told.value.diagnostics}
+    words = ("no-wheel", "no-duration", "too-small", "expression")
+    assert found <= {(word, True) for word in words}
