@@ -75,7 +75,9 @@ def _joints_of(section: AnyCoupling) -> Iterable[str]:
         return [term.rpartition(".")[0] for term in section.terms]
     if isinstance(section, FunctionCoupling | TableCoupling):
         return [name.rpartition(".")[0] for name in (_leading(section), section.gives)]
-    return () if isinstance(section, CableCoupling) else section.joints
+    if isinstance(section, CableCoupling):
+        return [place.drum for place in section.path if place.drum is not None]
+    return section.joints
 
 
 def _leading(section: FunctionCoupling | TableCoupling) -> str:

@@ -25,6 +25,7 @@ from mechkin_cli.mechanism import (
     Joint,
     Mechanism,
     Part,
+    Relation,
     Screw,
     Track,
     Vector,
@@ -35,9 +36,13 @@ from mechkin_cli.mechanism import (
     subtract,
 )
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.tape import largest
 
 Freedom = tuple[str, int]
 """A joint's name and the number of its freedom."""
+
+Rates = Mapping[Freedom, float]
+"""Rates, or their factors in a sum; slides in parts of a size."""
 
 PLACES = 2
 """General places at which motions are compared."""
@@ -73,7 +78,7 @@ class LinkMotion(NamedTuple):
     """A motion of some links at one place: the rates of the freedoms that move, the twist of each
     link on its own drawing, and the twist by which the joints miss having it in common."""
 
-    rates: Mapping[Freedom, float]
+    rates: Rates
     twists: Mapping[str, Screw]
     miss: float = 0.0
 
@@ -109,7 +114,7 @@ def common_motions(
     links: Sequence[str],
     inner: Sequence[Joint],
     border: Sequence[Joint],
-    still: Sequence[Freedom],
+    still: Sequence[Rates],
     general: General,
 ) -> list[LinkMotion]:
     """Independent motions of a chain of links as one body that leave all others at rest.
@@ -118,7 +123,7 @@ def common_motions(
         links: in the order of the chain.
         inner: the joints between them, each leads from one to the next.
         border: the joints to other links.
-        still: freedoms that do not move.
+        still: sums of rates, each with its factor, that are zero.
         general: the place.
     """
     if _advance_apart(border):
@@ -144,8 +149,8 @@ def common_motions(
         for k in range(1, len(border))
         for i in range(6)
     ]
-    for freedom in still:
-        rows.append([1.0 if known == freedom else 0.0 for _, known, _ in columns])
+    for rates in still:
+        rows.append([rates.get(freedom, 0.0) for _, freedom, _ in columns])
     motions = []
     for motion in _null_space([row.copy() for row in rows], len(columns)):
         v = [0.0] * 6
@@ -437,16 +442,18 @@ Chain = tuple[tuple[str, ...], tuple[Joint, ...], tuple[Joint, ...]]
 
 
 class DrawnGroup(NamedTuple):
-    """A group as it is drawn, the freedoms of inputs there, and its number of motions anywhere."""
+    """A group as it is drawn, the sums of rates that inputs and couplings hold there, and its
+    number of motions anywhere."""
 
     chain: Chain
-    still: list[Freedom]
+    still: list[Rates]
     place: General
     anywhere: int
 
     def motions(self, still: Sequence[Freedom]) -> list[LinkMotion]:
         """Its motions as drawn that leave the inputs and some more freedoms at rest."""
-        return common_motions(*self.chain, [*self.still, *still], self.place)
+        more = [{freedom: 1.0} for freedom in still]
+        return common_motions(*self.chain, [*self.still, *more], self.place)
 
 
 def idle_groups(
@@ -462,15 +469,18 @@ def idle_groups(
     drawn = General(DRAWN, size, origin)
     general = [General(place, size, origin) for place in range(PLACES)]
     groups: list[RigidGroup] = []
-    waiting: list[tuple[Chain, list[Freedom]]] = []
+    coupled = [_coupled(relation, size) for relation in mechanism.couplings.values()]
+    waiting: list[tuple[Chain, list[Rates]]] = []
     as_drawn: list[DrawnGroup] = []
     for chain in _chains(mechanism):
         links, _, border = chain
         others = {end for joint in border for end in (joint.first, joint.second)}
         if len(others.difference(links)) < 2:
             continue  # a freedom like any other
-        still = [
-            (joint.name, joint.type.freedom_of[coordinate])
+        names = {joint.name for joint in border}
+        still = [rates for rates in coupled if any(name in names for name, _ in rates)]
+        still += [
+            {(joint.name, joint.type.freedom_of[coordinate]): 1.0}
             for joint in border
             for name, coordinate in driven
             if name == joint.name
@@ -489,6 +499,18 @@ def idle_groups(
             motions = [common_motions(*chain, still, one) for one in general]
             groups.append(RigidGroup(chain[0], chain[2], motions))
     return groups, as_drawn
+
+
+def _coupled(relation: Relation, size: float) -> Rates:
+    """The sum of rates that a coupling holds at a general place, where functions have a slope."""
+    rates: dict[Freedom, float] = {}
+    for number, term in enumerate(relation.terms):
+        slope = 1.0 if term.law is None else _TURNS[number % len(_TURNS)][0]
+        freedom = term.joint.name, term.joint.freedom_number(term.coordinate)
+        factor = slope * float(term.factor * term.joint.unit_of(term.coordinate, size))
+        rates[freedom] = rates.get(freedom, 0.0) + factor
+    most = largest(0.0, *(abs(factor) for factor in rates.values()))
+    return {freedom: factor / most for freedom, factor in rates.items()}
 
 
 def _chains(mechanism: Mechanism) -> Iterator[Chain]:

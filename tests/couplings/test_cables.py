@@ -401,3 +401,52 @@ def test_cables_that_cannot_be_are_refused(text: str, before: str, after: str, w
     with pytest.raises(InvalidFile) as told:
         mk.loads(text.replace(before, after))
     assert any(words in str(d) for d in told.value.diagnostics)
+
+
+def winch(x: float, radius: float, side: str, motion: str) -> str:
+    return f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links:
+  load: {{mass: 2, center_of_mass: [{x}, -1.5], inertia: 0}}
+  drum: {{mass: 1, center_of_mass: [0, 0], inertia: 0.2}}
+points: {{q: {{link: load, at: [{x}, -1.5]}}}}
+joints:
+  S: {{type: P, links: [ground, load], point: [{x}, 0], axis: [0, 1]}}
+  A: {{type: R, links: [ground, drum], point: [0, 0]}}
+couplings: {{K: {{type: cable, path: [{{drum: A, radius: {radius}, side: {side}}}, q]}}}}
+loads: [{{type: gravity, g: [0, -9.81]}}]
+{motion}
+"""
+
+
+@pytest.mark.parametrize(("side", "sense"), [("left", -1.0), ("right", 1.0)])
+@pytest.mark.parametrize(("x", "radius"), [(1.0, 0.3), (-0.7, 0.2), (0.4, 0.05), (0.05, 0.35)])
+def test_a_drum_turns_by_what_it_winds(side: str, sense: float, x: float, radius: float) -> None:
+    """The drum is carried by its joint and by the cable that leaves it, and spins about neither."""
+    sweep = "motion: {inputs: {S.s: {from: -0.3, to: 0.3, step: 0.1}}}"
+    model = mk.loads(winch(x, radius, side, sweep))
+    assert model.mobility().idle == ()
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+
+    def length(s: float) -> mpmath.mpf:
+        across, down = mpmath.mpf(x), mpmath.mpf("-1.5") + s
+        far = mpmath.sqrt(across**2 + down**2)
+        touch = mpmath.atan2(down, across) - sense * mpmath.acos(radius / far)
+        return mpmath.sqrt(far**2 - mpmath.mpf(radius) ** 2) + sense * radius * touch
+
+    with mpmath.workdps(40):
+        turns = [sense * (length(s) - length(0)) / radius for s in np.linspace(-0.3, 0.3, 7)]
+    np.testing.assert_allclose(result["A.theta"], [float(turn) for turn in turns], atol=1e-12)
+
+
+@pytest.mark.parametrize("start", ["S.s", "A.theta"])
+def test_a_winch_runs_down(start: str) -> None:
+    motion = f"responses: {{r: {{start: {{{start}: 0}}, time: {{from: 0, to: 1, step: 0.25}}}}}}"
+    run = mk.loads(winch(0.3, 0.3, "left", motion)).respond("r")
+    t = np.linspace(0.0, 1.0, 5)
+    fall = 9.81 * 2 * 0.3**2 / (2 * 0.3**2 + 0.2) * t * t / 2
+    assert set(run["row.status"]) == {"ok"}
+    np.testing.assert_allclose(run["S.s"], -fall, rtol=1e-9, atol=1e-12)
