@@ -276,6 +276,13 @@ class Analysis(Listed):
         return Named(evaluate(layout, self.result) for layout in self.layouts)
 
     @cached_property
+    def impacts(self) -> Columns | None:
+        """The impacts of a response at limits with a restitution, with the impulses that limits
+        give and joints transmit, a line for each, in the file's units; None where there are
+        none."""
+        return self.result.impact_table
+
+    @cached_property
     def coefficients(self) -> tuple[Columns, ...]:
         """The tables of the dense system of reactions that the file asks for, two for each.
 

@@ -311,6 +311,7 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
         analysis.errors.columns if command.errors else None,
         command.units,
         command.decimal_comma,
+        analysis.impacts,
     )
 
 

@@ -19,7 +19,13 @@ from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import ORDERS, CrossingEnd, Limit, eliminated, is_angle
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.response.integration import Beginning, Impact, MotionEnd, MotionRows
+from mechkin_cli.response.integration import (
+    Beginning,
+    Impact,
+    MotionEnd,
+    MotionRows,
+    Rebound,
+)
 from mechkin_cli.session import Ask, Chart
 from mechkin_cli.units import FORCE, MOMENT, TIME
 
@@ -30,15 +36,6 @@ if TYPE_CHECKING:
     from mechkin_cli.response.result import ResponseResult
     from mechkin_cli.session import RowInputs
     from mechkin_cli.show import Floats
-
-
-class Rebound(NamedTuple):
-    """An impact, how the motion begins behind it, and what it put in and lost in kg, length units
-    and s."""
-
-    impact: Impact
-    begun: Beginning
-    work: tuple[float, float]
 
 
 class _Touch(NamedTuple):
@@ -106,7 +103,7 @@ class ImpactAt:
 
     def __init__(self, result: ResponseResult, stop: CrossingEnd) -> None:
         assert stop.limit is not None
-        self.result, self.session = result, result.session
+        self.result, self.session, self.stop = result, result.session, stop
         self.row, self.charts = result.rows - 1, len(result.chart.rates)
         self.first = _Touch(stop.limit, 1.0 if stop.direction == "up" else -1.0)
         self.touches = [self.first, *self._beside()]
@@ -159,7 +156,22 @@ class ImpactAt:
         )
         if any(touch.limit.restitution is None for touch in self._pushing(numbers)):
             return None
-        return Rebound(impact, begun, (work / unit, lost / unit))
+        still = np.zeros((n, 1))
+        rows = self._rows(still, (after - before)[:, None])
+        none = None if rows.rates is None else np.zeros(rows.rates.shape)
+        given: dict[tuple[str, str], float] = {}
+        for number, push in zip(numbers, pushes, strict=True):
+            touch = self.touches[number]
+            at = touch.limit.joint, touch.limit.coordinate
+            given[at] = given.get(at, 0.0) - touch.side * push
+        return Rebound(
+            impact,
+            begun,
+            (work / unit, lost / unit),
+            rows._replace(rates=none, accelerations=none),
+            given,
+            self.stop.words,
+        )
 
     @property
     def may_rest(self) -> bool:

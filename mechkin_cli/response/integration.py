@@ -7,7 +7,7 @@ gets a verdict, what was measured, and the cure (`ending`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -66,6 +66,19 @@ class Impact(NamedTuple):
     rates: tuple[float, ...]
     impulses: tuple[float, ...]
     rests: bool = False
+
+
+class Rebound(NamedTuple):
+    """An impact, how the motion begins behind it, and what it put in and lost in kg, length units
+    and s; the place at rest with the jumps of the rates as accelerations, the impulses along
+    coordinates (joint, coordinate), and what the row says of it."""
+
+    impact: Impact
+    begun: Beginning
+    work: tuple[float, float]
+    rows: RowInputs
+    pushes: Mapping[tuple[str, str], float]
+    words: str
 
 
 class MotionEnd(IntEnum):

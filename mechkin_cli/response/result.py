@@ -22,6 +22,7 @@ from mechkin_cli.mechanism import (
     response_quantities,
 )
 from mechkin_cli.record import replace
+from mechkin_cli.response.impulses import impact_table
 from mechkin_cli.session import RowInputs
 from mechkin_cli.sweep import Result, SweepRows
 from mechkin_cli.units import TIME
@@ -29,9 +30,10 @@ from mechkin_cli.units import TIME
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.mechanism import Amount, ResponseProblem, Wanted
-    from mechkin_cli.response.integration import Impact, MotionReport
+    from mechkin_cli.response.integration import Impact, MotionReport, Rebound
     from mechkin_cli.session import Chart, KernelInputs, Session
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.tables import Columns
 
 
 def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
@@ -66,7 +68,7 @@ class ResponseResult(Result):
         events: the stop that each row is at, empty for a moment of the file.
         response: the file's.
         report: how the motion ended.
-        impacts: at limits of coordinates, in order.
+        rebounds: at limits of coordinates, in order.
     """
 
     def __init__(
@@ -81,12 +83,24 @@ class ResponseResult(Result):
         events: Sequence[str],
         response: ResponseProblem,
         report: MotionReport | None,
-        impacts: Sequence[Impact] = (),
+        rebounds: Sequence[Rebound] = (),
     ) -> None:
         super().__init__(session, start, rows)
         self.chosen, self.chart, self.exchanged = chosen, chart, work
         self.events, self.response, self.report = tuple(events), response, report
-        self.impacts = tuple(impacts)
+        self.rebounds = tuple(rebounds)
+
+    @property
+    def impacts(self) -> tuple[Impact, ...]:
+        """What limits gave, in order."""
+        return tuple(one.impact for one in self.rebounds)
+
+    @property
+    def impact_table(self) -> Columns | None:
+        """The impacts with what joints transmit; None without any."""
+        if not self.rebounds:
+            return None
+        return impact_table(self.session, self.response.name, self.rebounds)
 
     @cached_property
     def solved(self) -> Bools:

@@ -38,9 +38,9 @@ from mechkin_cli.response.impacts import (
 )
 from mechkin_cli.response.integration import (
     Beginning,
-    Impact,
     MotionEnd,
     MotionRows,
+    Rebound,
     WatchedStop,
     driven_laws,
     ending,
@@ -421,20 +421,20 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
     if any(isinstance(stop, CrossingEnd) and stop.limit for stop in one.response.stops):
         moved = stopped_at_start(result, moved)
         result = rows_of(one, moved)
-    impacts: list[Impact] = []
+    rebounds: list[Rebound] = []
     contacts: list[Contact] = []
     ended = ""
     while (stop := touched_limit(one.response, moved)) is not None and stop.limit is not None:
         touch = ImpactAt(result, stop)
         rebound = touch.rebound()
         times = one.response.moments.values[moved.report.rows :]
-        if rebound is None or not times.size or len(impacts) == tolerances.MOST_IMPACTS:
+        if rebound is None or not times.size or len(rebounds) == tolerances.MOST_IMPACTS:
             break
-        impacts.append(rebound.impact)
+        rebounds.append(rebound)
         later = _onward(one, rebound.begun, rebound.impact.time, times, packing)
         work = rebound.work
         if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
-            impacts[-1] = impacts[-1]._replace(rests=True)
+            rebounds[-1] = rebound._replace(impact=rebound.impact._replace(rests=True))
             lever = touch.lever() if touch.may_rest else 0.0
             if lever == 0.0:
                 ended = f"{stop.limit.name} rests at its limit"
@@ -466,11 +466,11 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         )
         held = with_loads(one.free, problem)
         result = rows_of(replace(one, response=response, free=held), moved)
-    if impacts:
-        result.impacts = tuple(impacts)
+    if rebounds:
+        result.rebounds = tuple(rebounds)
         if ended:
             result.events = (*result.events[:-1], ended)
-        result.row_states.diagnostics += impact_notes(result, impacts, ended=bool(ended))
+        result.row_states.diagnostics += impact_notes(result, result.impacts, ended=bool(ended))
     return result
 
 

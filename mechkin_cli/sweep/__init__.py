@@ -30,7 +30,7 @@ __getattr__, __dir__ = lazy_names(
         "limits": "beyond judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
-        "rows": "SweepRows has_turns",
+        "rows": "SHIFTS SweepRows has_turns",
         "sweep": "analyze at_once closed_rows first_assembly judge_condition rest_on_reactions "
         "row_notes",
     },

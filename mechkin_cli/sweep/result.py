@@ -271,6 +271,11 @@ class Result:
         return self.certificate.status
 
     @property
+    def impact_table(self) -> TableColumns | None:
+        """The impacts of a response; None where there are none, and of a sweep."""
+        return None
+
+    @property
     def columns(self) -> Mapping[str, Floats]:
         """What has been read, see `Columns`."""
         return self._columns

@@ -20,6 +20,7 @@ class Results(NamedTuple):
         units: whether headers of CSV have them.
         decimal_comma: whether numbers of CSV, Markdown and LaTeX have a comma, and semicolons part
             the cells of CSV.
+        impacts: of a response; None without any.
     """
 
     name: str
@@ -31,6 +32,7 @@ class Results(NamedTuple):
     errors: tuple[ColumnErrors, ...] | None = None
     units: bool = False
     decimal_comma: bool = False
+    impacts: Columns | None = None
 
     def csv(self, table: Columns) -> bytes:
         """A table of the run as CSV."""

@@ -86,14 +86,17 @@ USUAL_FORMATS = ("csv", "md")
 
 
 def written_files(runs: Sequence[Results], formats: Iterable[str]) -> dict[str, bytes]:
-    """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv`; where errors
-    were asked for, `errors.csv` and of a response `NAME.errors.csv`."""
+    """All files of the formats by name, and `rows.csv`, of a response `NAME.rows.csv` and, with
+    impacts, `NAME.impacts.csv`; where errors were asked for, `errors.csv` and of a response
+    `NAME.errors.csv`."""
     from mechkin_cli.tables.errors import cells_table
     from mechkin_cli.tables.markup import rows_table
 
     files = dict(file for name in formats for file in WRITERS[name](runs))
     for results in runs:
         details = [rows_table(results.source, results.run)]
+        if results.impacts is not None:
+            details.append(results.impacts)
         if results.errors is not None:
             details.append(cells_table(results.errors, results.run))
         files |= {f"{table.name}.csv": results.csv(table) for table in details}

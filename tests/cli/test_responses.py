@@ -38,6 +38,17 @@ def test_every_run_has_its_files(mechkin, write, folder) -> None:
     assert rows[-1].split(",")[4] == "dead centre 2 of A.theta"
 
 
+def test_impacts_have_a_file(mechkin, write, folder) -> None:
+    limits = "limits: {A.theta: {min: 0, restitution: 0.5}}\nresponses:"
+    text = PENDULUM.replace("responses:", limits).replace(", count: 2", "")
+    assert mechkin("analyze", write("pendulum.yaml", text)).code == 0
+    header, first, *_ = (folder / "out/pendulum/fall.impacts.csv").read_text().splitlines()
+    names = header.split(",")
+    assert names[:3] == ["time", "event", "A.theta.impulse"]
+    assert {"A.impulse.x", "A.angular_impulse.y"} < set(names)
+    assert first.split(",")[1] == "A.theta at its limit 0 deg"
+
+
 def test_what_is_said_of_a_response(mechkin, write) -> None:
     run = mechkin("analyze", write("pendulum.yaml", PENDULUM))
     lines = run.err.splitlines()

@@ -220,6 +220,13 @@ def test_an_impact_of_a_four_bar_is_that_of_its_bodies_and_joints() -> None:
     np.testing.assert_allclose(after, solved[:9], atol=1e-8)
     assert impact.impulses[0] == pytest.approx(-solved[17], rel=1e-9)
     assert impact.rates[0] == pytest.approx(before[8], rel=1e-9)
+    told = later.impacts
+    assert told is not None
+    found = {column.label: column.values for column in told.columns}
+    pushed = [found[f"{joint}.impulse.{axis}"][0] for joint in "ABCD" for axis in "xy"]
+    np.testing.assert_allclose(pushed, solved[9:17], rtol=1e-8, atol=1e-9)
+    np.testing.assert_allclose(found["D.theta.impulse"], solved[17], rtol=1e-9)
+    np.testing.assert_allclose(found["time"], at, rtol=1e-9)
 
 
 DOUBLE = """
@@ -264,6 +271,50 @@ def test_an_elbow_that_comes_to_its_stop_moves_both_arms() -> None:
     np.testing.assert_allclose(after, before - push * normal, atol=1e-8)
     assert impacts_of(later)[0].impulses[0] == pytest.approx(push, rel=1e-9)
     assert sin(0.8) > 0.0
+
+
+def test_a_drive_takes_the_impulse_of_an_elbow_at_its_stop() -> None:
+    text = DOUBLE + (
+        "limits: {B.theta: {max: 0.8, restitution: 0.3}}\n"
+        "responses: {swing: {start: {B.theta: 0.3, B.theta_dot: 6}, "
+        "driven: {A.theta: {law: constant-rate, at: 0.2, rate: 1}}, "
+        "time: {from: 0, to: 0.5, step: 0.1}}}\n"
+    )
+    rows = mk.loads(text).respond("swing")
+    told = rows.impacts
+    assert told is not None
+    (impact,) = impacts_of(rows)
+    found = {column.label: float(column.values[0]) for column in told.columns if column.unit}
+    whole = inertia(0.8)
+    jump = -1.3 * impact.rates[0]
+    assert found["B.theta.impulse"] == pytest.approx(whole[1, 1] * jump, rel=1e-12)
+    assert found["A.effort_impulse"] == pytest.approx(whole[0, 1] * jump, rel=1e-12)
+    # the upper arm goes on as it is driven, so both pins take the lower one's momentum: of 1 kg,
+    # 0.4 m from its pin, in the direction of both angles
+    along = 0.2 + impact.time + 0.8
+    change = 0.4 * jump * np.array([cos(along), sin(along)])
+    for pin in "AB":
+        pushed = [found[f"{pin}.impulse.{axis}"] for axis in "xy"]
+        np.testing.assert_allclose(pushed, change, rtol=1e-11)
+
+
+def test_impulses_that_redundant_pins_share_have_no_cell() -> None:
+    # two pins on one axis take the blow together, in shares that rigid links do not tell
+    text = """
+format: 1
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {door: {mass: 3, center_of_mass: [0, -0.5, 0], inertia: {xx: 0.25, yy: 0.2, zz: 0.25}}}
+joints:
+  A: {type: R, links: [ground, door], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [ground, door], point: [0, 0, 1], axis: [0, 0, 1]}
+limits: {A.theta: {max: 1, restitution: 0.5}}
+responses: {shut: {start: {A.theta: 0, A.theta_dot: 2}, time: {from: 0, to: 1, step: 0.1}}}
+"""
+    told = mk.loads(text).respond("shut").impacts
+    assert told is not None
+    found = {column.label: column.values for column in told.columns}
+    assert np.isnan(found["A.impulse.x"]).all()
+    np.testing.assert_allclose(found["A.theta.impulse"], [-3.0], rtol=1e-12)
 
 
 def test_rebounds_are_the_same_bits_in_any_lanes() -> None:
