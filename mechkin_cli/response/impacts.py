@@ -311,20 +311,21 @@ def _dot(one: Sequence[float], other: Sequence[float]) -> float:
 
 
 def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> MotionRows:
-    """A motion and the one that goes on from its last place, whose first row is that place; `work`
-    is what the impact between them put in and lost."""
+    """A motion and the one that goes on from its last place, whose first row is that place, or
+    already the next row; `work` is what the impact between them put in and lost."""
     own, more, last = before.report, later.report, before.count - 1
     rows = own.rows
+    known = later.states.shape[-1] - (before.states.shape[-1] - rows)
     put = np.array(work)[:, None] + before.work[:, [last]]
 
     def both(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
         found = np.array(first)
-        found[..., rows:] = second[..., 1:]
+        found[..., rows:] = second[..., known:]
         return found
 
     offset = before.turns[:, [last]] - later.turns[:, [0]]
     report = more._replace(
-        rows=rows + more.rows - 1,
+        rows=rows + more.rows - known,
         energy=max(own.energy, more.energy),
         stiff=own.stiff or more.stiff,
         stiff_from=own.stiff_from if own.stiff else more.stiff_from,

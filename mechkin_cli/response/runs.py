@@ -477,11 +477,15 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
 def _onward(
     one: Prepared, begun: Beginning, time: float, times: Floats, packing: Packing
 ) -> MotionRows:
-    """The motion from a moment on, its first row."""
+    """The motion from a moment on, its first row, or from that of the first row if hardly anything
+    moves until then."""
+    fastest, first = float(np.max(np.abs(begun.first), initial=0.0)), float(times[0])
+    same = tolerances.SAME_MOMENT * abs(first)
+    near = first - time <= same or 0.0 < (first - time) * fastest <= tolerances.IMPACT_PLACE
     (later,) = integrate(
         [(one.free.plan, begun)],
-        time,
-        np.array([time, *times]),
+        first if near else time,
+        times if near else np.array([time, *times]),
         stops=[watched_stop(each) for each in one.response.stops],
         driven=one.driven,
         tolerance=one.response.tolerance,

@@ -171,6 +171,10 @@ SAME_MOMENT: Final = 1e-15
 """A stop so near to the last row, in parts of its moment, ends the response at that row: a few
 roundings of the time, which would print as two rows of one moment."""
 
+IMPACT_PLACE: Final = 1e-12
+"""rad, or parts of the size, that coordinates move by from an impact to a row which counts as at
+its moment: where an impact is found is uncertain by 5e-14, and no step resolves less."""
+
 ENERGY_ROUNDING: Final = 2.0**-48
 """Parts of the largest potential energy below which nothing is missing of a response's energies: 16
 roundings, as heights are sums of some. A pendulum that swings by 1e-6 deg moves 1e-16 of it."""

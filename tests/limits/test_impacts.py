@@ -385,3 +385,15 @@ def test_a_four_bar_rests_on_a_limit_of_its_rocker() -> None:
     slope = np.diff(potential["row.potential_energy"])[0] / -2e-6
     np.testing.assert_allclose(potential["A.theta"], result["A.theta"][-1], atol=1e-4)
     np.testing.assert_allclose(result["D.effort"][5:], slope, rtol=1e-7)
+
+
+@pytest.mark.parametrize("height", [0.35, 0.55, 1.15, 2.9, 3.35, 4.05, 4.75])
+@pytest.mark.parametrize("after", [0.0, 1e-15, 2e-15, 5e-15, 1e-14, 1e-13, 1e-12])
+def test_a_last_row_at_the_moment_of_an_impact_is_reached(height: float, after: float) -> None:
+    """The step that is left from the fourth impact to the last row is a few roundings of time."""
+    last = 7.0 * sqrt(height / 5.0) * (1.0 + after)
+    text = SLIDE.format(e=1.0, to=last).replace("step: 0.1", "count: 11")
+    text = text.replace("min: -2", "min: 0").replace("S.s: 0}", f"S.s: {height}}}")
+    rows = mk.loads(text).respond("fall")
+    assert rows.complete
+    assert abs(rows["S.s"][-1]) <= 4.0 * (5e-12 + last * after * sqrt(20.0 * height))
