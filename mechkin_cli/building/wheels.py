@@ -193,8 +193,7 @@ def _pitch_circles(
             "the wheels do not mesh where they are drawn",
             "draw the axes at the sum of the pitch radii, of a ring and its pinion at the "
             "difference",
-            measured=f"axes {measured} apart",
-            limit=limit,
+            measured=f"axes {measured} apart, by the wheels {limit}",
         )
         return None
     # a ring and its pinion have their pitch point beyond the pinion's axis, seen from the ring's
@@ -333,8 +332,7 @@ def _crossed(
                 (*path, "radii"),
                 "the wheels do not mesh where they are drawn",
                 "draw the axes at the sum of the pitch radii",
-                measured=f"axes {measured} apart",
-                limit=limit,
+                measured=f"axes {measured} apart, by the wheels {limit}",
             )
             return None
     else:

@@ -296,9 +296,9 @@ ROPE = (
     "{pulley: A, radius: 50 mm, side: left}, Q]}}"
 )
 GENEVA = (
-    'the wheel turns by a law of the crank: motion: {inputs: {W.theta: {with: "if(abs(A.theta) < '
-    '45 deg, ..., ...)", drive: tie}, ...}}; while the pin is in its slot, the two are also a '
-    "joint (Ps in a plane, Ss in space)"
+    "the wheel's angle is a function of the crank's: couplings: {K: {type: function, of: A.theta, "
+    'gives: W.theta, value: "if(abs(theta) < 45 deg, ..., ...)"}}; while the pin is in its slot, '
+    "the two are also a joint (Ps in a plane, Ss in space)"
 )
 GROOVE = (
     "a straight groove is a joint (Ps in a plane, Sg or Ss in space), one along a circle an R "
