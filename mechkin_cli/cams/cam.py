@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.cams.drawings import dxf_bytes, svg_bytes
+from mechkin_cli.cams.drawings import curve_bytes, dxf_bytes, svg_bytes
 from mechkin_cli.cams.profile import Profile, profile_of
 from mechkin_cli.diagnostics import Diagnostic, UsageError, nearest_hint
-from mechkin_cli.mechanism import Follower, Term
+from mechkin_cli.mechanism import Follower, Joint, Term, dot, frame_on
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables import Columns, column_of_numbers, csv_bytes
@@ -101,16 +101,50 @@ class Cam(Listed):
         return Columns(self.name, f"cam {self.name}", tuple(columns))
 
     def files(self) -> dict[str, bytes]:
-        """The table as CSV, the profile and the pitch curve as DXF (R12) and SVG, by file name."""
-        curves = {"PROFILE": self.profile}
-        if not np.isnan(self.pitch).all():
+        """The table as CSV, the profile and the pitch curve as DXF (R12) and SVG, and `curve` as
+        YAML, by file name."""
+        curves, more = {"PROFILE": self.profile}, {}
+        if self.has_pitch:
             curves["PITCH"] = self.pitch
+            more[f"{self.name}.yaml"] = curve_bytes(self.curve(), self.length)
         base = self.base_radius
         return {
             f"{self.name}.csv": csv_bytes(self.table, units=True),
             f"{self.name}.dxf": dxf_bytes(curves, base, self.length, self.is_closed),
             f"{self.name}.svg": svg_bytes(curves, base, self.is_closed),
+            **more,
         }
+
+    @property
+    def has_pitch(self) -> bool:
+        """Whether a point of the follower stays on one curve of the cam: not with a flat face."""
+        return not bool(np.isnan(self.pitch).all())
+
+    def curve(self) -> dict[str, Any]:
+        """The pitch curve as the `curve:` of a pair `Ps` or `Sg` that leads the follower: a spline
+        through the points of the table.
+
+        Its places are those of the cam's own axes in the file's unit of length: draw the cam's axis
+        at the origin, and the joint's point at the first place. The spline departs from the law by
+        the fourth power of the step, if jumps of the law's jerk are among the turns.
+
+        Returns:
+            `points`, each [x, y], and `closed`.
+
+        Raises:
+            UsageError: the follower has a flat face.
+
+        Example:
+            `m.cam("K", points=3600).curve()`
+        """
+        if not self.has_pitch:
+            raise UsageError(
+                f"{self.name}: a flat face touches the cam with ever other points, so that none of "
+                "them keeps to a curve; give the follower contact: roller or knife"
+            )
+        closed = self.is_closed
+        places = self.pitch[:, :-1] if closed else self.pitch
+        return {"closed": closed, "points": places.T.tolist()}
 
     @property
     def is_closed(self) -> bool:
@@ -215,7 +249,31 @@ def cam_of(
         float(in_length(follower.base_radius)),
         (),
     )
-    return replace(cam, diagnostics=tuple(_warnings(cam)))
+    follows = next(t.joint for t in problem.mechanism.couplings[chosen].terms if t.law is None)
+    turning = _turning_alike(term.joint, follows) if follower.oscillates else ()
+    return replace(cam, diagnostics=(*turning, *_warnings(cam)))
+
+
+def _turning_alike(cam: Joint, follower: Joint) -> Iterator[Diagnostic]:
+    """Warns where an oscillating follower, as its coordinate grows, turns the way of its cam: that
+    takes another profile."""
+    shared = {cam.first, cam.second} & {follower.first, follower.second}
+    if not (shared and cam.type.is_bearing and follower.type.is_bearing):
+        return
+    carrier = min(shared)
+    along = dot(frame_on(cam, carrier).z, frame_on(follower, carrier).z)
+    if (cam.first == carrier) != (follower.first == carrier):
+        along = -along
+    if along > 0.0:
+        text = (
+            f"as drawn, {follower.name}.theta grows the way that {cam.name}.theta turns the cam; "
+            "this profile is of a follower that rises the other way round"
+        )
+        hint = (
+            f"write the links of {follower.name} the other way round if it rises so; a follower "
+            "that does not has the mirror image of the profile of the law run backwards"
+        )
+        yield Diagnostic("follower-turns-alike", "warning", text, hint=hint)
 
 
 def _warnings(cam: Cam) -> Iterator[Diagnostic]:

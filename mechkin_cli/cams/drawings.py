@@ -1,9 +1,9 @@
-"""Drawings of a cam: DXF, as AutoCAD's release 12 reads it, and SVG."""
+"""Drawings of a cam: DXF, as AutoCAD's release 12 reads it, and SVG; its pitch curve in YAML."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -51,6 +51,14 @@ def svg_bytes(curves: Mapping[str, Floats], base: float, is_closed: bool) -> byt
         colour = _COLOURS[layer]
         lines.append(f'<path id="{layer.lower()}" d="M {points}{end}" {line} stroke="{colour}"/>')
     return ("\n".join([*lines, "</svg>"]) + "\n").encode()
+
+
+def curve_bytes(curve: Mapping[str, Any], unit: str) -> bytes:
+    """A curve through points as a section of a mechanism file."""
+    lines = [f"# on the cam, from its axis, in {unit}", "curve:"]
+    lines += [f"  closed: {str(curve['closed']).lower()}", "  points:"]
+    lines += [f"    - [{x!r}, {y!r}]" for x, y in curve["points"]]
+    return ("\n".join(lines) + "\n").encode()
 
 
 def _drawn(places: Floats, is_closed: bool) -> list[tuple[float, float]]:

@@ -323,8 +323,8 @@ CAM = Command(
     """Find the profile of a cam, and what is extreme in it.
 
     Of a coupling (function or table) with a `follower:`. Lists lift, pressure angle and radius of
-    curvature, undercut and lift-off with their places, and writes the table (CSV) and the profile
-    (DXF, SVG) into out/STEM, or a folder of your choice.
+    curvature, undercut and lift-off with their places, and writes the table (CSV), the profile
+    (DXF, SVG) and the pitch curve as a `curve:` (YAML) into out/STEM, or a folder of your choice.
     """,
     (
         FILE,

@@ -26,12 +26,19 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import FINITE_KINDS, INSTANT_KINDS, ORIENTATION_KINDS, Mechanism, Wanted
+from mechkin_cli.mechanism import (
+    FINITE_KINDS,
+    INSTANT_KINDS,
+    ORDERS,
+    ORIENTATION_KINDS,
+    Mechanism,
+    Wanted,
+)
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import ORIENTATION, continuous_signs, drawn_quaternion
 from mechkin_cli.tape import of_two
-from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, VELOCITY
+from mechkin_cli.units import ANGULAR_RATE, DIMENSIONLESS, LENGTH, TIME, VELOCITY
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -159,14 +166,24 @@ def _basis(mechanism: Mechanism, quantity: Wanted) -> list[Wanted]:
         joint = mechanism.joints[owner]
         return [*directions(joint.first), *directions(joint.second)]
     if quantity.kind == "arc_length":
-        name = f"{owner}.{quantity.coordinate}"
-        return [Wanted(name, "coordinate", owner, DIMENSIONLESS, False, quantity.coordinate)]
+        return parameter_rates(quantity)
     if quantity.kind in FINITE_KINDS:
         return displacement(owner)
     if quantity.kind in INSTANT_KINDS:
         speed = Wanted(f"{owner} velocity", "link_point", owner, VELOCITY, True, order=1)
         return [Wanted(f"{owner}.omega", "omega", owner, ANGULAR_RATE, True), _place(owner), speed]
     return []
+
+
+def parameter_rates(length: Wanted) -> list[Wanted]:
+    """A curve's parameter and its rates, to the order of a length along the curve."""
+    of, coordinate = length.owner, length.coordinate
+    found, dimension = [], DIMENSIONLESS
+    for order, suffix in enumerate(ORDERS[: length.order + 1]):
+        name = f"{of}.{coordinate}{suffix}"
+        found.append(Wanted(name, "coordinate", of, dimension, False, coordinate, order))
+        dimension = dimension / TIME
+    return found
 
 
 def displacement(link: str) -> list[Wanted]:

@@ -45,6 +45,7 @@ from mechkin_cli.derived.basis import (
     divide,
     dot,
     length,
+    parameter_rates,
     quaternion,
     scale,
     square_to,
@@ -239,7 +240,10 @@ def _computed(run: BasisQuantities, wanted: Sequence[Wanted]) -> list[list[Float
             return [*turn(run, owner)]
         if quantity.kind == "arc_length":
             track = session.problem.mechanism.joints[owner].track
-            return [track.lengths(run.scalar(f"{owner}.{quantity.coordinate}"))]
+            at = [run.scalar(basis.name) for basis in parameter_rates(quantity)]
+            return [
+                track.length_rate(quantity.order, at) if quantity.order else track.lengths(at[0])
+            ]
         if quantity.kind == "mechanical_advantage":
             return [next(advantages)]
         if quantity.kind == "transmission_angle":

@@ -233,10 +233,15 @@ def derived_catalogue(
 
 
 def _of_curves(mechanism: Mechanism) -> Iterator[Wanted]:
-    """Lengths along curves, from where their parameter is zero, or else from their begin."""
+    """Lengths along curves, from where their parameter is zero, or else from their begin, with
+    their rates."""
     for joint in mechanism.joints.values():
         if joint.type.is_carried and joint.track.names == (PARAMETER,):
-            yield Wanted(f"{joint.name}.s", "arc_length", joint.name, LENGTH, False, PARAMETER)
+            dimension = LENGTH
+            for order, suffix in enumerate(ORDERS):
+                name = f"{joint.name}.s{suffix}"
+                yield Wanted(name, "arc_length", joint.name, dimension, False, PARAMETER, order)
+                dimension = dimension / TIME
 
 
 def ledger_catalogue() -> dict[str, Wanted]:

@@ -210,6 +210,7 @@ class Problem:
         if self.response is not None:
             efforts = self.response.efforts_of
             found = catalogue(mechanism, efforts, timed=True, held=self.held)
+            derived = derived_catalogue(mechanism, (), None)
             # the rates of forces, and with them jerks, are not known; nor is what steps leave of
             # errors
             found = {
@@ -224,7 +225,7 @@ class Problem:
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
             found |= response_quantities() | bearing_catalogue(mechanism)
-            return found | derived_catalogue(mechanism, (), None)
+            return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:

@@ -118,14 +118,47 @@ class Track:
 
     def speeds(self, u: Floats) -> Floats:
         """Lengths along a curve by its parameter, at parameters (rows,)."""
+        (first,) = self._derivatives(u, 1)
+        found: Floats = np.sqrt(_dot(first, first))
+        return found
+
+    def _derivatives(self, u: Floats, count: int) -> list[list[Floats]]:
+        """Derivatives of a curve's coordinates x, y, z at parameters (rows,), first to `count`."""
+        jets: list[Any]
         if self.knots:
             (at,) = self.wrapped((u,))
-            first = [curve.evaluate(at)[1] for curve in self.knots]
+            jets = [curve.evaluate(at) for curve in self.knots]
         else:
-            first = [jet[1] for jet in self.jets((u,), (1.0,), self.numbers)]
-        x, y, z = (np.broadcast_to(as_recorded(one), u.shape) for one in first)
-        found: Floats = np.sqrt(x * x + y * y + z * z)
-        return found
+            jets = self.jets((u,), (1.0,), self.numbers)
+        return [
+            [np.broadcast_to(as_recorded(jet[order]), u.shape) for jet in jets]
+            for order in range(1, count + 1)
+        ]
+
+    def length_rate(self, order: int, at: Sequence[Floats]) -> Floats:
+        """A derivative of the length along a curve by time, of order 1 to 3 (rows,); `at` are the
+        parameter and its derivatives by time, to that order. With w = |c'|,
+
+        s. = w u.,  s.. = w' u.^2 + w u..,  s... = w'' u.^3 + 3 w' u. u.. + w u...,
+        w' = c'.c''/w,  w'' = (c''.c'' + c'.c''' - w'^2)/w;
+
+        not finite where the curve stands still.
+
+        Raises:
+            TypeError: the parameters are no doubles.
+        """
+        if not isinstance(at[0], np.ndarray):
+            raise TypeError("rates of lengths along a curve")
+        by_u = self._derivatives(at[0], order)
+        speed: Floats = np.sqrt(_dot(by_u[0], by_u[0]))
+        rate = at[1]
+        if order == 1:
+            return speed * rate
+        slope = _dot(by_u[0], by_u[1]) / speed
+        if order == 2:
+            return slope * (rate * rate) + speed * at[2]
+        bend = (_dot(by_u[1], by_u[1]) + _dot(by_u[0], by_u[2]) - slope * slope) / speed
+        return bend * (rate * rate * rate) + 3.0 * slope * (rate * at[2]) + speed * at[3]
 
     def lengths(self, u: Floats) -> Floats:
         """Lengths (m) along a curve to parameters (rows,), from where it is zero, or else from the
@@ -261,3 +294,8 @@ def _derivatives_of_two(lines: Sequence[Sequence[Sequence[Any]]]) -> tuple[list[
     ]
     first = [*each(lambda a, b, p, m: a, 1), *each(lambda a, b, p, m: b, 1)]
     return each(lambda a, b, p, m: a, 0), first, second, third
+
+
+def _dot(a: Sequence[Floats], b: Sequence[Floats]) -> Floats:
+    """The products of rows of vectors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

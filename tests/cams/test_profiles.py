@@ -26,7 +26,7 @@ couplings:
   K: {type: function, of: A.theta, gives: GIVES, LAW, follower: FOLLOWER}
 """
 SLIDE = "{type: P, links: [ground, follower], point: [0, 60], axis: [0, 1]}"
-SWING = "{type: R, links: [ground, follower], point: [90, 0]}"
+SWING = "{type: R, links: [follower, ground], point: [90, 0]}"
 
 
 def cam(law: str, follower: str, more: str = "") -> mk.Model:
@@ -187,7 +187,7 @@ def test_the_drawings_hold_the_profile(tmp_path: Path) -> None:
     law, follower, _ = ECCENTRIC["roller"]
     found = cam(law, follower).cam(points=60)
     files = found.files()
-    assert set(files) == {"K.csv", "K.dxf", "K.svg"}
+    assert set(files) == {"K.csv", "K.dxf", "K.svg", "K.yaml"}
     lines = files["K.dxf"].decode().split("\n")
     pairs = list(zip(lines[::2], lines[1::2], strict=False))
     assert pairs[-1] == ("  0", "EOF")

@@ -208,6 +208,58 @@ def test_loads_and_drives_work_on_the_parameter() -> None:
     np.testing.assert_allclose(driven["D.effort"], 1000.0 * 3.0 * slope, rtol=1e-11)
 
 
+@pytest.mark.parametrize("u_rate", [False, True])
+def test_lengths_along_curves_have_rates(u_rate: bool) -> None:
+    """Of a parabola y = u^2/(200 mm), along which u = -S.s: s' = sqrt(1 + (u/100 mm)^2). Written at
+    another speed of its parameter it has the same."""
+    parabola = "{at: [u, '20 mm + u^2/(200 mm)'], from: -50 mm, to: 40 mm}"
+    if u_rate:
+        parabola = "{at: ['10 mm*sinh(u)', '20 mm + (10 mm*sinh(u))^2/(200 mm)'], from: -3, to: 3}"
+    result = cam("20", parabola, -35, 35, 5).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    u = -np.asarray(result["S.s"])
+    # by rates of S.s of 2, 3 and 4 mm
+    v, a, j = -2.0, -3.0, -4.0
+    w = np.sqrt(1.0 + (u / 100.0) ** 2)
+    w1, w2 = u / 1e4 / w, 1e-4 / w**3
+    np.testing.assert_allclose(result["D.s_dot"], w * v, rtol=1e-12)
+    np.testing.assert_allclose(result["D.s_ddot"], w1 * v**2 + w * a, rtol=1e-11)
+    jerk = w2 * v**3 + 3.0 * w1 * v * a + w * j
+    np.testing.assert_allclose(result["D.s_dddot"], jerk, rtol=1e-11)
+
+
+def test_a_response_has_rates_of_lengths_but_no_jerk() -> None:
+    text = """
+format: 1
+plane: xy
+units: {length: mm}
+links: {bead: {mass: 1, center_of_mass: [20, 0], inertia: 1}}
+joints: {D: {type: Ps, links: [bead, ground], point: [20, 0], curve: {center: [0, 0]}}}
+loads: [{type: gravity, g: standard, direction: [0, -1]}]
+responses:
+  fall: {start: {D.u: 0, D.theta: 0}, time: {from: 0, to: 0.1, step: 0.02}}
+"""
+    result = mk.loads(text).respond("fall")
+    turn = np.asarray(result["D.u"])
+    # of a bead that falls along a circle of 20 mm from its side
+    speed = -np.sqrt(2.0 * 9806.65 * 20.0 * -np.sin(turn))
+    np.testing.assert_allclose(result["D.s_dot"], speed, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(result["D.s_ddot"], -9806.65 * np.cos(turn), rtol=1e-9)
+    with pytest.raises(mk.MechkinError, match="a response has none"):
+        result["D.s_dddot"]
+
+
+def test_rates_of_lengths_along_a_spline_are_those_of_its_point() -> None:
+    """On a slide under a follower that only rises: s. = |(S.s., F.s.)|."""
+    result = cam("20", f"{{points: {POINTS}}}", -55, 55, 10).analyze()
+    x, y = (np.asarray(result[name]) for name in ("S.s_dot", "F.s_dot"))
+    np.testing.assert_allclose(np.abs(result["D.s_dot"]), np.hypot(x, y), rtol=1e-11)
+    ddot = (x * result["S.s_ddot"] + y * result["F.s_ddot"]) / np.hypot(x, y)
+    np.testing.assert_allclose(
+        np.sign(result["D.s_dot"]) * result["D.s_ddot"], ddot, rtol=1e-9, atol=1e-9
+    )
+
+
 def test_lengths_along_curves_are_their_integrals() -> None:
     """Of a parabola in closed form, of a circle by its angle, of a spline by quadrature."""
     parabola = "{at: [u, '20 mm + u^2/(200 mm)'], from: -50 mm, to: 40 mm}"
