@@ -168,7 +168,7 @@ def test_a_feature_as_a_key_of_anything(form: str, word: str) -> None:
 
 
 def test_the_curved_slot_that_is_advised_runs() -> None:
-    """A slide at x puts the pin of an ellipse of half axes 30 and 20 at y = 20 sqrt(1 - x^2/900)."""
+    """A slide at x puts the pin of an ellipse of half axes 30 and 20 at 20 sqrt(1 - x^2/900)."""
     advice = hint(PLANE.replace("D: {type: P", "D: {type: curved_slot"))
     joint = advice.partition("joints: {")[2].removesuffix("}")
     rows = mk.loads(
