@@ -98,6 +98,9 @@ DATA = _object(
             lead=_or_null(NUMBER),
             travel=_or_null(_list(NUMBER, minItems=2, maxItems=2)),
             radius=_or_null({"type": "number", "exclusiveMinimum": 0}),
+            track=_or_null(
+                _object(rows=_list(_list(VECTOR, minItems=3), minItems=1), closed=SWITCH)
+            ),
         )
     ),
     points=_list(_object(name=TEXT, link=INDEX, place=VECTOR, path=SWITCH)),

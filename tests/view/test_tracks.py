@@ -3,8 +3,11 @@ or ball on them in every row."""
 
 from __future__ import annotations
 
+import jsonschema
 import numpy as np
 import pytest
+from view.contract import DATA
+from view.seen import data
 
 import mechkin_cli as mk
 from mechkin_cli.view.drawing import mechanism_picture
@@ -128,3 +131,21 @@ def test_pictures_have_the_curve_between_two_walls(text: str) -> None:
     (inside,) = [line for line in svg if 'class="p" stroke-width="10.6"' in line]
     assert len(wide) == 1
     assert wide[0].count("L") == inside.count("L") == 95
+
+
+def test_pages_have_places_of_curves_and_surfaces() -> None:
+    """On the joint's second link; straight grooves have none."""
+    slot = data(mk.loads(SLOT.replace("CURVE", "{center: [90, 0]}")), modes=False)
+    jsonschema.validate(slot, DATA)
+    tracks = {joint["name"]: joint["track"] for joint in slot["joints"]}
+    assert tracks["A"] is tracks["B"] is None
+    (row,) = tracks["D"]["rows"]
+    assert tracks["D"]["closed"]
+    assert np.hypot(*(np.array(row)[:, :2] - [90.0, 0.0]).T) == pytest.approx(np.hypot(30.0, 45.0))
+    straight = data(mk.loads(SLOT.replace("curve: CURVE", "slot: [0, 1]")), modes=False)
+    assert [joint["track"] for joint in straight["joints"]] == [None] * 3
+    text = BALL.replace("POINT", "[30, 0, 0]").replace("SURFACE", "{sphere: [0, 0, 0], radius: 30}")
+    ball = data(mk.loads(text), modes=False)
+    jsonschema.validate(ball, DATA)
+    (track,) = (joint["track"] for joint in ball["joints"] if joint["name"] == "D")
+    assert np.linalg.norm(np.array(track["rows"]), axis=2) == pytest.approx(30.0)
