@@ -51,7 +51,7 @@ from mechkin_cli.view.joints import (
 )
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
 from mechkin_cli.view.tracks import DrawnTrack, drawn_track
-from mechkin_cli.view.wheels import belt_line, wheel_outlines
+from mechkin_cli.view.wheels import belt_line, cable_line, wheel_outlines
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -314,6 +314,9 @@ SURFACE_LINES = 4
 LEAST_PITCH = 2.5
 """From tooth to tooth on the picture: below it wheels are circles."""
 
+_TURNS = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+_ROUND = np.stack([np.cos(_TURNS), np.sin(_TURNS), np.zeros_like(_TURNS)], axis=1)
+
 NEAR_DECIMALS = 6
 """Of how near a thing is, in parts of the mechanism's size: the rest is rounding."""
 
@@ -384,6 +387,7 @@ class _Scene:
             *self._track_marks(),
             *self._belts(),
             *self._cylinders(),
+            *self._cables(),
             *(m for _, marks in [*links, *joints] for m in marks),
         ]
 
@@ -407,6 +411,9 @@ class _Scene:
         parts += [self._path(at.link, at.vector) for at in self._moving_points()]
         parts += [self._placed(cam.link, cam.line) for cam in self._cams]
         parts += [self._placed(track.link, track.line) for track in self._tracks]
+        for cable in self.settings.cables:
+            for at, beside in zip(cable.places, cable.beside, strict=True):
+                parts.append(self._placed(at.link, np.array(at.vector) + abs(beside) * _ROUND))
         for wheel in self._drawn_wheels():
             parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
@@ -499,6 +506,22 @@ class _Scene:
             seen = self._placed(belt.link, belt_line(belt))
             places = tuple(self._on_picture(one) for one in seen)
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
+
+    def _cables(self) -> Iterator[Mark]:
+        for cable in self.settings.cables:
+            centres = np.array(
+                [
+                    carried(self.poses[0, self.links.index(at.link)], at.vector)
+                    for at in cable.places
+                ]
+            )
+            line = self.view.seen(cable_line(centres, cable.beside))
+            for centre, beside in zip(centres, cable.beside, strict=True):
+                if beside:
+                    rim = centre + abs(beside) * _ROUND
+                    places = tuple(self._on_picture(one) for one in self.view.seen(rim))
+                    yield Stroke(places, "k", 1.2, closed=True, filled=True)
+            yield Stroke(tuple(self._on_picture(one) for one in line), "k", 1.2)
 
     @cached_property
     def _tracks(self) -> list[DrawnTrack]:

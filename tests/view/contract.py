@@ -129,6 +129,13 @@ DATA = _object(
             width=LENGTH,
         )
     ),
+    cables=_list(
+        _object(
+            links=_list(INDEX, minItems=2),
+            places=_list(VECTOR, minItems=2),
+            beside=_list(NUMBER, minItems=2),
+        )
+    ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),
     runs=_list(
         _object(
