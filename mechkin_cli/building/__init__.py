@@ -11,6 +11,7 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.building.builder import *
+    from mechkin_cli.building.cables import *
     from mechkin_cli.building.drawn_wheels import *
     from mechkin_cli.building.fields import *
     from mechkin_cli.building.motion import *
@@ -23,6 +24,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "builder": "Built build",
+        "cables": "DrawnCable",
         "drawn_wheels": "DrawnBelt DrawnWheel",
         "fields": "is_tiny_length",
         "motion": "by_count by_step",

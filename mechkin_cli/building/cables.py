@@ -32,6 +32,7 @@ from mechkin_cli.mechanism import (
     Extent,
     Frame,
     Joint,
+    Mechanism,
     Relation,
     RigidLink,
     Tension,
@@ -54,7 +55,7 @@ from mechkin_cli.schema import AnyCoupling, CableCoupling, PathPart
 from mechkin_cli.tape import of_two, square_root
 from mechkin_cli.units import LENGTH
 
-Built = tuple[dict[str, RigidLink], dict[str, Joint], dict[str, Relation]]
+_Built = tuple[dict[str, RigidLink], dict[str, Joint], dict[str, Relation]]
 """Links and joints of telescopes, and relations, by name."""
 
 
@@ -83,7 +84,7 @@ def build_cables(
     couplings: Mapping[str, AnyCoupling],
     joints: Mapping[str, Joint],
     points: Mapping[str, Attached],
-) -> Built:
+) -> _Built:
     """The cables of a file; errors are noted in `fields`."""
     links: dict[str, RigidLink] = {}
     added: dict[str, Joint] = {}
@@ -113,6 +114,33 @@ def build_cables(
         added |= cable.joints
         relations[name] = cable.relation
     return links, added, relations
+
+
+class DrawnCable(NamedTuple):
+    """A cable as pages and pictures draw it: the points and centres that it passes, as drawn on
+    their links, and how far it runs to the left of each (m), seen along its way."""
+
+    places: tuple[Attached, ...]
+    beside: tuple[float, ...]
+
+
+def drawn_cables(
+    fields: Fields, couplings: Mapping[str, AnyCoupling], mechanism: Mechanism
+) -> tuple[DrawnCable, ...]:
+    """The cables of a file without errors."""
+    found = []
+    for name, section in couplings.items():
+        if isinstance(section, CableCoupling):
+            places = [
+                _place(
+                    fields, ("couplings", name, "path", i), part, mechanism.joints, mechanism.points
+                )
+                for i, part in enumerate(section.path)
+            ]
+            known = [place for place in places if place is not None]
+            centres = tuple(place.centre for place in known)
+            found.append(DrawnCable(centres, tuple(float(place.beside) for place in known)))
+    return tuple(found)
 
 
 def _place(

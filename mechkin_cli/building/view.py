@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
+from mechkin_cli.building.cables import DrawnCable, drawn_cables
 from mechkin_cli.building.drawn_wheels import DrawnBelt, DrawnWheel, drawn_couplings
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
@@ -55,7 +56,7 @@ class ViewSettings:
         arrow_length: of the longest arrow, m; None: by the size of the mechanism.
         camera: direction from the mechanism to the eye; None: the page's choice.
         speed: seconds for once through a run; None: the page's choice.
-        wheels, belts: what couplings look like.
+        wheels, belts, cables: what couplings look like.
     """
 
     colours: Mapping[str, str] = field(default_factory=dict)
@@ -70,6 +71,7 @@ class ViewSettings:
     speed: float | None = None
     wheels: tuple[DrawnWheel, ...] = ()
     belts: tuple[DrawnBelt, ...] = ()
+    cables: tuple[DrawnCable, ...] = ()
 
 
 def build_view(
@@ -83,9 +85,10 @@ def build_view(
     `fields`."""
     drawn = ((), ()) if fields.error_count else drawn_couplings(fields, couplings, mechanism)
     wheels, belts = drawn
+    cables = () if fields.error_count else drawn_cables(fields, couplings, mechanism)
     tubes = () if fields.error_count else tuple(_cylinders(fields, cylinders, mechanism))
     if section is None:
-        return ViewSettings(wheels=wheels, belts=belts, between=tubes)
+        return ViewSettings(wheels=wheels, belts=belts, cables=cables, between=tubes)
     view = _View(fields, mechanism)
     camera = section.camera
     return ViewSettings(
@@ -105,6 +108,7 @@ def build_view(
         speed=view.positive("speed", section.speed, TIME),
         wheels=wheels,
         belts=belts,
+        cables=cables,
     )
 
 

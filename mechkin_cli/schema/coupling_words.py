@@ -146,6 +146,25 @@ CHAIN_KEYS: Final = {
 }
 """Keys of a chain."""
 
+_PATH = (
+    "a cable passes the places of its path: path: [P, {pulley: A, radius: 50 mm, side: left}, Q], "
+    "points by their names"
+)
+CABLE_KEYS: Final = {
+    **dict.fromkeys(("points", "via", "over", "through", "route", "from", "to", "ends"), _PATH),
+    **dict.fromkeys(("pulleys", "joints", "radii", "radius", "drums", "drum", "side"), _PATH),
+    "length": "its length is that of the drawing; leave it out",
+    **dict.fromkeys(
+        ("tension", "pretension", "force"), "its tension follows from the loads: K.tension"
+    ),
+    **dict.fromkeys(("stiffness", "k", "mass"), "a cable does not stretch and has no mass"),
+    **dict.fromkeys(
+        ("strands", "falls", "parts"),
+        "a tackle names its points again: path: [a, b, a, b, a] has four strands",
+    ),
+}
+"""Keys of a cable."""
+
 LINEAR_KEYS: Final = dict.fromkeys(
     ("ratio", "joints", "of", "gives", "factors", "factor", "coefficients", "coordinates"),
     "write terms: {A.theta: 1, B.theta: 2}: their sum is constant",

@@ -18,6 +18,7 @@ from mechkin_cli.schema.base import (
 )
 from mechkin_cli.schema.coupling_words import (
     BELT_KEYS,
+    CABLE_KEYS,
     CHAIN_KEYS,
     FUNCTION_KEYS,
     GEAR_KEYS,
@@ -336,6 +337,8 @@ PointOrPart = Annotated[
 
 class CableCoupling(Section):
     """A cable of constant length over points and pulleys, which bears pull alone."""
+
+    advice: ClassVar[dict[str, str]] = CABLE_KEYS
 
     type: Literal["cable"]
     path: Annotated[tuple[PointOrPart, ...], Limits(min_length=2, max_length=100)]

@@ -301,9 +301,9 @@ GENEVA = (
     "the two are also a joint (Ps in a plane, Ss in space)"
 )
 GROOVE = (
-    "a straight groove is a joint (Ps in a plane, Sg or Ss in space), one along a circle an R "
-    "about its centre; along another curve prescribe the place of the pin: motion: {inputs: "
-    "{p.position.x: {...}, p.position.y: {with: an expression of p.position.x}}}"
+    "a groove or slot is a joint (Ps in a plane, Sg in space), whose curve: is a line, an arc, a "
+    "circle, points or expressions of u: joints: {D: {type: Ps, links: [pin, slotted], point: [30, "
+    "0], curve: {at: [30 mm*cos(u), 20 mm*sin(u)], from: 0 deg, to: 360 deg, closed: true}}}"
 )
 ROLLING = (
     "a wheel that rolls without slip is a tie: motion: {inputs: {D.s: {with: -20 mm*A.theta, "
@@ -363,7 +363,7 @@ LOAD = "write loads: [{type: gravity, g: standard}], likewise force, torque, spr
 _MISSING: Final = {
     **dict.fromkeys(("ratchet", "pawl", "escapement", "clutch", "freewheel", "bumper"), CONTACT),
     **dict.fromkeys(("rope", "ropes", "cable", "cables", "tendon", "winch", "string"), ROPE),
-    "wire": ROPE,
+    **dict.fromkeys(("wire", "tackle", "block_and_tackle", "hoist", "strings"), ROPE),
     **dict.fromkeys(("geneva", "maltese", "geneva_drive", "maltese_cross"), GENEVA),
     **dict.fromkeys(("curved_groove", "curved_slot", "groove_curve", "slot_curve"), GROOVE),
     **dict.fromkeys(("grooves", "guide_curve", "path_curve"), GROOVE),

@@ -11,7 +11,8 @@ axes turned so that z' points up, a point stands at (y' - x')/sqrt(2) to the rig
 (2z' - x' - y')/sqrt(6) upwards, and is (x' + y' + z')/sqrt(3) near. A joint's symbol follows from
 its entry in the joint table: a turn about an axis is a pin along it; a slide a block on a rail,
 with a turn a sleeve, on a thread a nut with its grooves; a ball stands in a ring, on a plate, or
-between the walls of a groove; two turns are a cross of their axes.
+between the walls of a groove; two turns are a cross of their axes. A curved groove or slot has its
+own curve as walls, a curved surface lines of its parameters.
 """
 
 from __future__ import annotations
@@ -49,7 +50,8 @@ from mechkin_cli.view.joints import (
     link_shape,
 )
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
-from mechkin_cli.view.wheels import belt_line, wheel_outlines
+from mechkin_cli.view.tracks import DrawnTrack, drawn_track
+from mechkin_cli.view.wheels import belt_line, cable_line, wheel_outlines
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -191,6 +193,9 @@ class Half(NamedTuple):
 def symbol(kind: JointType, first: Half, second: Half) -> list[Mark]:
     """A joint, from back to front."""
     slides, turns = sum(kind.slides), len(kind.slides) - sum(kind.slides)
+    if kind.is_carried:
+        turns_about_one = any(known.is_angle for known in kind.named)
+        return _pin(first.place, first.axis) if turns_about_one else _ball(first.place)
     if kind.is_ball:
         return _ball(first.place)
     if kind.is_oriented:
@@ -300,8 +305,17 @@ MOST_PATH_POINTS = 120
 TUBE = 0.6
 """Length of a cylinder's tube in parts of that from eye to eye."""
 
+SLOT = 13.0
+"""Width of a curved groove, over its walls."""
+
+SURFACE_LINES = 4
+"""Cells of a curved surface from line to line."""
+
 LEAST_PITCH = 2.5
 """From tooth to tooth on the picture: below it wheels are circles."""
+
+_TURNS = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+_ROUND = np.stack([np.cos(_TURNS), np.sin(_TURNS), np.zeros_like(_TURNS)], axis=1)
 
 NEAR_DECIMALS = 6
 """Of how near a thing is, in parts of the mechanism's size: the rest is rounding."""
@@ -370,8 +384,10 @@ class _Scene:
         return [
             *self._feet(),
             *self._paths(),
+            *self._track_marks(),
             *self._belts(),
             *self._cylinders(),
+            *self._cables(),
             *(m for _, marks in [*links, *joints] for m in marks),
         ]
 
@@ -394,6 +410,10 @@ class _Scene:
                 parts.append(self._placed(link, np.array([half_frame(joint, side).o])))
         parts += [self._path(at.link, at.vector) for at in self._moving_points()]
         parts += [self._placed(cam.link, cam.line) for cam in self._cams]
+        parts += [self._placed(track.link, track.line) for track in self._tracks]
+        for cable in self.settings.cables:
+            for at, beside in zip(cable.places, cable.beside, strict=True):
+                parts.append(self._placed(at.link, np.array(at.vector) + abs(beside) * _ROUND))
         for wheel in self._drawn_wheels():
             parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
@@ -486,6 +506,41 @@ class _Scene:
             seen = self._placed(belt.link, belt_line(belt))
             places = tuple(self._on_picture(one) for one in seen)
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
+
+    def _cables(self) -> Iterator[Mark]:
+        for cable in self.settings.cables:
+            centres = np.array(
+                [
+                    carried(self.poses[0, self.links.index(at.link)], at.vector)
+                    for at in cable.places
+                ]
+            )
+            line = self.view.seen(cable_line(centres, cable.beside))
+            for centre, beside in zip(centres, cable.beside, strict=True):
+                if beside:
+                    rim = centre + abs(beside) * _ROUND
+                    places = tuple(self._on_picture(one) for one in self.view.seen(rim))
+                    yield Stroke(places, "k", 1.2, closed=True, filled=True)
+            yield Stroke(tuple(self._on_picture(one) for one in line), "k", 1.2)
+
+    @cached_property
+    def _tracks(self) -> list[DrawnTrack]:
+        found = (drawn_track(joint) for joint in self.joints)
+        hidden = self.settings.hidden
+        return [track for track in found if track is not None and track.link not in hidden]
+
+    def _track_marks(self) -> Iterator[Mark]:
+        """Walls beside curves, and lines on surfaces, in the colour of their link."""
+        for track in self._tracks:
+            ink = self._ink(track.link)
+            for line in track.lines(SURFACE_LINES):
+                places = tuple(self._on_picture(one) for one in self._placed(track.link, line))
+                if track.is_surface:
+                    yield Stroke(places, f"{ink} t", 0.8)
+                else:
+                    closed, round_ends = track.closed, not track.closed
+                    yield Stroke(places, ink, SLOT, closed=closed, round_ends=round_ends)
+                    yield Stroke(places, "p", SLOT - 2.4, closed=closed, round_ends=round_ends)
 
     def _cylinders(self) -> Iterator[Mark]:
         """Cylinders between two points: a rod, and over most of it a tube."""

@@ -31,6 +31,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.view.page import FLATNESS, POINTS_APART
+from mechkin_cli.view.tracks import drawn_track
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Kind
@@ -81,9 +82,19 @@ def joint_records(
                 "lead": lengths.one(joint.lead) if joint.type.is_threaded else None,
                 "travel": None if travel is None else list(travel),
                 "radius": None if radius is None else lengths.one(radius),
+                "track": _track(joint, lengths),
             }
         )
     return found
+
+
+def _track(joint: Joint, lengths: Lengths) -> Plain | None:
+    """The curve or surface of a joint, on its second link: rows of places, one row of a curve."""
+    track = drawn_track(joint)
+    if track is None:
+        return None
+    rows = track.places if track.is_surface else track.places[None]
+    return {"rows": lengths.array(rows).tolist(), "closed": track.closed}
 
 
 def half_axis(joint: Joint, side: int) -> Vector:

@@ -163,6 +163,7 @@ class Scene:
             "wheels": self._wheels(),
             "belts": self._belts(),
             "discs": self._discs(),
+            "cables": self._cables(),
             "runs": [
                 self._run(run, branches)
                 for run, branches in zip(self.runs, self.branches, strict=True)
@@ -291,6 +292,18 @@ class Scene:
                 "width": lengths.one(belt.width),
             }
             for belt in self.settings.belts
+        ]
+
+    def _cables(self) -> list[Plain]:
+        """Places of cables as drawn on their links, and how far to the left of each they run."""
+        lengths = self._lengths
+        return [
+            {
+                "links": [self.links.index(at.link) for at in cable.places],
+                "places": [lengths.vector(at.vector) for at in cable.places],
+                "beside": [lengths.one(one) for one in cable.beside],
+            }
+            for cable in self.settings.cables
         ]
 
     def _travels(self) -> dict[str, tuple[float, float]]:

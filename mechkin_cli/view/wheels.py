@@ -1,7 +1,10 @@
-"""Outlines of wheels, racks and belts for pictures, with straight flanks in place of involutes."""
+"""Outlines of wheels, racks and belts for pictures, with straight flanks in place of involutes, and
+the lines of cables."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -48,6 +51,43 @@ def wheel_outlines(wheel: DrawnWheel, toothed: bool) -> list[Floats]:
 def belt_line(belt: DrawnBelt) -> Floats:
     """Its closed line (n, 3) on the home drawing of the carrier, m."""
     return np.array(belt.line)
+
+
+def cable_line(centres: Floats, beside: Sequence[float]) -> Floats:
+    """The line (n, 3) of a cable past places (m): straight between two, round where it runs
+    `beside` a centre, to the left in the plane z where that is more than 0. Its begin and end on
+    drums are where it leaves them."""
+    line = [centres[0]] if beside[0] == 0.0 else []
+    for k, ((one, other), (near, far)) in enumerate(
+        zip(pairwise(centres), pairwise(beside), strict=True)
+    ):
+        apart = other - one
+        if near == far == 0.0:
+            line.append(other)
+            continue
+        square = float(apart @ apart)
+        by = near - far
+        length = np.sqrt(max(square - by * by, 0.0))
+        along = (length * apart - by * np.array([-apart[1], apart[0], 0.0])) / square
+        left = np.array([-along[1], along[0], 0.0])
+        start, end = one + near * left, other + far * left
+        if k == 0 and near != 0.0:
+            line.append(start)
+        elif near != 0.0:
+            line += _wound(one, line[-1] - one, start - one, near)
+        line.append(end)
+    return np.array(line)
+
+
+def _wound(centre: Floats, first: Floats, last: Floats, beside: float) -> list[Floats]:
+    """Places on a pulley from one end of the arc to the other: clockwise where it is passed on its
+    left."""
+    sense = -1.0 if beside > 0.0 else 1.0
+    start = np.arctan2(first[1], first[0])
+    turn = sense * (np.arctan2(last[1], last[0]) - start) % (2.0 * np.pi)
+    steps = max(1, int(np.ceil(turn * SIDES / (2.0 * np.pi))))
+    angles = start + sense * turn * np.arange(1, steps + 1) / steps
+    return [centre + abs(beside) * np.array([np.cos(a), np.sin(a), 0.0]) for a in angles]
 
 
 def _teeth(wheel: DrawnWheel, module: float) -> tuple[Floats, Floats]:

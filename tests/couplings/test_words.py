@@ -108,6 +108,11 @@ COUPLINGS = {
     "{type: chain, joints: [A, B], radii: [3, 4]}": "pitch: 12.7 mm",
     "{type: function, of: A.theta, gives: S.s, formula: 3}": "the key is value",
     "{type: table, of: A.theta, gives: S.s, file: a.csv}": "over: A.theta",
+    "{type: rope, path: [P, Q]}": "type: cable",
+    "{type: cable, points: [P, Q]}": "path: [P, {pulley: A",
+    "{type: cable, path: [P, Q], length: 3}": "its length is that of the drawing",
+    "{type: cable, path: [P, Q], tension: 3}": "K.tension",
+    "{type: cable, path: [P, Q], falls: 4}": "path: [a, b, a, b, a]",
     "{type: linear, of: A.theta, gives: B.theta}": "terms: {A.theta: 1, B.theta: 2}",
 }
 

@@ -113,7 +113,7 @@ FEATURES = {
     "a cable over points and pulleys is a coupling": ("rope", "cable", "ropes", "tendon", "winch"),
     "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
     "the wheel turns by a law of the crank": ("geneva", "maltese", "geneva_drive"),
-    "prescribe the place of the pin": ("curved_groove", "curved_slot", "guide_curve"),
+    "whose curve: is a line": ("curved_groove", "curved_slot", "guide_curve"),
     "an oil film is a law of friction": ("hydrodynamic", "lubrication", "oil_film"),
     "links are rigid": ("flexible", "compliant", "beam", "flexure"),
     "an effort may be an expression": ("control", "controller", "controllers", "servo", "pid"),
@@ -165,6 +165,23 @@ def test_a_feature_as_a_key_of_anything(form: str, word: str) -> None:
     friction = text.replace("g: standard}", "g: standard}, {type: friction, joint: O, radius: 8}")
     friction = friction.replace("radius: 8}", f"radius: 8, coefficient: 0.1, {word}: 1}}")
     assert words in hint(friction)
+
+
+def test_the_curved_slot_that_is_advised_runs() -> None:
+    """A slide at x puts the pin of an ellipse of half axes 30 and 20 at 20 sqrt(1 - x^2/900)."""
+    advice = hint(PLANE.replace("D: {type: P", "D: {type: curved_slot"))
+    joint = advice.partition("joints: {")[2].removesuffix("}")
+    rows = mk.loads(
+        "format: 1\nplane: xy\nunits: {length: mm, angle: deg}\n"
+        "links: {cart: {}, pin: {}, slotted: {}}"
+        "\njoints:\n  X: {type: P, links: [ground, cart], point: [0, 0], axis: [1, 0]}\n"
+        "  Y: {type: P, links: [cart, pin], point: [0, 0], axis: [0, 1]}\n"
+        f"  W: {{type: W, links: [ground, slotted]}}\n  {joint}\n"
+        "motion: {inputs: {X.s: {from: -6, to: -18, step: 6}}}\n"
+    ).analyze()
+    assert set(rows["row.status"]) == {"ok"}
+    x = 30.0 + rows["X.s"]
+    assert abs(rows["Y.s"]) == pytest.approx(20.0 * (1.0 - x * x / 900.0) ** 0.5, abs=1e-9)
 
 
 def test_a_chain_is_a_coupling() -> None:

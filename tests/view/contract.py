@@ -98,6 +98,9 @@ DATA = _object(
             lead=_or_null(NUMBER),
             travel=_or_null(_list(NUMBER, minItems=2, maxItems=2)),
             radius=_or_null({"type": "number", "exclusiveMinimum": 0}),
+            track=_or_null(
+                _object(rows=_list(_list(VECTOR, minItems=3), minItems=1), closed=SWITCH)
+            ),
         )
     ),
     points=_list(_object(name=TEXT, link=INDEX, place=VECTOR, path=SWITCH)),
@@ -124,6 +127,13 @@ DATA = _object(
             x=VECTOR,
             outline=_list(_list(NUMBER, minItems=2, maxItems=2), minItems=3),
             width=LENGTH,
+        )
+    ),
+    cables=_list(
+        _object(
+            links=_list(INDEX, minItems=2),
+            places=_list(VECTOR, minItems=2),
+            beside=_list(NUMBER, minItems=2),
         )
     ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),

@@ -68,6 +68,7 @@ def joint(
         "lead": None,
         "travel": None,
         "radius": None,
+        "track": None,
         **more,
     }
 

@@ -81,7 +81,7 @@ export class Mechanism {
       rod.add(bar(bore, -0.5 * bore, 0.5 * bore));
       return;
     }
-    PAIRS.get(joint.type)?.({ joint, first, second, u, travel });
+    PAIRS.get(joint.type)?.({ joint, first, second, u, travel, flat: this.data.planar });
   }
 
   /** Puts the links where a branch has them; `place` may lie between two poses (see `between`). */

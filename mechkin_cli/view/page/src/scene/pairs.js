@@ -2,6 +2,7 @@
 // Lengths are in units of the joint's size u; `travel[k]` is where the other half's point comes to, in half k's frame.
 
 import { bar, ball, block, nut, shell, sleeve, squareTube, thread, trough } from "./parts.js";
+import { addShell, addSlot, addTrough } from "./tracks.js";
 import { frame, vector } from "./vectors.js";
 
 const HOLD = 1.2; // half the length of what slides, over the travel
@@ -91,15 +92,28 @@ function plate(half, box, margin, face, u) {
   half.post(1.8 * u + face);
 }
 
-function sphereOnPlane({ first, second, u, travel }) {
+function sphereOnPlane({ joint, first, second, u, travel }) {
   first.add(ball(0.8 * u));
   first.post(2.1 * u);
+  if (joint.track) {
+    addShell(second, joint.track, u);
+    return;
+  }
   plate(second, travel[1], 1.5 * u, 0.8 * u, u);
 }
 
-function sphereInGroove({ first, second, u, travel }) {
+function sphereInGroove({ joint, first, second, u, travel, flat }) {
+  if (joint.track && flat) {
+    first.add(bar(0.55 * u, -1.2 * u, 1.2 * u));
+    addSlot(second, joint.track, first.axis, u);
+    return;
+  }
   first.add(ball(0.8 * u));
   first.post(2.1 * u);
+  if (joint.track) {
+    addTrough(second, joint.track, u);
+    return;
+  }
   const open = frame(second.point, second.axis, (second.across ?? second.x).clone().negate());
   second.add(trough(0.83 * u, 1.1 * u, ...reach(travel[1], u, 1.4)), open);
   second.foot(1.1 * u);

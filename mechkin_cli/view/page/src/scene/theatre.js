@@ -3,6 +3,7 @@
 import { curveColour } from "../colours.js";
 import { Arrows } from "./arrows.js";
 import { posesAt } from "./between.js";
+import { Cables } from "./cables.js";
 import { Labels } from "./labels.js";
 import { Mechanism, jointUnit } from "./mechanism.js";
 import { Paths } from "./paths.js";
@@ -57,7 +58,7 @@ export class Theatre {
     const { branch } = this.state;
     const zoom = this.arrows?.zoom ?? 1;
     if (this.mechanism) scene.remove(this.mechanism.object);
-    for (const old of [this.paths, this.arrows, this.ties]) if (old) dispose(old.object);
+    for (const old of [this.paths, this.arrows, this.ties, this.cables]) if (old) dispose(old.object);
     if (!this.mechanisms.has(branch)) this.mechanisms.set(branch, new Mechanism(this.data, branch, this.unit));
     this.mechanism = this.mechanisms.get(branch);
     this.mechanism.links.forEach((group, link) => (group.visible = !this.hidden.has(link)));
@@ -65,8 +66,9 @@ export class Theatre {
     this.arrows = new Arrows(this.data, branch, this.unit, this.size);
     this.arrows.zoom = zoom;
     this.ties = new Ties(this.state.run.ties, this.data, branch, this.unit);
+    this.cables = new Cables(this.data.cables, this.unit);
     this.#choose();
-    scene.add(this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
+    scene.add(this.cables.object, this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
     this.places = placesOf(this.data, branch);
     this.floorHeight = Math.min(...this.places.map((place) => place.dot(this.stage.up))) - FLOOR * this.unit;
     this.#floor();
@@ -107,12 +109,14 @@ export class Theatre {
     this.paths.object.visible = index >= 0 && this.shown.paths;
     this.arrows.object.visible = index >= 0;
     this.ties.object.visible = index >= 0;
+    this.cables.object.visible = index >= 0;
     if (index >= 0) this.mechanism.show(branch, index, next, share);
     this.#fade(index < 0 || !this.#hasPose(branch, row));
     if (index >= 0) {
       this.paths.show(this.mechanism);
       this.arrows.show(this.mechanism, index);
       this.ties.show(this.mechanism);
+      this.cables.show(this.mechanism);
     }
     for (const { branch: other, mechanism } of this.ghosts) {
       const at = other.poseNear(other.rows === branch.rows ? row : other.rowAt(branch.x[row]));

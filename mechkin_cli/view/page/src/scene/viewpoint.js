@@ -17,6 +17,7 @@ export function placesOf(data, branch) {
   const shapes = data.links.map(({ shape }) => reached(shape));
   data.wheels.forEach((wheel) => shapes[wheel.link].push(...reachedBy(wheel)));
   data.discs.forEach((disc) => shapes[disc.link].push(...reachedByDisc(disc)));
+  for (const { links, track } of data.joints) if (track) shapes[links[1]].push(...track.rows.flat().filter((_, k) => k % 8 === 0).map(vector));
   const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
   for (let index = 0; index < branch.poseCount; index += stride) {
     const poses = data.links.map((_, link) => poseMatrix(branch.pose(index, link)));
