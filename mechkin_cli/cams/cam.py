@@ -106,7 +106,7 @@ class Cam(Listed):
         curves, more = {"PROFILE": self.profile}, {}
         if self.has_pitch:
             curves["PITCH"] = self.pitch
-            more[f"{self.name}.yaml"] = curve_bytes(self.curve(), self.length)
+            more[f"{self.name}.curve.yaml"] = curve_bytes(self.curve(), self.length)
         base = self.base_radius
         return {
             f"{self.name}.csv": csv_bytes(self.table, units=True),

@@ -101,7 +101,7 @@ def test_a_rise_with_dwells_comes_back_too() -> None:
 
 def test_its_file_is_a_curve_of_a_mechanism() -> None:
     cam = cut(SLIDE, 'value: "6 mm*(1 - cos(theta))"', FOLLOWERS["knife"]).cam("K", points=90)
-    text = cam.files()["K.yaml"].decode()
+    text = cam.files()["K.curve.yaml"].decode()
     pin = "  D:\n    type: Ps\n    links: [follower, cam]\n    point: [0, 40]\n"
     inside = "".join(f"    {line}\n" for line in text.splitlines())
     result = mk.loads(f"{HEAD.replace('GUIDE', SLIDE)}{pin}{inside}{MOTION}").analyze()
@@ -111,7 +111,7 @@ def test_its_file_is_a_curve_of_a_mechanism() -> None:
 
 def test_no_point_of_a_flat_face_keeps_to_a_curve() -> None:
     cam = cut(SLIDE, 'value: "6 mm*(1 - cos(theta))"', TRANSLATING + "contact: flat}").cam("K")
-    assert "K.yaml" not in cam.files()
+    assert "K.curve.yaml" not in cam.files()
     with pytest.raises(UsageError, match="K: a flat face touches"):
         cam.curve()
 

@@ -187,7 +187,7 @@ def test_the_drawings_hold_the_profile(tmp_path: Path) -> None:
     law, follower, _ = ECCENTRIC["roller"]
     found = cam(law, follower).cam(points=60)
     files = found.files()
-    assert set(files) == {"K.csv", "K.dxf", "K.svg", "K.yaml"}
+    assert set(files) == {"K.csv", "K.dxf", "K.svg", "K.curve.yaml"}
     lines = files["K.dxf"].decode().split("\n")
     pairs = list(zip(lines[::2], lines[1::2], strict=False))
     assert pairs[-1] == ("  0", "EOF")
