@@ -12,7 +12,7 @@ from oracle import document, to_text
 from references import FILE_OF, SWEPT
 
 import mechkin_cli as mk
-from mechkin_cli.mechanism.joint import is_told
+from mechkin_cli.mechanism import is_told
 
 _PART = "rcsr_csr_loop_one"
 _STEMS = [path.stem for path in SWEPT]
