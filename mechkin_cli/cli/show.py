@@ -25,6 +25,7 @@ from mechkin_cli.mechanism import (
     DERIVED_KINDS,
     POWER_KINDS,
     accelerated,
+    is_told,
     is_written,
     quantities_read,
 )
@@ -243,15 +244,32 @@ def _driven(analysis: Analysis) -> str:
 
 
 def _loops(analysis: Analysis) -> str:
+    """Loops of the file's own joints and cylinders, and what couples them; what a cable is made of
+    is no loop that a file has."""
     graph = analysis.result.graph
+    mechanism = analysis.model.problem.mechanism
     if not graph.closings:
         return "none (open chain)"
-    coupled = ", ".join(c.name for c in graph.closings if c.terms)
-    closed = ", ".join(c.label for c in graph.closings if not c.terms and is_written(c.name))
+    labels = [c.label for c in graph.closings if not c.terms and is_written(c.name)]
+    eyes = [c.name.partition(".")[0] for c in graph.closings if not is_written(c.name)]
+    lifts = [
+        f"cylinder {name}"
+        for name in eyes
+        if name in mechanism.joints and mechanism.joints[name].is_telescope
+    ]
+    closed = ", ".join(dict.fromkeys((*labels, *lifts)))
+    coupled = ", ".join(
+        f"cable {c.name}" if mechanism.couplings[c.name].extents else c.name
+        for c in graph.closings
+        if c.terms
+    )
     words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
-    loops = analysis.model.problem.mechanism.loops
-    return f"{loops}, {', '.join(filter(None, words))}; {sizes} unknowns"
+    # links and joints of a cable's stretches have no names that are told
+    stretches = sum(not is_told(name) for name in mechanism.joints)
+    stretches -= sum(not is_told(name) for name in mechanism.links)
+    loops = mechanism.loops - stretches
+    return f"{loops or 'none'}, {', '.join(filter(None, words))}; {sizes} unknowns"
 
 
 def _rows(analysis: Analysis) -> str:

@@ -72,6 +72,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import replace
 from mechkin_cli.tape import of_two
+from mechkin_cli.units import FORCE, LENGTH
 from mechkin_cli.verdict import has_rates
 
 if TYPE_CHECKING:
@@ -108,7 +109,12 @@ def _angle(run: BasisQuantities, quantity: Wanted, session: Session | None) -> F
     known, unit = problem.quantities(), run.session.layout.length
     names = (f"{driver.name}.force", f"{driver.name}.point", f"{guide.name}.point")
     axes = [f"{guide.name}.axis"] if guide.type.axis is not None else []
-    wanted = [*(known[name] for name in (*names, *axes)), REACTION_LEVEL]
+    # the driving joint may be that of a cylinder or a cable, which has no quantities of its own
+    told = [
+        Wanted(names[0], "force", driver.name, FORCE, True),
+        Wanted(names[1], "joint_point", driver.name, LENGTH, True),
+    ]
+    wanted = [*told, *(known[name] for name in (names[2], *axes)), REACTION_LEVEL]
 
     def angle_of(shift: int) -> Floats:
         columns = run.result.evaluated(wanted, session=session, shift=shift)

@@ -51,7 +51,8 @@ __getattr__, __dir__ = lazy_names(
         "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
         "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
-        "joint": "GROUND_NAME Joint counted far_link frame_on is_written stop_of told_coordinates",
+        "joint": "GROUND_NAME Joint counted far_link frame_on is_told is_written stop_of "
+        "told_coordinates",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "

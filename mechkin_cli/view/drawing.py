@@ -411,6 +411,9 @@ class _Scene:
         parts += [self._path(at.link, at.vector) for at in self._moving_points()]
         parts += [self._placed(cam.link, cam.line) for cam in self._cams]
         parts += [self._placed(track.link, track.line) for track in self._tracks]
+        for between in self.settings.between:
+            if between.kind == "cylinder":
+                parts += [self._placed(at.link, np.array([at.vector])) for at in between.ends]
         for cable in self.settings.cables:
             for at, beside in zip(cable.places, cable.beside, strict=True):
                 parts.append(self._placed(at.link, np.array(at.vector) + abs(beside) * _ROUND))

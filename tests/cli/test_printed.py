@@ -5,7 +5,7 @@ import re
 
 import pytest
 from cli import files
-from references import RCSR
+from references import FILE_OF, RCSR
 
 CRANK = files.CRANK + files.TABLES
 
@@ -279,3 +279,17 @@ def test_a_summary_that_cannot_be(mechkin, write, written, words) -> None:
     run = mechkin("analyze", file)
     assert run.code == 3
     assert words in run.err
+
+
+@pytest.mark.parametrize(
+    ("name", "loops"),
+    [
+        ("tackle", "none, coupled by cable K"),
+        ("cylinder_boom", "1, closed at cylinder lift"),
+        ("geared_five_bar", "1, closed at P (R), coupled by G"),
+    ],
+)
+def test_loops_are_those_that_the_file_has(mechkin, name, loops) -> None:
+    """The stretches of a cable make none, a cylinder between two links one."""
+    err = mechkin("analyze", FILE_OF[name]).err
+    assert f"  loops    {loops}; " in err

@@ -450,3 +450,32 @@ def test_a_winch_runs_down(start: str) -> None:
     fall = 9.81 * 2 * 0.3**2 / (2 * 0.3**2 + 0.2) * t * t / 2
     assert set(run["row.status"]) == {"ok"}
     np.testing.assert_allclose(run["S.s"], -fall, rtol=1e-9, atol=1e-12)
+
+
+def test_every_quantity_of_a_tackle_can_be_asked_for() -> None:
+    """A stretch drives the block along its way, so that its force is at 90 deg."""
+    model = mk.loads(TACKLE)
+    names = [name for name in model.quantities if not name.startswith("row.")]
+    result = model.analyze(names, tables=[])
+    np.testing.assert_allclose(result["G.s.dynamic_transmission_angle"], 90.0, rtol=1e-12)
+
+
+def test_a_cylinder_drives_at_its_angle_to_the_boom() -> None:
+    """Of a boom of 3 from A and a cylinder from (0, -4): the force is at 90 deg less the angle
+    between boom and cylinder to the way of the eye; atan(4/3) as drawn."""
+    text = (
+        HEAD
+        + """
+links: {boom: {mass: 2, center_of_mass: [1, 0]}}
+joints: {A: {type: R, links: [ground, boom], point: [0, 0]}}
+points: {P: {link: ground, at: [0, -4]}, Q: {link: boom, at: [3, 0]}}
+cylinders: {lift: {from: P, to: Q}}
+motion: {inputs: {lift.s: {from: 5, to: 6, step: 0.25}}}
+loads: [{type: gravity, g: [0, -10 m/s^2]}]
+"""
+    )
+    result = mk.loads(text).analyze(["A.theta.dynamic_transmission_angle", "lift.s"])
+    length = result["lift.s"]
+    between = np.arccos((length**2 + 9.0 - 16.0) / (2.0 * 3.0 * length))
+    angle = np.degrees(np.abs(np.pi / 2.0 - np.abs(np.pi / 2.0 - between)))
+    np.testing.assert_allclose(result["A.theta.dynamic_transmission_angle"], angle, rtol=1e-11)

@@ -40,6 +40,6 @@ def test_every_type_of_a_coupling_is_on_the_page() -> None:
     """By the words that the schema takes; a table looks as a function does."""
     found = {yaml.safe_load(coupling)["type"] for _, _, coupling in PICTURES.values()}
     schema = json_schema_text()
-    for word in ("gear", "rack", "belt", "chain", "screw", "linear", "function", "table"):
+    for word in ("gear", "rack", "belt", "chain", "cable", "screw", "linear", "function", "table"):
         assert f'"{word}"' in schema
         assert word in found or f"{{type: {word}," in PAGE.replace("\n", " ")

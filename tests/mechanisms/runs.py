@@ -12,6 +12,7 @@ from oracle import document, to_text
 from references import FILE_OF, SWEPT
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism import is_told
 
 _PART = "rcsr_csr_loop_one"
 _STEMS = [path.stem for path in SWEPT]
@@ -72,7 +73,9 @@ def closings(name: str) -> list[tuple[str, ...]]:
     mechanism = model(name).problem.mechanism
     kept = {joint for joint, _ in model(name).graph.driven}
     kept |= {term.joint.name for closing in closed for term in closing.terms}
-    able = [n for n, j in mechanism.joints.items() if n not in kept and j.letter != "H"]
+    # those of a cable's stretches have no name that a file can write
+    told = {n: j for n, j in mechanism.joints.items() if is_told(n)}
+    able = [n for n, j in told.items() if n not in kept and j.letter != "H"]
     loops = sum(not closing.terms for closing in closed)
     ends = {n: (j.first, j.second) for n, j in mechanism.joints.items()}
     return [

@@ -169,7 +169,44 @@ def test_open_belt() -> None:
     near(rows["norm(B.force)"], pulled, 1e-10)
 
 
+def test_tackle() -> None:
+    """Four strands: a quarter of the cart's way, with 8 kg by 10 + 0.1 m/s^2 on them."""
+    rows = rows_of("tackle")
+    near(rows["G.s"], 0.25 * rows["C.s"])
+    near(rows["G.s_dot"], 0.25 * 200.0)
+    near(rows["K.tension"], 8.0 * 10.1 / 4.0)
+    near(rows["C.effort"], 8.0 * 10.1 / 4.0)
+
+
+def test_cylinder_boom() -> None:
+    """P is 500 from the pin, Q 600: the law of cosines; the weight's moment by the arm of the
+    cylinder, and on the pin what the cylinder does not bear. At a constant speed of the cylinder
+    the boom, whose weight alone has an inertia of m 800^2, turns faster and faster."""
+    rows = rows_of("cylinder_boom")
+    length = rows["lift.s"]
+    inner = np.arccos((500.0**2 + 600.0**2 - length**2) / (2.0 * 500.0 * 600.0))
+    turn = inner - inner[0]
+    near(np.radians(rows["A.theta"]), turn)
+    # length' = arm * turn', arm = 500 * 600 sin(inner) / length
+    arm = 3e5 * np.sin(inner) / length
+    rate = 50.0 / arm
+    near(rows["A.theta_dot"], rate)
+    slope = 3e5 * np.cos(inner) / length - arm * arm / length
+    quickening = -slope * rate * rate / arm
+    x, y = 800.0 * np.cos(turn), 800.0 * np.sin(turn)
+    pulled = 60.0 * (10.0 * x + 1e-3 * 800.0**2 * quickening)
+    near(rows["lift.force"], pulled / arm, 1e-10)
+    near(rows["lift.pressure"], rows["lift.force"] / (np.pi * 63.0**2 / 4.0), 1e-10)
+    q = 600.0 * np.cos(turn) - 300.0, 600.0 * np.sin(turn) + 400.0
+    across = 60e-3 * (-quickening * y - rate * rate * x) - rows["lift.force"] * q[0] / length
+    upwards = 60e-3 * (quickening * x - rate * rate * y) + 600.0
+    upwards -= rows["lift.force"] * q[1] / length
+    near(rows["norm(A.force)"], np.hypot(across, upwards), 1e-10)
+
+
 NAMES = (
+    "tackle",
+    "cylinder_boom",
     "spur_gears",
     "planetary_gear",
     "geared_five_bar",

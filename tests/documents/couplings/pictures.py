@@ -58,6 +58,18 @@ view:
 """
 CAM = f"""{_slide("[48, 0]")}points: {{end: {{link: bar, at: [110, 0]}}}}
 """
+HOIST = f"""{PLANE}motion: {{inputs: {{C.s: {{from: 0, to: 40, step: 10}}}}}}
+links: {{block: {{mass: 1, center_of_mass: [20, -90]}}, cart: {{}}}}
+loads: [{{type: gravity, g: [0, -9.81 m/s^2]}}]
+joints:
+  B: {{type: P, links: [ground, block], point: [20, -90], axis: [0, 1]}}
+  C: {{type: P, links: [ground, cart], point: [110, -60], axis: [0, -1]}}
+points:
+  a: {{link: ground, at: [0, 0]}}
+  b: {{link: block, at: [20, -90]}}
+  d: {{link: ground, at: [70, 0]}}
+  c: {{link: cart, at: [110, -60]}}
+"""
 
 PICTURES: Final[dict[str, tuple[str, str, str]]] = {
     "spur": (
@@ -100,6 +112,13 @@ PICTURES: Final[dict[str, tuple[str, str, str]]] = {
         _wheels(300),
         "{type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}",
     ),
+    "cable": (
+        "a cable",
+        HOIST,
+        "{type: cable, path: [a, {pulley: b, radius: 20 mm, side: right}, "
+        "{pulley: d, radius: 30 mm, side: left}, c]}",
+    ),
+    "tackle": ("a tackle", HOIST, "{type: cable, path: [a, b, a, b, d, c]}"),
     "screw": ("a screw and its nut", SCREW, "{type: screw, joints: [A, S], lead: 5 mm}"),
     "linear": (
         "a differential",
