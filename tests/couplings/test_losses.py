@@ -282,3 +282,42 @@ def test_rows_are_the_same_in_lanes_of_any_width(lanes: int) -> None:
         one, other = model.analyze(names), model.analyze(names, lanes=lanes)
         for name in names:
             np.testing.assert_array_equal(one[name], other[name])
+
+
+RUBBED = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  motor: {mass: 1, center_of_mass: [-1, 0], inertia: 0.1}
+  a: {mass: 1, center_of_mass: [0.2, 0], inertia: 0.1}
+  b: {mass: 2, center_of_mass: [1.5, 0.4], inertia: 0.2}
+  c: {mass: 1, center_of_mass: [2.5, 0.5], inertia: 0.1}
+joints:
+  M: {type: R, links: [ground, motor], point: [-1, 0]}
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [a, b], point: [0.5, 0]}
+  C: {type: R, links: [b, c], point: [2.5, 1.5]}
+  D: {type: R, links: [c, ground], point: [2, 0]}
+couplings: {G: {type: gear, joints: [M, A], teeth: [20, 60], efficiency: 0.85}}
+loads:
+  - {type: gravity, g: [0, -9.81]}
+  - {type: friction, joint: B, coefficient: 0.2, radius: 0.05}
+  - {type: friction, joint: M, coefficient: 0.1, radius: 0.03}
+"""
+
+
+def test_joints_and_teeth_rub_together_in_a_loop() -> None:
+    """Powers and energies balance; bearings rub by the forces of the teeth."""
+    law = "{from: 0, to: 18.8, count: 31, rate: 10, acceleration: 3}"
+    result = mk.loads(f"{RUBBED}motion: {{inputs: {{M.theta: {law}}}}}").analyze()
+    assert set(result["row.status"]) == {"ok"}
+    assert result["row.power_error"].max() < 1e-13
+    np.testing.assert_allclose(result["G.efficiency"], 0.85, rtol=1e-9)
+    motion = "{start: {A.theta: 0.2}, efforts: {M.theta: 3}, time: {from: 0, to: 1, step: 0.25}}"
+    names = ["G.efficiency", "row.status", "row.energy_error", "row.power_error"]
+    moved = mk.loads(f"{RUBBED}responses: {{r: {motion}}}").respond("r", names)
+    assert set(moved["row.status"]) == {"ok"}
+    assert moved["row.energy_error"].max() < 1e-9
+    assert moved["row.power_error"][1:].max() < 1e-13
+    np.testing.assert_allclose(moved["G.efficiency"][1:], 0.85, rtol=1e-9)
