@@ -17,6 +17,7 @@ from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.law_reading import Over, note_bends, read_law
 from mechkin_cli.building.law_shapes import PiecewiseLaw
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
+from mechkin_cli.building.losses import Lossy, with_losses
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
@@ -111,6 +112,9 @@ def build_couplings(
             found[name] = screw_relation(fields, path, section, joints)
         else:
             found[name] = belt_relation(fields, path, section, joints)
+        relation = found[name]
+        if relation is not None and isinstance(section, Lossy):
+            found[name] = with_losses(fields, path, section, joints, relation)
     return {name: relation for name, relation in found.items() if relation is not None}
 
 

@@ -183,7 +183,7 @@ class LoadBuilder:
         """The mechanism with the loads of a run; the laws of those that vary, numbered in the order
         of the loads; and these numbers by those that the laws have among those of all runs."""
         loads: list[Load] = [*mechanism.pretensions]
-        frictions: list[Rubbing] = []
+        frictions: list[Rubbing] = [*mechanism.losses]
         gravity, numbers = ZERO, dict[int, int]()
         for runs, item in self._of_runs:
             if run not in runs:

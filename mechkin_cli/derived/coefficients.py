@@ -365,10 +365,15 @@ def _slips(run: BasisQuantities) -> Floats:
     """The rates of all coordinates of joints that rub (coordinates, rows)."""
     problem = run.session.problem
     known, joints = problem.quantities(), problem.mechanism.joints
+    couplings = problem.mechanism.couplings
     rates = [
         known[f"{name}_dot"]
         for rubbing in problem.mechanism.frictions
-        for name in joints[rubbing.joint].coordinates
+        for name in (
+            [f"{term.joint.name}.{term.coordinate}" for term in couplings[rubbing.joint].terms]
+            if rubbing.loss
+            else joints[rubbing.joint].coordinates
+        )
     ]
     columns = run.result.evaluated(rates) if rates else {}
     rows = run.inputs.rates.shape[1]

@@ -104,6 +104,7 @@ class ContactCode(IntEnum):
     RADIAL = 0
     ALONG = 1
     TOTAL = 2
+    TRANSMITTED = 3
 
 class FrictionState(IntEnum):
     DECIDED = 0

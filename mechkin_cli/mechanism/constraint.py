@@ -31,7 +31,7 @@ from functools import cached_property
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, far_link, frame_on
-from mechkin_cli.mechanism.pair_type import Attached, Condition
+from mechkin_cli.mechanism.pair_type import Attached, Condition, Rubbing
 from mechkin_cli.mechanism.pairs import CLOSING_CONDITIONS
 from mechkin_cli.mechanism.vectors import (
     Frame,
@@ -113,8 +113,8 @@ class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
     strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing. `extents`: those of a cable;
-    `follower`: what a cam moves, which is nothing to the motion."""
+    other with (N) when it transmits nothing. `extents`: those of a cable. One that a cam keeps may
+    know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
 
     terms: tuple[Term, ...]
     length: bool
@@ -124,6 +124,7 @@ class Relation(NamedTuple):
     pull: tuple[Attached, Attached, float] | None = None
     extents: tuple[Extent, ...] = ()
     follower: Follower | None = None
+    loss: Rubbing | None = None
 
     @property
     def has_teeth(self) -> bool:

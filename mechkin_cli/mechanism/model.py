@@ -348,6 +348,12 @@ class Mechanism:
         return tuple(found)
 
     @property
+    def losses(self) -> tuple[Rubbing, ...]:
+        """What rubs in couplings."""
+        found = (relation.loss for relation in self.couplings.values())
+        return tuple(loss for loss in found if loss is not None)
+
+    @property
     def coordinates(self) -> tuple[str, ...]:
         """All coordinates that users see, in joint order."""
         return told_coordinates(self.joints.values())

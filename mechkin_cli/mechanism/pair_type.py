@@ -193,8 +193,27 @@ Motion = Literal["along", "square", "all"]
 """Along (about) the joint's axis, square to it, or in every direction."""
 
 
+class Loss(NamedTuple):
+    """Where a coupling rubs: link `second` on `first`, turning about (`turns`) or sliding along an
+    axis through a point (m), both on the carrier's drawing. `load`: the normal load by a unit of
+    the coupling's multiplier, 1 or a ratio about an axis, in 1/m along one. About an axis it is the
+    mean of the moments on both sides of the loss. `leading`: coordinates of the coupling's first
+    wheel, and whether they count as the first of them (1) or backwards (-1); `at_first`: the share
+    of the lost power that is taken from that wheel, in its turn."""
+
+    carrier: str
+    first: str
+    second: str
+    point: Vector
+    axis: Vector
+    turns: bool
+    load: float
+    leading: tuple[tuple[str, int], ...]
+    at_first: float
+
+
 class Rubbing(NamedTuple):
-    """The friction of a joint in SI.
+    """The friction of a joint, or of the coupling that has a `loss`, in SI.
 
     `at_rest`, `sliding`: coefficients; `speed`: from one to the other, None where the coefficient
     falls at once. The lengths are None where they are not given; `across`: the direction of the
@@ -212,6 +231,7 @@ class Rubbing(NamedTuple):
     flank: float | None = None
     across: Attached | None = None
     place: Place | None = None
+    loss: Loss | None = None
 
 
 class Contact(NamedTuple):

@@ -170,7 +170,9 @@ def effort_quantity(joint: str, coordinate: str) -> Wanted:
 def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
     for rubbing in mechanism.frictions:
         owner = rubbing.joint
-        yield Wanted(f"{owner}.normal_load", "normal_load", owner, FORCE, False)
+        turns = rubbing.loss is not None and rubbing.loss.turns
+        load = MOMENT if turns else FORCE
+        yield Wanted(f"{owner}.normal_load", "normal_load", owner, load, False)
         yield Wanted(f"{owner}.friction_force", "friction_force", owner, FORCE, True)
         yield Wanted(f"{owner}.friction_moment", "friction_moment", owner, MOMENT, True)
         yield Wanted(f"{owner}.friction_power", "friction_power", owner, POWER, False)
@@ -300,14 +302,23 @@ _LOADS_IN_PLANE: dict[Kind, tuple[str, Dimension]] = {"radial_force": ("norm(J.f
 
 _TOLD_IN_PLANE = "xy"
 
-BEARING_KINDS: frozenset[str] = frozenset(_LOADS) | {"coupling_power"}
-"""These, and the power of a coupling: its effort at a coordinate by the rate of that."""
+BEARING_KINDS: frozenset[str] = frozenset(_LOADS) | {
+    "coupling_power",
+    "coupling_efficiency",
+}
+"""These, and of a coupling its power, its effort at a coordinate by the rate of that, and its
+efficiency."""
 
 
 def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
     """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis, in a
-    plane the first alone, of every joint with a point; `K.power` of every coupling."""
-    loads = (*_bearing_loads_of_joints(mechanism), *_powers_of_couplings(mechanism))
+    plane the first alone, of every joint with a point; `K.power` of every coupling, and
+    `K.efficiency` of those that rub."""
+    loads = (
+        *_bearing_loads_of_joints(mechanism),
+        *_powers_of_couplings(mechanism),
+        *_efficiencies(mechanism),
+    )
     return {wanted.name: wanted for wanted in loads}
 
 
@@ -350,8 +361,26 @@ def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
 
 
+def _efficiencies(mechanism: Mechanism) -> Iterator[Wanted]:
+    """Of couplings that rub: what the driven wheel gets of what the driving one puts in."""
+    for rubbing in mechanism.frictions:
+        if rubbing.loss is None:
+            continue
+        owner, loss = rubbing.joint, rubbing.loss
+        rate = " + ".join(f"({sense})*{name}_dot" for name, sense in loss.leading)
+        first = f"({owner}.torque*({rate}) - {loss.at_first!r}*{owner}.friction_power)"
+        second = f"(-{first} - {owner}.friction_power)"
+        share = f"max({first}, {second})/(-min({first}, {second}))"
+        # the root empties it where both put in power, and none comes out
+        text = f"{share} + 0*sqrt({share})"
+        name = f"{owner}.efficiency"
+        yield Wanted(name, "coupling_efficiency", owner, DIMENSIONLESS, False, text)
+
+
 @cache
 def _expression(wanted: Wanted) -> Expression:
+    if wanted.kind == "coupling_efficiency":
+        return parse(wanted.coordinate)
     if wanted.kind == "coupling_power":
         effort = "torque" if is_angle(wanted.coordinate.rpartition(".")[2]) else "force"
         return parse(f"{wanted.owner}.{effort} * {wanted.coordinate}_dot")

@@ -102,6 +102,7 @@ Kind = Literal[
     "coupling_force",
     "coupling_torque",
     "coupling_power",
+    "coupling_efficiency",
     "tooth_force",
     "tension",
 ]

@@ -168,8 +168,9 @@ class Layout:
 
     @cached_property
     def place_number(self) -> dict[str, int]:
-        """Number of each joint's place in the kernel."""
-        return {name: k for k, name in enumerate(self.mechanism.joints)}
+        """Number of the place in the kernel of each joint, and of each coupling that rubs."""
+        rubbing = (one.joint for one in self.mechanism.frictions if one.loss is not None)
+        return {name: k for k, name in enumerate((*self.mechanism.joints, *rubbing))}
 
     @cached_property
     def axis_number(self) -> dict[tuple[str, str], int]:

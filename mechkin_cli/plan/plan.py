@@ -30,7 +30,7 @@ from mechkin_cli.plan.records import ContactCode, FreeCode, LoadCode, PlanRecord
 
 if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import Plan
-    from mechkin_cli.mechanism import Constraint, Motion, Rubbing, Vector
+    from mechkin_cli.mechanism import Constraint, Loss, Motion, Rubbing, Vector
     from mechkin_cli.structure import Loop
 
 
@@ -40,6 +40,9 @@ NO_MOTION = -1
 
 def _friction(layout: Layout, rubbing: Rubbing) -> Iterator[PlanRecord]:
     """A friction, followed by its contacts."""
+    if rubbing.loss is not None:
+        yield from _loss(layout, rubbing, rubbing.loss)
+        return
     joint, unit = layout.mechanism.joints[rubbing.joint], layout.length
     law, axis = joint.type.friction, joint.axis
     assert law is not None
@@ -68,6 +71,28 @@ def _friction(layout: Layout, rubbing: Rubbing) -> Iterator[PlanRecord]:
             contact.roll * unit,
             layout.vector(Attached(axis.link, contact.direction)),
         )
+
+
+def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
+    """The friction of a coupling; about an axis as of surfaces on the radius 1."""
+    along, turns = FreeCode.ALONG, loss.turns
+    yield record(
+        "add_friction",
+        layout.place_number[rubbing.joint],
+        along if turns else NO_MOTION,
+        NO_MOTION if turns else along,
+        layout.link_number[loss.carrier],
+        False,
+        layout.vector(Attached(loss.carrier, loss.axis)),
+        1.0 if turns else 0.0,
+        0.0,
+        rubbing.at_rest,
+        rubbing.sliding,
+        1.0,
+    )
+    # the mean of the moments on both sides has half the loss in it
+    share, own = (loss.load, 0.5) if turns else (loss.load * layout.length, 0.0)
+    yield record("add_contact", ContactCode.TRANSMITTED, 1.0, share, 0.0, own, ZERO)
 
 
 def _code(motion: Motion | None) -> int:
@@ -280,6 +305,17 @@ def _places(layout: Layout) -> Iterator[PlanRecord]:
             layout.link_number[joint.point.link],
             layout.point(joint.point),
             -1.0 if name in backward else 1.0,
+        )
+    for rubbing in layout.mechanism.frictions:
+        loss = rubbing.loss
+        if loss is None:
+            continue
+        yield record(
+            "add_place",
+            layout.joint_reference[rubbing.joint],
+            *(layout.link_number[link] for link in (loss.first, loss.second, loss.carrier)),
+            layout.point(Attached(loss.carrier, loss.point)),
+            1.0,
         )
 
 

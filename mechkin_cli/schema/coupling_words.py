@@ -76,7 +76,10 @@ _TEETH = (
     "a ratio is told by teeth: [20, 40], in the order of the joints, or by radii: [20 mm, 40 mm]; "
     "of coordinates alone write type: linear"
 )
-_LOSSES = "losses are loads: a friction or a damper at the joints of the wheels"
+_LOSSES = (
+    "write efficiency: 0.9, the share of the power that comes out; friction of bearings is a load "
+    "at their joints"
+)
 _OF_JOINTS: Final = {
     **dict.fromkeys(("wheels", "gears", "pulleys", "between", "links", "bodies"), _JOINTS),
     **dict.fromkeys(("axes", "shafts", "a", "b", "first", "second", "from", "to"), _JOINTS),

@@ -187,6 +187,8 @@ class Toothed(Section):
     ideal: Truth = False
     """Whether moments and forces along the coordinates are transmitted alone, without a force
     between the teeth; left out, no."""
+    efficiency: Dimensionless | None = None
+    """Share of the power put in that comes out, whichever side drives; left out, all of it."""
 
     def check(self) -> None:
         """An ideal coupling has no teeth."""
@@ -216,6 +218,9 @@ class GearCoupling(Toothed):
     internal: Truth = False
     """Whether one of the wheels is a ring with teeth inside, so that both turn the same way; left
     out, no."""
+    friction: Dimensionless | None = None
+    """Coefficient of friction along the flanks of crossed helical wheels, such as a worm and its
+    wheel; left out, none."""
 
     def check(self) -> None:
         """The ratio is told."""
@@ -225,6 +230,9 @@ class GearCoupling(Toothed):
         if self.module is not None and self.teeth is None:
             text = "a module goes with numbers of teeth"
             raise refuse("module-alone", text, "give teeth instead of radii", "module")
+        if self.friction is not None and self.efficiency is not None:
+            text = "efficiency and friction both tell the losses of the teeth"
+            raise refuse("two-choices", text, "leave out one of the two", "efficiency")
         super().check()
 
 
@@ -251,6 +259,8 @@ class Strands(Section):
     turns on another link, that is joined to the carrier about the same axis."""
     pretension: Force | None = None
     """What pulls in each strand at rest; left out, the slack strand carries nothing."""
+    efficiency: Dimensionless | None = None
+    """Share of the power put in that comes out, whichever side drives; left out, all of it."""
 
 
 class BeltCoupling(Strands):
@@ -286,6 +296,8 @@ class ScrewCoupling(Section):
     same direction, both on one link."""
     lead: Length
     """Length per turn, positive for a right-hand thread."""
+    efficiency: Dimensionless | None = None
+    """Share of the power put in that comes out, whichever side drives; left out, all of it."""
 
 
 FollowedCoupling = FunctionCoupling | TableCoupling

@@ -274,12 +274,12 @@ def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | No
         return arbitrary_friction(frictions)
     for freedom in idle.idle_freedoms(problem) if frictions and not problem.hold_idle else ():
         for rubbing in frictions:
-            joint = joints[rubbing.joint]
+            joint = rubbing.loss or joints[rubbing.joint]
             if (joint.first in freedom.links) != (joint.second in freedom.links):
                 return Diagnostic(
                     "loaded-spin",
                     "error",
-                    f"{freedom.words}, and friction of {joint.name} may drive it: that is a "
+                    f"{freedom.words}, and friction of {rubbing.joint} may drive it: that is a "
                     "dynamic freedom, on which the motion depends",
                     rubbing.place,
                     hint=f"{freedom.cure}, or accept that it is held with idle: hold",
@@ -293,7 +293,7 @@ def uncounted_notes(result: RunRows) -> list[Diagnostic]:
     problem, known = result.problem, result.problem.quantities()
     sound = result.solved & (result.status != Status.dead_centre)
     for rubbing in problem.mechanism.frictions:
-        law = problem.mechanism.joints[rubbing.joint].type.friction
+        law = None if rubbing.loss else problem.mechanism.joints[rubbing.joint].type.friction
         missed = [(k, w) for k, w in law.missed if getattr(rubbing, k) is None] if law else []
         if not missed or result.shifts or rubbing.at_rest == 0.0:
             continue

@@ -77,7 +77,8 @@ void bind_plan_codes(nb::module_& m) {
   nb::enum_<ContactCode>(m, "ContactCode", nb::is_arithmetic(), "Kinds of contacts that rub.")
       .value("RADIAL", CONTACT_RADIAL)
       .value("ALONG", CONTACT_ALONG)
-      .value("TOTAL", CONTACT_TOTAL);
+      .value("TOTAL", CONTACT_TOTAL)
+      .value("TRANSMITTED", CONTACT_TRANSMITTED);
   nb::enum_<FrictionState>(m, "FrictionState", nb::is_arithmetic(), "What is known of a joint's friction in a row.")
       .value("DECIDED", FRICTION_DECIDED)
       .value("AT_REST", FRICTION_AT_REST)

@@ -41,7 +41,7 @@ inline void find_actuated_gains(Balance& balance, int shift, const RateByLeader&
       rub(balance, number - 1, Pack(1.0));
     }
     distribute(p, w, 0);
-    if (number) read_contacts(p, w, r.gain + number - 1, p.frictions);
+    if (number) read_contacts_of(p, w, number - 1, r.drag[number - 1], r.gain + number - 1, p.frictions);
     find_motors(p, w, rate_by_leader);
     want_efforts(p, at, number);
   }

@@ -109,12 +109,22 @@ inline void read_contacts(const Plan& p, const Workspace& w, Vec3* out, int stri
         out[c * stride] = Pack(at.share) * by.force;
       else if (at.code == CONTACT_RADIAL)
         out[c * stride] = Pack(at.share) * radial + Pack(at.tilt) * tilt;
+      else if (at.code == CONTACT_TRANSMITTED)
+        out[c * stride] = {Pack(at.share) * by.force.x, Pack(0.0), Pack(0.0)};
       else
         out[c * stride] = {dot(r.direction[c], Pack(at.share) * by.force + Pack(at.tilt) * tilt) +
                                Pack(at.roll) * dot(axis, moment),
                            Pack(0.0), Pack(0.0)};
     }
   }
+}
+
+// The same where a unit of friction k acts, which takes `drag` from its second link.
+inline void read_contacts_of(const Plan& p, const Workspace& w, int k, const Wrench& drag, Vec3* out, int stride) {
+  read_contacts(p, w, out, stride);
+  const Pack own = dot(w.rubbing.axis[k], drag.moment);
+  for (int c = p.friction[k].contact_begin; c < p.friction[k].contact_end; ++c)
+    if (p.contact[c].code == CONTACT_TRANSMITTED) out[c * stride].x -= Pack(p.contact[c].roll) * own;
 }
 
 inline void rub(Balance& balance, int k, Pack force) {
@@ -174,7 +184,7 @@ inline void find_gains(Balance& balance, int shift) {
     for (int k = 0; k < p.links; ++k) w.carried[k] = zero_wrench();
     rub(balance, f, Pack(1.0));
     distribute(p, w, 0);
-    read_contacts(p, w, r.gain + f, p.frictions);
+    read_contacts_of(p, w, f, r.drag[f], r.gain + f, p.frictions);
   }
 }
 

@@ -1,19 +1,22 @@
 // Friction of joints as records of the plan (friction.hpp), and what is known of it in a row.
 #pragma once
 
-// Contacts of a joint that rub, by what their load is: shares of the radial force and of the tilting couple, a single
-// component, or the whole force.
+// Contacts that rub, by what their load is: shares of the radial force and of the tilting couple of a joint, a single
+// component, the whole force, or what a relation transmits.
 enum ContactCode : int {
   CONTACT_RADIAL = 0,
   CONTACT_ALONG = 1,
   CONTACT_TOTAL = 2,
-  CONTACT_CODES = 3
+  CONTACT_TRANSMITTED = 3,
+  CONTACT_CODES = 4
 };
 
 // One contact of a joint that rubs. With F and M the joint's force and moment about its point, z its axis:
 //   RADIAL  | share F_r + tilt M x z |,  F_r = F - (z.F) z
 //   ALONG   | share u.F + tilt u.(M x z) + roll z.M |,  u the direction
 //   TOTAL   share |F|
+//   TRANSMITTED  | share X + roll z.D |,  X the multiplier of the place's relation, D the moment of the friction itself on
+//           the second link
 template <class Number>
 struct ContactOf {
   int code;

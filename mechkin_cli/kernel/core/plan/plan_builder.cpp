@@ -498,6 +498,8 @@ Refusal PlanBuilder::add_contact(int code, double weight, double share, double t
   CHECK(open());
   REQUIRE(!friction_.empty(), "contact of no friction");
   REQUIRE(code >= 0 && code < CONTACT_CODES, "unknown kind of contact");
+  const int of = place_[friction_.back().place].reference;
+  REQUIRE(code != CONTACT_TRANSMITTED || (of < 0 && is_relation(closing_[-1 - of].type)), "a relation transmits, no joint");
   CHECK(check_finite(weight, share, tilt, roll, direction));
   Contact c = {code, weight, share, tilt, roll, {}};
   copy(direction, c.direction);

@@ -119,7 +119,7 @@ inline void find_answers(Balance& balance, const ReducedMotion& m, const Slips& 
       balance.apply(j.first, s.unit[c]);
       accelerate(p, w, m, s.by + c * n);
       distribute(p, w, 0);
-      read_contacts(p, w, s.load + c, s.columns);
+      read_contacts_of(p, w, k, s.unit[c], s.load + c, s.columns);
     }
   }
 }
