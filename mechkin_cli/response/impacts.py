@@ -145,15 +145,20 @@ class ImpactAt:
         self.matrix = [[_dot(one, made) for made in self.answers] for one in normals]
 
     def rebound(self, settling: Sequence[int] = ()) -> Rebound | None:
-        """How it goes on, without any restitution at some stops; None where a limit without
-        restitution is touched, too, or the inertia is none."""
+        """How it goes on, with nothing left of the rates at some stops; None where a limit without
+        restitution is touched, too, or the inertia is none.
+
+        What settles may be on its way back: one that another throws off by less than what is still
+        at its limit.
+        """
         if not self.is_moved:
             return None
         right = [
             rate + (bounce * rate if rate > 0.0 else 0.0)
             for rate, bounce in zip(self.outward, self._bounces(settling), strict=True)
         ]
-        solved = complementary(self.matrix, self.outward, right)
+        always = [k for k, touch in enumerate(self.touches) if touch.stop in settling]
+        solved = complementary(self.matrix, self.outward, right, always)
         if solved is None:
             return None
         numbers, pushes = solved
@@ -243,7 +248,7 @@ class ImpactAt:
                 if rates[k] * rates[k] <= off:
                     settles.append(self.touches[k].stop)
         if settles:
-            settles += [self.touches[k].stop for k in still]
+            settles += [self.touches[k].stop for k in held]
         return Resting(settles, [self.touches[k].stop for k in held])
 
     def _bounces(self, settling: Sequence[int]) -> list[float]:
@@ -335,13 +340,16 @@ class ImpactAt:
 
 
 def complementary(
-    matrix: Sequence[Sequence[float]], outward: Sequence[float], right: Sequence[float]
+    matrix: Sequence[Sequence[float]],
+    outward: Sequence[float],
+    right: Sequence[float],
+    always: Sequence[int] = (),
 ) -> tuple[list[int], list[float]] | None:
     """Which limits push, and how: those that coordinates would go beyond by `outward`, such that
     the `matrix` takes away `right` of it where one pushes, and none is left where none does; None
-    where no choice is found."""
+    where no choice is found. Some `always` act, whichever way."""
     rounding = tolerances.KINK_ROUNDING * max((abs(one) for one in outward), default=0.0)
-    active = [k for k, one in enumerate(outward) if one > 0.0]
+    active = [k for k, one in enumerate(outward) if one > 0.0 or k in always]
     tried: list[list[int]] = []
     while active not in tried:
         tried.append(active)
@@ -349,7 +357,9 @@ def complementary(
         pushes = eliminated(inner, [right[k] for k in active], tolerances.RANK_ROUNDING)
         if pushes is None:
             return None
-        pulling = [k for k, push in zip(active, pushes, strict=True) if push < 0.0]
+        pulling = [
+            k for k, push in zip(active, pushes, strict=True) if push < 0.0 and k not in always
+        ]
         beyond = [
             k
             for k, one in enumerate(outward)

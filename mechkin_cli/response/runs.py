@@ -412,14 +412,16 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
             break
         later = _onward(one, begun, begin, times, packing)
         resting = touch.resting(later.chart, left)
-        if resting is not None and resting.settles:
-            struck = touch.rebound(resting.settles)
+        settled: list[int] = []
+        while resting is not None and not set(resting.settles) <= set(settled):
+            settled = list(dict.fromkeys([*settled, *resting.settles]))
+            struck = touch.rebound(settled)
             if struck is None:
                 break
             begun, work = struck.begun, struck.work
             later = _onward(one, begun, begin, times, packing)
             resting = touch.resting(later.chart, left)
-        if resting is None:
+        if resting is None or (struck is None and not left):
             break
         if struck is not None:
             impact = struck.impact._replace(rests=bool(resting.held))

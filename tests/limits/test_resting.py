@@ -457,3 +457,37 @@ def test_rests_are_the_same_bits_in_any_lanes() -> None:
         other = mk.loads(text).respond("fall", ["X.s", "Y.effort"], lanes=lanes)
         for name in ("X.s", "Y.effort"):
             assert one[name].tobytes() == other[name].tobytes()
+
+
+def chatter(seed: int) -> mk.Analysis:
+    """Arms that torques press to stops with restitution."""
+    random = np.random.default_rng(seed)
+    low, high = random.uniform(-0.7, -0.2, 2), random.uniform(0.2, 0.7, 2)
+    rates, torque = random.uniform(-3, 3, 2), random.uniform(-1, 1, 2) * [30, 8]
+    bounce = random.uniform(0, 0.8, 2)
+    columns = (low.tolist(), high.tolist(), bounce.tolist(), torque.tolist(), rates.tolist())
+    limits, loads, first = [], "", []
+    for name, a, b, e, push, rate in zip("AB", *columns, strict=True):
+        limits.append(f"{name}.theta: {{min: {a!r}, max: {b!r}, restitution: {e!r}}}")
+        loads += f"  - {{type: torque, joint: {name}, value: {push!r}}}\n"
+        first.append(f"{name}.theta: 0, {name}.theta_dot: {rate!r}")
+    run = f"{{start: {{{', '.join(first)}}}, time: {{from: 0, to: 2, step: 0.02}}}}"
+    head = ELBOW.partition("  - {type: torque")[0]
+    tail = f"limits: {{{', '.join(limits)}}}\nresponses: {{s: {run}}}\n"
+    return mk.loads(head + loads + tail).respond("s")
+
+
+@pytest.mark.parametrize("seed", [7, 37, 43, 74])
+def test_arms_that_throw_each_other_off_their_stops_settle_at_both(seed: int) -> None:
+    rows = chatter(seed)
+    torque = (np.random.default_rng(seed).uniform(size=8)[6:] * 2.0 - 1.0) * [30, 8]
+    assert rows["time"][-1] == 2.0
+    assert set(rows["row.status"]) == {"ok"}
+    names = ("A.theta", "B.theta", "A.theta_dot", "B.theta_dot", "A.theta_ddot", "B.theta_ddot")
+    columns = np.column_stack([rows[name] for name in names])
+    efforts = np.column_stack([rows["A.effort"], rows["B.effort"]])
+    assert (efforts != 0.0).any()
+    for row, effort in zip(columns, efforts, strict=True):
+        inertia, forces = pendulum(row[:2], row[2:4], float(torque[1]))
+        forces = forces + np.array([torque[0], 0.0])
+        np.testing.assert_allclose(inertia @ row[4:], forces + effort, atol=1e-9)
