@@ -251,6 +251,10 @@ class ImpactAt:
             settles += [self.touches[k].stop for k in held]
         return Resting(settles, [self.touches[k].stop for k in held])
 
+    def limits(self, stops: Sequence[int]) -> tuple[Limit, ...]:
+        """Those of some stops."""
+        return tuple(touch.limit for touch in self.touches if touch.stop in stops)
+
     def _bounces(self, settling: Sequence[int]) -> list[float]:
         return [
             0.0 if touch.stop in settling else touch.limit.restitution or 0.0
@@ -423,7 +427,7 @@ def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diag
         dimension = (MOMENT if is_angle(limit.coordinate) else FORCE) * TIME
         times = "once" if len(own) == 1 else f"{len(own)} times, first"
         text = f"{limit.name} comes to its limit {times} at {at[0]}"
-        rests = own[-1].rests
+        rests = limit in own[-1].held
         if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
             text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
         if rests:

@@ -60,14 +60,19 @@ class Beginning(NamedTuple):
 
 class Impact(NamedTuple):
     """What limits gave at a moment (s): of each that pushed, the limit, the outward rate of its
-    coordinate before (rad/s, m/s), and the impulse (N*m*s, N*s); `rests`: the last coordinate does
-    not come off again."""
+    coordinate before (rad/s, m/s), and the impulse (N*m*s, N*s); `held`: the limits at which
+    coordinates then rest."""
 
     time: float
     limits: tuple[Limit, ...]
     rates: tuple[float, ...]
     impulses: tuple[float, ...]
-    rests: bool = False
+    held: tuple[Limit, ...] = ()
+
+    @property
+    def rests(self) -> bool:
+        """Whether a coordinate then rests."""
+        return bool(self.held)
 
 
 class Rebound(NamedTuple):

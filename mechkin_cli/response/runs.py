@@ -424,7 +424,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         if resting is None or (struck is None and not left):
             break
         if struck is not None:
-            impact = struck.impact._replace(rests=bool(resting.held))
+            impact = struck.impact._replace(held=touch.limits(resting.held))
             rebounds.append(struck._replace(impact=impact))
         before, was, left = moved, left, []
         if resting.held:
