@@ -491,3 +491,37 @@ def test_arms_that_throw_each_other_off_their_stops_settle_at_both(seed: int) ->
         inertia, forces = pendulum(row[:2], row[2:4], float(torque[1]))
         forces = forces + np.array([torque[0], 0.0])
         np.testing.assert_allclose(inertia @ row[4:], forces + effort, atol=1e-9)
+
+
+@pytest.mark.parametrize("plane", [True, False])
+def test_a_boom_comes_to_rest_on_its_cylinder(plane: bool) -> None:
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {boom: {mass: 10, center_of_mass: [0.5, 0], inertia: 1}}
+joints: {O: {type: R, links: [ground, boom], point: [0, 0]}}
+points:
+  P: {link: ground, at: [0.3, -0.8]}
+  Q: {link: boom, at: [0.6, 0]}
+cylinders: {C: {from: P, to: Q, bore: 50 mm, rod: 28 mm}}
+loads: [{type: gravity, g: [0, -9.81]}]
+limits: {C.s: {min: 0.7, restitution: 0.3}}
+responses: {r: {start: {O.theta: 0}, time: {from: 0, to: 1, step: 0.02}}}
+"""
+    if not plane:
+        text = text.replace("plane: xy\n", "").replace("inertia: 1", "inertia: {zz: 1}")
+        for place in ("0.5, 0", "point: [0, 0", "0.3, -0.8", "0.6, 0", "0, -9.81"):
+            text = text.replace(f"{place}]", f"{place}, 0]")
+        text = text.replace("0, 0, 0]}}", "0, 0, 0], axis: [0, 0, 1]}}")
+    rows = mk.loads(text).respond("r")
+    turn, length = rows["O.theta"][-1], rows["C.s"][-1]
+    # the law of cosines, and the lever of the cylinder's force about the pin
+    way = np.array([0.6 * cos(turn) - 0.3, 0.6 * sin(turn) + 0.8])
+    assert length == pytest.approx(0.7, abs=1e-11)
+    assert np.hypot(*way) == pytest.approx(0.7, abs=1e-11)
+    lever = (0.6 * cos(turn) * way[1] - 0.6 * sin(turn) * way[0]) / 0.7
+    force = 10 * 9.81 * 0.5 * cos(turn) / lever
+    assert rows["C.effort"][-1] == pytest.approx(force, rel=1e-10)
+    assert set(rows["row.status"]) == {"ok"}
+    assert np.nanmax(rows["row.energy_error"]) < 1e-9
