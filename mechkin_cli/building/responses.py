@@ -307,7 +307,7 @@ class _ResponseBuilder:
             stops=(*self._stops(path, section, stops), *self._limits()),
             tolerance=self._tolerance(path, section.tolerance),
             fixed_step=self._fixed_step(path, section.fixed_step, clock.time),
-            mechanism=replace(mechanism, drives=None),
+            mechanism=self._kept(mechanism),
             load_laws=laws,
         )
 
@@ -324,6 +324,11 @@ class _ResponseBuilder:
                 hint = "end at a value: {value: A.theta, at: 720 deg}; or leave out the restitution"
                 self.fields.error("counted-stop", (*path, "stop", i), text, hint)
         return stops
+
+    def _kept(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism of a response, which keeps the joints that may rest at their limits."""
+        limits = (limit for limit in self.problem.limits if limit.restitution is not None)
+        return replace(mechanism, drives=None, kept=frozenset(limit.joint for limit in limits))
 
     def _limits(self) -> Iterator[CrossingEnd]:
         """The stops at the limits of coordinates."""
@@ -348,7 +353,7 @@ class _ResponseBuilder:
             start=build_start(self.fields, path, section, self.joints),
             assembly=self._assembly(path, section),
             efforts=tuple(effort.renumbered(numbers) for effort in efforts),
-            mechanism=replace(mechanism, drives=None),
+            mechanism=self._kept(mechanism),
             load_laws=laws,
         )
 

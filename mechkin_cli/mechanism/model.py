@@ -316,7 +316,8 @@ def _renumbered(amount: Amount, numbers: Mapping[int, int]) -> Amount:
 class Mechanism:
     """Links and joints by name in the order written; gravity in m/s^2; what drives it, where it is
     known. `plane`: everything stays in the plane z = 0. All places are measured from the
-    `datum` (m), in the ground's axes. `couplings`: relations between coordinates, by name."""
+    `datum` (m), in the ground's axes. `couplings`: relations between coordinates, by name. `kept`:
+    joints that close no loop, since their coordinates are needed."""
 
     name: str
     links: Mapping[str, RigidLink]
@@ -330,6 +331,7 @@ class Mechanism:
     plane: bool = False
     datum: Vector = ZERO
     couplings: Mapping[str, Relation] = field(default_factory=dict)
+    kept: frozenset[str] = frozenset()
 
     @property
     def space(self) -> int:

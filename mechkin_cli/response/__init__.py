@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": "Beginning Impact integrate with_loads",
+        "integration": "Beginning Impact integrate watched_stop with_loads",
         "result": "ResponseResult",
-        "runs": "Prepared integrated prepare read respond watched_stop",
+        "runs": "Prepared integrated prepare read respond",
     },
 )

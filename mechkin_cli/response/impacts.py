@@ -9,7 +9,7 @@ the loops ask for; their friction takes none.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,20 +39,31 @@ if TYPE_CHECKING:
 
 
 class _Touch(NamedTuple):
-    """A limit that is touched, and the side on which it ends its coordinate."""
+    """A limit that is touched, the side on which it ends its coordinate, and the number of its
+    stop."""
 
     limit: Limit
     side: float
+    stop: int
 
 
-def touched_limit(response: ResponseProblem, moved: MotionRows) -> CrossingEnd | None:
-    """The limit with a restitution that has ended a motion; None of any other end."""
+class Resting(NamedTuple):
+    """Stops, by their numbers, of limits at which coordinates do not come off again: those that an
+    impact has to `settle` first, and those that then are `held`."""
+
+    settles: list[int]
+    held: list[int]
+
+
+def touched_limit(response: ResponseProblem, moved: MotionRows) -> int | None:
+    """The number of the stop at a limit with a restitution that has ended a motion; None of any
+    other end."""
     if moved.report.end is not MotionEnd.STOPPED:
         return None
     stop = response.stops[moved.report.stop]
     if not isinstance(stop, CrossingEnd) or stop.limit is None:
         return None
-    return None if stop.limit.restitution is None else stop
+    return None if stop.limit.restitution is None else moved.report.stop
 
 
 def stopped_at_start(result: ResponseResult, moved: MotionRows) -> MotionRows:
@@ -98,66 +109,80 @@ class ImpactAt:
 
     Args:
         result: the rows up to it.
-        stop: of the limit.
+        number: of the limit's stop.
     """
 
-    def __init__(self, result: ResponseResult, stop: CrossingEnd) -> None:
-        assert stop.limit is not None
-        self.result, self.session, self.stop = result, result.session, stop
+    def __init__(self, result: ResponseResult, number: int) -> None:
+        self.result, self.session = result, result.session
+        self.words = result.response.stops[number].words
         self.row, self.charts = result.rows - 1, len(result.chart.rates)
-        self.first = _Touch(stop.limit, 1.0 if stop.direction == "up" else -1.0)
-        self.touches = [self.first, *self._beside()]
+        self.touches = sorted(self._touched(number), key=lambda touch: touch.stop != number)
         known = result.problem.quantities()
         self.rates_of = [known[f"{touch.limit.name}_dot"] for touch in self.touches]
-
-    def rebound(self) -> Rebound | None:
-        """How it goes on; None where a limit without restitution is touched, too, or the inertia is
-        none."""
         n = self.charts
-        before = self.result.chart.rates[:, self.row]
+        self.before = result.chart.rates[:, self.row]
         pairs = [(i, j) for i in range(n) for j in range(i)]
         cases = np.zeros((n, 1 + n + len(pairs)))
-        cases[:, 0] = before
+        cases[:, 0] = self.before
         for column in range(n):
             cases[column, 1 + column] = 1.0
         for column, pair in enumerate(pairs, 1 + n):
             cases[list(pair), column] = 1.0
-        energies, rates, _ = self._read(cases)
+        energies, rates, columns = self._read(cases)
         inertia = [[0.0] * n for _ in range(n)]
         for i in range(n):
             inertia[i][i] = 2.0 * float(energies[1 + i])
         for (i, j), both in zip(pairs, energies[1 + n :], strict=True):
             inertia[i][j] = inertia[j][i] = float(both - energies[1 + i] - energies[1 + j])
-        solved = self._pushes(inertia, rates)
+        self.energy, self.outward = float(energies[0]), [float(row[0]) for row in rates]
+        self.tangents = np.ascontiguousarray(columns[:, 1 : 1 + n].T)
+        self.onward = self._begun(columns[:, 0])
+        normals = [[float(x) for x in row[1 : 1 + n]] for row in rates]
+        answers = [eliminated(inertia, normal, tolerances.RANK_ROUNDING) for normal in normals]
+        # what a unit impulse makes of the chart's rates, and of the outward ones
+        self.answers = [answer for answer in answers if answer is not None]
+        self.is_moved = len(self.answers) == len(answers)
+        self.matrix = [[_dot(one, made) for made in self.answers] for one in normals]
+
+    def rebound(self, settling: Sequence[int] = ()) -> Rebound | None:
+        """How it goes on, with nothing left of the rates at some stops; None where a limit without
+        restitution is touched, too, or the inertia is none.
+
+        What settles may be on its way back: one that another throws off by less than what is still
+        at its limit.
+        """
+        if not self.is_moved:
+            return None
+        right = [
+            rate + (bounce * rate if rate > 0.0 else 0.0)
+            for rate, bounce in zip(self.outward, self._bounces(settling), strict=True)
+        ]
+        always = [k for k, touch in enumerate(self.touches) if touch.stop in settling]
+        solved = complementary(self.matrix, self.outward, right, always)
         if solved is None:
             return None
-        numbers, pushes, answers = solved
-        after = before.copy()
-        for push, answer in zip(pushes, answers, strict=True):
-            after = after - push * np.array(answer)
+        numbers, pushes = solved
+        if not numbers:
+            numbers, pushes = [0], [0.0]  # it stands there, and may rest
+        after = self.before.copy()
+        for number, push in zip(numbers, pushes, strict=True):
+            after = after - push * np.array(self.answers[number])
         energy, outward, columns = self._read(after[:, None])
         # an impulse works by the mean of the rates before and after it
         lost = 0.0
         for number, push in zip(numbers, pushes, strict=True):
-            lost += 0.5 * push * float(rates[number, 0] + outward[number, 0])
-        work = float(energy[0] - energies[0]) + lost
+            lost += 0.5 * push * (self.outward[number] + float(outward[number, 0]))
+        work = float(energy[0]) - self.energy + lost
         unit = self.session.layout.length * self.session.layout.length
         impact = Impact(
-            self._time(),
+            self.time,
             tuple(self.touches[number].limit for number in numbers),
-            tuple(float(rates[number, 0]) for number in numbers),
+            tuple(self.outward[number] for number in numbers),
             tuple(pushes),
         )
-        direction = self.result.chart.direction[:, self.row]
-        begun = Beginning(
-            np.ascontiguousarray(self.result.row_states.states[:, self.row]),
-            np.ascontiguousarray(columns[:, 0]),
-            np.ascontiguousarray(direction.reshape(n, -1)),
-        )
-        if any(touch.limit.restitution is None for touch in self._pushing(numbers)):
+        if any(self.touches[number].limit.restitution is None for number in numbers):
             return None
-        still = np.zeros((n, 1))
-        rows = self._rows(still, (after - before)[:, None])
+        rows = self._rows(np.zeros((self.charts, 1)), (after - self.before)[:, None])
         none = None if rows.rates is None else np.zeros(rows.rates.shape)
         given: dict[tuple[str, str], float] = {}
         for number, push in zip(numbers, pushes, strict=True):
@@ -166,71 +191,105 @@ class ImpactAt:
             given[at] = given.get(at, 0.0) - touch.side * push
         return Rebound(
             impact,
-            begun,
+            self._begun(columns[:, 0]),
             (work / unit, lost / unit),
             rows._replace(rates=none, accelerations=none),
             given,
-            self.stop.words,
+            self.words,
         )
 
     @property
-    def may_rest(self) -> bool:
-        """Whether a rest is computed: of one freedom that nothing drives."""
-        return self.charts == 1 and not self.result.response.driven
-
-    def lever(self) -> float:
-        """The outward rate of the coordinate per that of the start's coordinate."""
-        ((joint, coordinate),) = self.result.response.independent
-        known = self.result.problem.quantities()
-        wanted = [known[f"{joint}.{coordinate}_dot"], self.rates_of[0]]
-        readout = self.session.readout(wanted)
-        batch = self.session.run(
-            self._rows(np.ones((1, 1))), Ask(Demand.VELOCITY, readout, iterations=0)
-        )
-        assert batch.outputs is not None
-        own, limited = (float(batch.outputs[readout.slots[one.name].start, 0]) for one in wanted)
-        return self.first.side * limited / own if own != 0.0 else 0.0
-
-    def rests(self, rates: Floats, accelerations: Floats) -> bool:
-        """Whether the coordinate does not come off its limit by more than what is still at it, by
-        the chart's rates and accelerations (charts,) behind the impact."""
-        known = self.result.problem.quantities()
-        names = [f"{self.first.limit.name}{order}" for order in ("_dot", "_ddot")]
-        wanted = [known[name] for name in names]
-        readout = self.session.readout(wanted)
-        rows = self._rows(rates[:, None], accelerations[:, None])
-        batch = self.session.run(
-            rows, Ask(Demand.VELOCITY | Demand.ACCELERATION, readout, iterations=0)
-        )
-        assert batch.outputs is not None
-        rate, pushed = (
-            self.first.side * float(batch.outputs[readout.slots[one.name].start, 0])
-            for one in wanted
-        )
-        unit = 1.0 if is_angle(self.first.limit.coordinate) else self.session.layout.length
-        return pushed > 0.0 and rate * rate <= 2.0 * pushed * tolerances.AT_LIMIT * unit
-
-    def _time(self) -> float:
+    def time(self) -> float:
+        """Its moment, s."""
         moments = self.result.problem.motion.time
         assert moments is not None
         return float(moments.values[self.row])
 
-    def _pushing(self, numbers: Sequence[int]) -> list[_Touch]:
-        return [self.touches[number] for number in numbers]
+    @property
+    def began_resting(self) -> bool:
+        """Whether it is the first row of the response, and no coordinate comes to its limit."""
+        return not self.row and all(
+            rate <= still for rate, still in zip(self.outward, self._still, strict=True)
+        )
 
-    def _beside(self) -> list[_Touch]:
-        """Other limits that are touched."""
-        found = []
-        for stop in self.result.response.stops:
+    def resting(self, chart: Chart, left: Sequence[int]) -> Resting | None:
+        """Which coordinates stay at their limits behind the impact; None where the forces of
+        limits are not determined, as those of two that end one freedom.
+
+        Those that are still there do where the limits' forces push: the outward accelerations
+        without them, less what they take, are at most zero, and zero where one pushes. One that
+        would come off by less than what is still at its limit settles first.
+
+        Args:
+            chart: of the free motion behind the impact, from its first row on.
+            left: stops of limits that coordinates are just leaving.
+        """
+        rates, pushed = self._outward(chart)
+        able = [
+            k
+            for k, touch in enumerate(self.touches)
+            if touch.limit.restitution is not None and touch.stop not in left
+        ]
+        still = [k for k in able if abs(rates[k]) <= self._still[k]]
+        if not self.is_moved:
+            return None
+        matrix = [[self.matrix[i][j] for j in still] for i in still]
+        own = [pushed[k] for k in still]
+        solved = complementary(matrix, own, own)
+        if solved is None:
+            return None
+        held = [still[number] for number in solved[0]]
+        settles = []
+        for k in able:
+            row = [self.matrix[k][j] for j in held]
+            coming = pushed[k] - _dot(row, solved[1])
+            if k not in still and coming > 0.0:
+                off = 2.0 * coming * tolerances.AT_LIMIT * self._units[k]
+                if rates[k] * rates[k] <= off:
+                    settles.append(self.touches[k].stop)
+        if settles:
+            settles += [self.touches[k].stop for k in held]
+        return Resting(settles, [self.touches[k].stop for k in held])
+
+    def limits(self, stops: Sequence[int]) -> tuple[Limit, ...]:
+        """Those of some stops."""
+        return tuple(touch.limit for touch in self.touches if touch.stop in stops)
+
+    def _bounces(self, settling: Sequence[int]) -> list[float]:
+        return [
+            0.0 if touch.stop in settling else touch.limit.restitution or 0.0
+            for touch in self.touches
+        ]
+
+    @property
+    def _units(self) -> list[float]:
+        length = self.session.layout.length
+        return [1.0 if is_angle(one.limit.coordinate) else length for one in self.touches]
+
+    @property
+    def _still(self) -> list[float]:
+        """Outward rates that are rounding of zero."""
+        parts = [abs(rate) / unit for rate, unit in zip(self.outward, self._units, strict=True)]
+        return [tolerances.KINK_ROUNDING * unit * max(1.0, *parts) for unit in self._units]
+
+    def _touched(self, number: int) -> Iterator[_Touch]:
+        """The limits that are touched, that of a stop among them."""
+        for k, stop in enumerate(self.result.response.stops):
             if not isinstance(stop, CrossingEnd) or stop.limit is None or stop.at is None:
                 continue
-            touch = _Touch(stop.limit, 1.0 if stop.direction == "up" else -1.0)
+            side = 1.0 if stop.direction == "up" else -1.0
             value = np.asarray(self.result.quantity(stop.limit.name).value)[self.row]
             unit = 1.0 if is_angle(stop.limit.coordinate) else self.session.layout.length
-            near = touch.side * (float(value) - stop.at) >= -tolerances.AT_LIMIT * unit
-            if near and touch != self.first:
-                found.append(touch)
-        return found
+            if k == number or side * (float(value) - stop.at) >= -tolerances.AT_LIMIT * unit:
+                yield _Touch(stop.limit, side, k)
+
+    def _begun(self, columns: Floats) -> Beginning:
+        """How a motion begins here, by the rates of all columns."""
+        return Beginning(
+            np.ascontiguousarray(self.result.row_states.states[:, self.row]),
+            np.ascontiguousarray(columns),
+            self.tangents,
+        )
 
     def _rows(self, rates: Floats, accelerations: Floats | None = None) -> RowInputs:
         """The row with rates of the chart (charts, cases); drives move in the first case alone."""
@@ -266,41 +325,54 @@ class ImpactAt:
         energies = batch.outputs[readout.slots[energy.name].start]
         return energies, np.array(outward), batch.first
 
-    def _pushes(
-        self, inertia: list[list[float]], rates: Floats
-    ) -> tuple[list[int], list[float], list[list[float]]] | None:
-        """Which limits push, their impulses, and what a unit impulse makes of the chart's rates."""
-        n = self.charts
-        normals = [[float(x) for x in row[1 : 1 + n]] for row in rates]
-        answers = [eliminated(inertia, normal, tolerances.RANK_ROUNDING) for normal in normals]
-        if any(answer is None for answer in answers):
+    def _outward(self, chart: Chart) -> tuple[list[float], list[float]]:
+        """Outward rates and accelerations of all touches in the first row of a chart."""
+        known = self.result.problem.quantities()
+        names = [one.limit.name for one in self.touches]
+        wanted = [known[f"{name}{order}"] for order in ORDERS[1:3] for name in names]
+        readout = self.session.readout(list(dict.fromkeys(wanted)))
+        rows = self._rows(chart.rates[:, :1])._replace(chart=chart.at([0]))
+        batch = self.session.run(
+            rows, Ask(Demand.VELOCITY | Demand.ACCELERATION, readout, iterations=0)
+        )
+        assert batch.outputs is not None
+        found = [
+            touch.side * float(batch.outputs[readout.slots[one.name].start, 0])
+            for touch, one in zip([*self.touches, *self.touches], wanted, strict=True)
+        ]
+        return found[: len(names)], found[len(names) :]
+
+
+def complementary(
+    matrix: Sequence[Sequence[float]],
+    outward: Sequence[float],
+    right: Sequence[float],
+    always: Sequence[int] = (),
+) -> tuple[list[int], list[float]] | None:
+    """Which limits push, and how: those that coordinates would go beyond by `outward`, such that
+    the `matrix` takes away `right` of it where one pushes, and none is left where none does; None
+    where no choice is found. Some `always` act, whichever way."""
+    rounding = tolerances.KINK_ROUNDING * max((abs(one) for one in outward), default=0.0)
+    active = [k for k, one in enumerate(outward) if one > 0.0 or k in always]
+    tried: list[list[int]] = []
+    while active not in tried:
+        tried.append(active)
+        inner = [[matrix[i][j] for j in active] for i in active]
+        pushes = eliminated(inner, [right[k] for k in active], tolerances.RANK_ROUNDING)
+        if pushes is None:
             return None
-        made = [answer for answer in answers if answer is not None]
-        outward = [float(row[0]) for row in rates]
-        active = [k for k, rate in enumerate(outward) if rate > 0.0]
-        if not active:
-            return [0], [0.0], made[:1]  # it stands there, and may rest
-        tried: list[list[int]] = []
-        while active and active not in tried:
-            tried.append(active)
-            matrix = [[_dot(normals[i], made[j]) for j in active] for i in active]
-            right = []
-            for k in active:
-                bounce = self.touches[k].limit.restitution or 0.0
-                right.append(outward[k] + (bounce * outward[k] if outward[k] > 0.0 else 0.0))
-            pushes = eliminated(matrix, right, tolerances.RANK_ROUNDING)
-            if pushes is None:
-                return None
-            pulling = [k for k, push in zip(active, pushes, strict=True) if push < 0.0]
-            after = [
-                rate - _dot(pushes, [_dot(normals[k], made[j]) for j in active])
-                for k, rate in enumerate(outward)
-            ]
-            beyond = [k for k, rate in enumerate(after) if k not in active and rate > 0.0]
-            if not pulling and not beyond:
-                return active, pushes, [made[k] for k in active]
-            active = sorted({*active, *beyond}.difference(pulling))
-        return None
+        pulling = [
+            k for k, push in zip(active, pushes, strict=True) if push < 0.0 and k not in always
+        ]
+        beyond = [
+            k
+            for k, one in enumerate(outward)
+            if k not in active and one - _dot([matrix[k][j] for j in active], pushes) > rounding
+        ]
+        if not pulling and not beyond:
+            return active, pushes
+        active = sorted({*active, *beyond}.difference(pulling))
+    return None
 
 
 def _dot(one: Sequence[float], other: Sequence[float]) -> float:
@@ -346,9 +418,7 @@ def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> 
     )
 
 
-def impact_notes(
-    result: ResponseResult, impacts: Sequence[Impact], *, ended: bool
-) -> list[Diagnostic]:
+def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diagnostic]:
     """How often each coordinate rebounds and with what impulse, and which comes to rest."""
     units, notes = result.units, []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
@@ -358,12 +428,11 @@ def impact_notes(
         dimension = (MOMENT if is_angle(limit.coordinate) else FORCE) * TIME
         times = "once" if len(own) == 1 else f"{len(own)} times, first"
         text = f"{limit.name} comes to its limit {times} at {at[0]}"
-        rests = impacts[-1].rests and impacts[-1].limits[0] == limit
+        rests = limit in own[-1].held
         if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
             text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
         if rests:
             text += f", and rests at it from {at[-1]} on"
-            text += ": the response ends there" if ended else ""
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)

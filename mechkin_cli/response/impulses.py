@@ -58,7 +58,10 @@ def impact_table(session: Session, run: str, rebounds: Sequence[Rebound]) -> Col
     """
     units = session.problem.units
     times = np.array([one.impact.time for one in rebounds])
-    events = [one.words + (", rests" if one.impact.rests else "") for one in rebounds]
+    events = [
+        "; ".join([one.words, *(f"{limit.name} rests" for limit in one.impact.held)])
+        for one in rebounds
+    ]
     columns = [
         TableColumn("time", units.label(TIME), np.array(units.from_si(times, TIME))),
         TableColumn("event", "", words_of(events)),

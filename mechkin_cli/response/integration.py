@@ -17,6 +17,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import threads_for, width
+from mechkin_cli.mechanism import CrossingEnd, DeadCentreEnd, dimension_of
 from mechkin_cli.plan import Demand, Layout, kink_laws
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import (
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
     from mechkin_cli.mechanism import Limit, LoadLaw, Problem, ResponseProblem, Stop
     from mechkin_cli.show import Floats
+    from mechkin_cli.units import Dimension
 
 
 class Beginning(NamedTuple):
@@ -58,14 +60,19 @@ class Beginning(NamedTuple):
 
 class Impact(NamedTuple):
     """What limits gave at a moment (s): of each that pushed, the limit, the outward rate of its
-    coordinate before (rad/s, m/s), and the impulse (N*m*s, N*s); `rests`: the last coordinate does
-    not come off again."""
+    coordinate before (rad/s, m/s), and the impulse (N*m*s, N*s); `held`: the limits at which
+    coordinates then rest."""
 
     time: float
     limits: tuple[Limit, ...]
     rates: tuple[float, ...]
     impulses: tuple[float, ...]
-    rests: bool = False
+    held: tuple[Limit, ...] = ()
+
+    @property
+    def rests(self) -> bool:
+        """Whether a coordinate then rests."""
+        return bool(self.held)
 
 
 class Rebound(NamedTuple):
@@ -256,14 +263,16 @@ def integrate(
     return motions
 
 
-def driven_laws(session: Session, response: ResponseProblem) -> _kernel.DrivenLaws | None:
-    """The laws of a session's inputs: the response's driven coordinates, then those at which idle
-    freedoms are held; None without any.
+def driven_laws(
+    session: Session, response: ResponseProblem, resting: Sequence[float] = ()
+) -> _kernel.DrivenLaws | None:
+    """The laws of a session's inputs: the response's driven coordinates, those `resting` at limits
+    (kernel units), then those at which idle freedoms are held; None without any.
 
     The course of the driven ones is a tape over the time in the file's unit, in cells.
     """
     problem, layout = session.problem, session.layout
-    held = held_values(problem, layout)
+    held = [*resting, *held_values(problem, layout)]
     units = [input_unit(layout, item) for item in response.driven]
     if not units and not held:
         return None
@@ -281,6 +290,30 @@ def driven_laws(session: Session, response: ResponseProblem) -> _kernel.DrivenLa
         time_unit,
         held,
     )
+
+
+_DIRECTIONS = {"up": 1, "down": -1, "any": 0}
+
+
+def watched_stop(stop: Stop) -> WatchedStop:
+    """A stop as the kernel takes it."""
+    if isinstance(stop, CrossingEnd):
+        if stop.at is None:
+            return 3, 1, stop.count, 0.0, 0, -1
+        direction = _DIRECTIONS[stop.direction]
+        return 0, direction, stop.count, stop.at, *_powers(stop.dimension)
+    if isinstance(stop, DeadCentreEnd):
+        rate = dimension_of(stop.coordinate) / TIME
+        return 1, 0, stop.count, 0.0, *_powers(rate)
+    return 2, 0, stop.count, 0.0, 0, -1
+
+
+def _powers(dimension: Dimension) -> tuple[int, int]:
+    """The powers of length and of 1/time of a `WatchedStop`."""
+    length, mass, time, _ = dimension.exponents
+    if mass or time > 0 or length != int(length) or time != int(time):
+        return 0, -1
+    return int(length), -int(time)
 
 
 Reason = tuple[Status, Diagnostic]

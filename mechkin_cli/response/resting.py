@@ -1,36 +1,49 @@
-"""Rest at a limit: a mechanism of one freedom that loads push to a limit stands there, held by the
-limit's force, until that would have to pull.
+"""Rest at limits: coordinates that loads push to their limits stand there, held by the limits'
+forces, until one of these would have to pull; what else is free moves on.
 
-Nothing moves while it rests, so that the force follows from the balance of each moment. It is told
-as the effort at the limited coordinate, and acts on rows as a load over time.
+Such a motion is integrated on the same tree with the coordinates at rest as inputs, so its states
+are those of the free motion. The force of a limit is what a drive would have to give that holds the
+coordinate; it is told as effort there, and acts on rows as a load over time.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import (
+    CrossingEnd,
     JointLoad,
     LoadLaw,
-    Moments,
     Varying,
     effort_quantity,
     joined_curve,
 )
+from mechkin_cli.plan import demand_of
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.response.integration import MotionEnd, MotionRows
-from mechkin_cli.session import Chart
-from mechkin_cli.units import TIME
+from mechkin_cli.response.integration import (
+    Beginning,
+    MotionEnd,
+    MotionRows,
+    driven_laws,
+    integrate,
+    watched_stop,
+)
+from mechkin_cli.session import Ask, Chart, KernelInputs
+from mechkin_cli.structure import holding
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Sequence
 
-    from mechkin_cli.mechanism import Limit, Problem, ResponseProblem
-    from mechkin_cli.response.result import ResponseResult
+    from numpy.typing import NDArray
+
+    from mechkin_cli.kernel._kernel import DrivenLaws
+    from mechkin_cli.mechanism import Limit, ResponseProblem
+    from mechkin_cli.response.integration import WatchedStop
+    from mechkin_cli.session import Packing, Session
     from mechkin_cli.show import Floats
 
 
@@ -42,81 +55,233 @@ class Contact(NamedTuple):
     forces: Floats
 
 
-def at_rest(moved: MotionRows, count: int, places: int, width: int) -> MotionRows:
-    """The last place of a motion, at rest over `count` rows and, where `places` are more, at a
-    moment between them; of `width` columns the others hold nan."""
-    last = moved.count - 1
+class RestingMotion:
+    """A motion with some coordinates at rest at their limits.
 
-    def still(array: Floats) -> Floats:
-        found = np.full((*array.shape[:-1], width), np.nan)
-        found[..., :places] = array[..., [last]]
+    Args:
+        free: the session of the free motion.
+        response: the file's.
+        stops: the limits at which they rest, by the numbers of the response's stops.
+        begun: how it begins, at their limits and along them.
+        packing: how rows are packed.
+    """
+
+    def __init__(
+        self,
+        free: Session,
+        response: ResponseProblem,
+        stops: Sequence[int],
+        begun: Beginning,
+        packing: Packing,
+    ) -> None:
+        self.free, self.response, self.packing, self.stops = free, response, packing, list(stops)
+        ends = [response.stops[k] for k in stops]
+        found = [
+            (end.limit, 1.0 if end.direction == "up" else -1.0)
+            for end in ends
+            if isinstance(end, CrossingEnd) and end.limit is not None
+        ]
+        self.limits = [limit for limit, _ in found]
+        self.sides = [side for _, side in found]
+        layout = free.layout
+        names = [(limit.joint, limit.coordinate) for limit in self.limits]
+        places = [
+            (layout.edge_number[joint], layout.mechanism.joints[joint].freedom_number(coordinate))
+            for joint, coordinate in names
+        ]
+        graph = holding(free.graph, len(response.driven), places, names)
+        self.session = free.exchanged(graph)
+        self.columns = [layout.column(*place) for place in places]
+        at = [float(begun.state[layout.state(*place)]) for place in places]
+        self.laws: DrivenLaws | None = driven_laws(self.session, response, at)
+        first = begun.first.copy()
+        first[self.columns] = 0.0
+        self.begun = Beginning(begun.state, first, along(begun.tangents, self.columns))
+
+    def onward(self, begin: float, times: Floats) -> tuple[MotionRows, list[Contact]]:
+        """The motion from a moment (s) on, its first row, over rows at `times` (rows,), as one of
+        the free coordinates; up to where a limit would have to pull, which then is its stop. And
+        the forces of the limits at its rows."""
+        at = self._leaves(begin, times)
+        reached = times if at is None else times[times <= at[0]]
+        own = np.array([begin, *reached])
+        if at is not None and at[0] > own[-1]:
+            own = np.append(own, at[0])
+        moved = self._moved(own) if at is None else _widened(self._moved(own), times.size + 2)
+        forces = self._forces(moved, own)
+        if at is not None:
+            moved = _left(moved, reached.size + 1, own.size - 1, *at)
+        told = own[: 1 + min(reached.size, moved.report.rows - 1)]
+        contacts = [
+            Contact(limit, told, force[: told.size])
+            for limit, force in zip(self.limits, forces, strict=True)
+        ]
+        if moved.report.end is MotionEnd.STOPPED and at is None:
+            place = moved.report.rows
+            last = self._forces(moved, np.array([moved.report.time]), [place])
+            contacts += [
+                Contact(limit, np.array([moved.report.time]), force)
+                for limit, force in zip(self.limits, last, strict=True)
+            ]
+        return self._as_free(moved), contacts
+
+    def _moved(self, times: Floats) -> MotionRows:
+        """The motion from the first of some moments on."""
+        (moved,) = integrate(
+            [(self.session.plan, self.begun)],
+            float(times[0]),
+            times,
+            stops=[self._watched(number) for number in range(len(self.response.stops))],
+            driven=self.laws,
+            tolerance=self.response.tolerance,
+            fixed_step=self.response.fixed_step,
+            straight=self.free.problem.assembly.straight,
+            packing=self.packing,
+        )
+        return moved
+
+    def _watched(self, number: int) -> WatchedStop:
+        """A stop; that of a limit at which a coordinate rests is out of reach."""
+        stop = self.response.stops[number]
+        if number in self.stops:
+            kind, direction, count, at, lengths, rates = watched_stop(stop)
+            beyond = FAR * max(1.0, abs(at), self.free.layout.length)
+            return kind, direction, count, at + direction * beyond, lengths, rates
+        return watched_stop(stop)
+
+    def _forces(
+        self, moved: MotionRows, times: Floats, places: Sequence[int] | None = None
+    ) -> list[Floats]:
+        """The forces of the limits along their coordinates at rows of a motion (rows,)."""
+        wanted = [effort_quantity(one.joint, one.coordinate) for one in self.limits]
+        problem = self.session.problem
+        rows = np.arange(times.size) if places is None else np.array(places)
+        reached = np.isfinite(moved.states[:, rows]).all(axis=0)
+        rows, found = rows[reached], [np.full(times.size, np.nan) for _ in wanted]
+        if not rows.size:
+            return found
+        orders = np.zeros((3, len(self.session.graph.inputs), rows.size))
+        for column, time in enumerate(times[reached].tolist() if self.laws else ()):
+            assert self.laws is not None
+            orders[:, :, column] = np.array(self.laws.at(time)).T
+        inputs = KernelInputs.of(
+            problem, orders[0], orders[1], orders[2], np.zeros(orders[0].shape)
+        )
+        tree = np.zeros((len(self.session.structure.tree_slots), rows.size))
+        turned = np.concatenate([moved.turns[:, rows], tree])
+        given = inputs.at(moved.states[:, rows], turned, times[reached])
+        readout = self.session.readout(wanted)
+        ask = Ask(demand_of(problem.mechanism, wanted), readout, iterations=0)
+        batch = self.session.run(given._replace(chart=moved.chart.at(rows)), ask)
+        assert batch.outputs is not None
+        for own, quantity in zip(found, wanted, strict=True):
+            own[reached] = batch.outputs[readout.slots[quantity.name].start]
         return found
 
-    chart, none = moved.chart, np.zeros((1, last + 1))
-    resting = still(np.repeat(none, len(chart.rates), axis=0))
-    report = moved.report._replace(
-        rows=count,
-        end=MotionEnd.DONE,
-        energy=0.0,
-        steps=0,
-        rejections=0,
-        evaluations=0,
-        crossings=[],
-        touches=[],
-    )
-    return MotionRows(
-        report,
-        still(moved.states),
-        Chart(still(chart.direction), resting, resting, np.zeros((len(chart.friction), width))),
-        still(moved.turns),
-        still(np.repeat(none, 2, axis=0)),
-        np.zeros(width, dtype=np.uint8),
-    )
+    def _pushes(self, times: Floats) -> Floats:
+        """How the limits push at moments from the first on (limits, moments); nan beyond its
+        end."""
+        forces = self._forces(self._moved(times), times)
+        return np.array([-side * one for side, one in zip(self.sides, forces, strict=True)])
 
-
-def at_moments(response: ResponseProblem, problem: Problem, times: Floats) -> ResponseProblem:
-    """The response with rows at other moments (s)."""
-    return replace(response, moments=Moments(times, problem.units.from_si(times.copy(), TIME)))
-
-
-def holding(result: ResponseResult) -> Floats:
-    """The effort at the start's coordinate that holds a mechanism of one freedom (rows,)."""
-    ((joint, coordinate),) = result.response.independent
-    effort = effort_quantity(joint, coordinate)
-    return np.asarray(result.as_driven.evaluated([effort])[effort.name][0])
-
-
-def leaves(force: Callable[[Floats], Floats], begin: float, times: Floats) -> float | None:
-    """The first moment within `times` (rows,), rising from `begin`, at which what pushes against
-    the limit would pull; None where it never does. `force` gives the push at moments."""
-    ends = np.array([begin, *times])
-    parts = np.linspace(0.0, 1.0, SAMPLES + 1)[1:]
-    sampled = np.concatenate([[begin], *(a + (b - a) * parts for a, b in pairwise(ends))])
-    found = force(sampled)
-    none = -tolerances.KINK_ROUNDING * float(np.abs(found).max(initial=0.0))
-    pulling = np.flatnonzero(found < none)
-    if not pulling.size:
-        return None
-    k = int(pulling[0])
-    if k == 0:
-        return begin
-    low, high = float(sampled[k - 1]), float(sampled[k])
-    while True:
-        inner = low + (high - low) * np.linspace(0.0, 1.0, SAMPLES + 1)
-        inner = np.unique(inner)
-        if inner.size < 3:
-            return high
-        pulls = np.flatnonzero(force(inner) < 0.0)
-        k = int(pulls[0]) if pulls.size else inner.size - 1
+    def _leaves(self, begin: float, times: Floats) -> tuple[float, int] | None:
+        """The first moment up to the last row at which a limit would pull, and the number of its
+        stop; None where none does."""
+        ends = np.array([begin, *times])
+        parts = np.linspace(0.0, 1.0, SAMPLES + 1)[1:]
+        sampled = np.concatenate([[begin], *(a + (b - a) * parts for a, b in pairwise(ends))])
+        found = self._pushes(sampled)
+        least = tolerances.KINK_ROUNDING * np.nanmax(np.abs(found), axis=1, initial=0.0)
+        pulling = np.flatnonzero((found < -least[:, None]).any(axis=0))
+        if not pulling.size:
+            return None
+        k = int(pulling[0])
+        number = int(np.argmin(found[:, k]))
         if k == 0:
-            return low
-        if (float(inner[k - 1]), float(inner[k])) == (low, high):
-            return high
-        low, high = float(inner[k - 1]), float(inner[k])
+            return begin, self.stops[number]
+        low, high = float(sampled[k - 1]), float(sampled[k])
+        while True:
+            inner = np.unique(low + (high - low) * np.linspace(0.0, 1.0, SAMPLES + 1))
+            if inner.size < 3:
+                return high, self.stops[number]
+            lead = np.array([begin] if inner[0] > begin else [])
+            found = self._pushes(np.concatenate([lead, inner]))[:, lead.size :]
+            pulls = np.flatnonzero((found < 0.0).any(axis=0))
+            k = int(pulls[0]) if pulls.size else inner.size - 1
+            number = int(np.argmin(found[:, k])) if pulls.size else number
+            if k == 0 or (float(inner[k - 1]), float(inner[k])) == (low, high):
+                return (low if k == 0 else high), self.stops[number]
+            low, high = float(inner[k - 1]), float(inner[k])
 
+    def _as_free(self, moved: MotionRows) -> MotionRows:
+        """The rows as those of the free motion: its chart has the coordinates at rest, too."""
+        chart, width = moved.chart, moved.states.shape[1]
+        none = np.zeros((len(self.columns), width))
+        resting = np.zeros((len(self.columns), self.begun.tangents.shape[1], width))
+        for number, column in enumerate(self.columns):
+            resting[number, column] = 1.0
+        direction = np.concatenate([chart.direction, resting.reshape(-1, width)])
+        rates = np.concatenate([chart.rates, none])
+        accelerations = np.concatenate([chart.accelerations, none])
+        return replace(moved, chart=Chart(direction, rates, accelerations, chart.friction))
+
+
+FAR = 1e3
+"""How far the stop of a limit is put away while its coordinate rests, in sizes."""
 
 SAMPLES = 16
-"""Parts of a step from row to row, and of each bracket, at which the force is looked at."""
+"""Parts of a step from row to row, and of each bracket, at which forces are looked at."""
+
+
+def along(tangents: Floats, columns: Sequence[int]) -> Floats:
+    """Combinations of tangents (freedoms, columns) that leave some columns at rest, as many as are
+    independent: each column takes the tangent that moves it most."""
+    left = [row.copy() for row in tangents]
+    for column in columns:
+        most = max(range(len(left)), key=lambda k: abs(float(left[k][column])))
+        pivot = left.pop(most)
+        for row in left:
+            row -= row[column] / pivot[column] * pivot
+            row[column] = 0.0
+    return np.array(left).reshape(len(left), tangents.shape[1])
+
+
+def _widened(moved: MotionRows, width: int) -> MotionRows:
+    """With columns up to a width, those more without a row."""
+
+    def wide(array: NDArray[Any]) -> NDArray[Any]:
+        none = np.nan if array.dtype == np.float64 else 0
+        found = np.full((*array.shape[:-1], max(width, array.shape[-1])), none, dtype=array.dtype)
+        found[..., : array.shape[-1]] = array
+        return found
+
+    return _each(moved, wide)
+
+
+def repeated(moved: MotionRows) -> MotionRows:
+    """With the first row twice."""
+    more = _each(moved, lambda array: np.concatenate([array[..., :1], array], axis=-1))
+    return replace(more, report=moved.report._replace(rows=moved.report.rows + 1))
+
+
+def _left(moved: MotionRows, rows: int, place: int, at: float, stop: int) -> MotionRows:
+    """A motion of some rows that ends at a stop, at the moment of column `place`."""
+    if moved.report.rows < place + 1:
+        return moved  # it has ended before
+
+    def cut(array: NDArray[Any]) -> NDArray[Any]:
+        found = array.copy()
+        found[..., rows] = array[..., place]
+        return found
+
+    report = moved.report._replace(end=MotionEnd.STOPPED, time=at, stop=stop, rows=rows)
+    return replace(_each(moved, cut), report=report)
+
+
+def _each(moved: MotionRows, change: Any) -> MotionRows:
+    chart = Chart(*(change(array) for array in moved.chart))
+    states, turns, work = (change(array) for array in (moved.states, moved.turns, moved.work))
+    return MotionRows(moved.report, states, chart, turns, work, change(moved.flags))
 
 
 def with_contacts(

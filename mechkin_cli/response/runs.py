@@ -17,7 +17,6 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
     CrossingEnd,
-    DeadCentreEnd,
     DrivenInput,
     Moments,
     MotionInputs,
@@ -41,19 +40,17 @@ from mechkin_cli.response.integration import (
     MotionEnd,
     MotionRows,
     Rebound,
-    WatchedStop,
     driven_laws,
     ending,
     free_session,
     integrate,
+    watched_stop,
     with_loads,
 )
 from mechkin_cli.response.resting import (
     Contact,
-    at_moments,
-    at_rest,
-    holding,
-    leaves,
+    RestingMotion,
+    repeated,
     with_contacts,
 )
 from mechkin_cli.response.result import ENERGIES, ResponseResult
@@ -77,9 +74,8 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.kernel._kernel import DrivenLaws
-    from mechkin_cli.mechanism import Problem, ResponseProblem, Stop, Wanted
+    from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
     from mechkin_cli.show import Floats
-    from mechkin_cli.units import Dimension
 
 
 def beginning(session: Session, response: ResponseProblem, state: Floats) -> Beginning | Diagnostic:
@@ -177,30 +173,6 @@ def solve_rates(
             "with each of them",
         )
     return np.array([*solved, *rates[free:]])
-
-
-_DIRECTIONS = {"up": 1, "down": -1, "any": 0}
-
-
-def watched_stop(stop: Stop) -> WatchedStop:
-    """A stop as the kernel takes it."""
-    if isinstance(stop, CrossingEnd):
-        if stop.at is None:
-            return 3, 1, stop.count, 0.0, 0, -1
-        direction = _DIRECTIONS[stop.direction]
-        return 0, direction, stop.count, stop.at, *_powers(stop.dimension)
-    if isinstance(stop, DeadCentreEnd):
-        rate = dimension_of(stop.coordinate) / TIME
-        return 1, 0, stop.count, 0.0, *_powers(rate)
-    return 2, 0, stop.count, 0.0, 0, -1
-
-
-def _powers(dimension: Dimension) -> tuple[int, int]:
-    """The powers of length and of 1/time of a `WatchedStop`."""
-    length, mass, time, _ = dimension.exponents
-    if mass or time > 0 or length != int(length) or time != int(time):
-        return 0, -1
-    return int(length), -int(time)
 
 
 def rows_problem(
@@ -423,35 +395,54 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         result = rows_of(one, moved)
     rebounds: list[Rebound] = []
     contacts: list[Contact] = []
-    ended = ""
-    while (stop := touched_limit(one.response, moved)) is not None and stop.limit is not None:
-        touch = ImpactAt(result, stop)
-        rebound = touch.rebound()
-        times = one.response.moments.values[moved.report.rows :]
-        if rebound is None or not times.size or len(rebounds) == tolerances.MOST_IMPACTS:
+    left: list[int] = []
+    met = 0
+    while (number := touched_limit(one.response, moved)) is not None:
+        touch = ImpactAt(result, number)
+        begin, times = touch.time, one.response.moments.values[moved.report.rows :]
+        if not times.size or met == tolerances.MOST_IMPACTS:
             break
-        rebounds.append(rebound)
-        later = _onward(one, rebound.begun, rebound.impact.time, times, packing)
-        work = rebound.work
-        if touch.rests(later.chart.rates[:, 0], later.chart.accelerations[:, 0]):
-            rebounds[-1] = rebound._replace(impact=rebound.impact._replace(rests=True))
-            lever = touch.lever() if touch.may_rest else 0.0
-            if lever == 0.0:
-                ended = f"{stop.limit.name} rests at its limit"
+        met += 1
+        # a limit that lets go gives no impulse
+        begun, work = touch.onward, (0.0, 0.0)
+        struck = None if left else touch.rebound()
+        if struck is not None:
+            begun, work = struck.begun, struck.work
+        elif not left:
+            break
+        later = _onward(one, begun, begin, times, packing)
+        resting = touch.resting(later.chart, left)
+        settled: list[int] = []
+        while resting is not None and not set(resting.settles) <= set(settled):
+            settled = list(dict.fromkeys([*settled, *resting.settles]))
+            struck = touch.rebound(settled)
+            if struck is None:
                 break
-            moved, contact = _rested(one, moved, touch, lever, work)
-            contacts.append(contact)
-            times = one.response.moments.values[moved.report.rows :]
-            if moved.report.end is MotionEnd.DONE:
-                break
-            begun = rebound.begun._replace(first=np.zeros(rebound.begun.first.shape))
-            later = _onward(one, begun, moved.report.time, times, packing)
-            work = (0.0, 0.0)
-        moved = joined(moved, later, work)
+            begun, work = struck.begun, struck.work
+            later = _onward(one, begun, begin, times, packing)
+            resting = touch.resting(later.chart, left)
+        if resting is None or (struck is None and not left):
+            break
+        if struck is not None:
+            impact = struck.impact._replace(held=touch.limits(resting.held))
+            rebounds.append(struck._replace(impact=impact))
+        before, was, left = moved, left, []
+        if resting.held:
+            motion = RestingMotion(one.free, one.response, resting.held, begun, packing)
+            later, own = motion.onward(begin, times)
+            contacts += own
+            if later.report.end is MotionEnd.STOPPED and later.report.stop in resting.held:
+                left = [*(was if later.report.time == begin else ()), later.report.stop]
+            if touch.began_resting:
+                # what began at rest does so in its first row, too
+                before = replace(moved, report=moved.report._replace(rows=moved.report.rows - 1))
+                later = repeated(later)
+        moved = joined(before, later, work)
         result = rows_of(one, moved)
     if contacts:
-        reached = one.response.moments.values
-        response = with_contacts(one.response, contacts, reached)
+        moving = result.problem.motion.time
+        assert moving is not None
+        response = with_contacts(one.response, contacts, moving.values)
         problem = replace(
             one.free.problem,
             mechanism=replace(
@@ -468,9 +459,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         result = rows_of(replace(one, response=response, free=held), moved)
     if rebounds:
         result.rebounds = tuple(rebounds)
-        if ended:
-            result.events = (*result.events[:-1], ended)
-        result.row_states.diagnostics += impact_notes(result, result.impacts, ended=bool(ended))
+        result.row_states.diagnostics += impact_notes(result, result.impacts)
     return result
 
 
@@ -494,36 +483,6 @@ def _onward(
         packing=packing,
     )
     return later
-
-
-def _rested(
-    one: Prepared, moved: MotionRows, touch: ImpactAt, lever: float, work: tuple[float, float]
-) -> tuple[MotionRows, Contact]:
-    """The motion with the rows of a rest, up to the last or to where it leaves the limit; and the
-    limit's force."""
-
-    def push(times: Floats) -> Floats:
-        response = at_moments(one.response, one.free.problem, times)
-        still = at_rest(moved, times.size, times.size, times.size + 1)
-        return -holding(rows_of(replace(one, response=response), still)) / lever
-
-    begin, moments, first = moved.report.time, one.response.moments.values, moved.report.rows
-    times = moments[first:]
-    at = leaves(push, begin, times)
-    rows = times.size if at is None else int(np.searchsorted(times, at, side="right"))
-    # what began at rest does so in its first row, too
-    own = int(
-        first > 0 and moments[first - 1] == begin and not moved.chart.rates[:, first - 1].any()
-    )
-    count = 1 + own + rows
-    is_left = at is not None and rows < times.size
-    still = at_rest(moved, count, count + is_left, times.size + own + 2)
-    if at is not None and is_left:
-        still = replace(still, report=still.report._replace(time=at, end=MotionEnd.STOPPED))
-    before = replace(moved, report=moved.report._replace(rows=first - own))
-    limit, side = touch.first
-    held = moments[first - own : first + rows]
-    return joined(before, still, work), Contact(limit, held, -side * push(held))
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:

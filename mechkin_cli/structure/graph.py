@@ -203,6 +203,28 @@ def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph
     return graph._replace(blocks=(block,), inputs=inputs, driven=names)
 
 
+def holding(
+    graph: SolverGraph,
+    number: int,
+    held: Sequence[tuple[int, int]],
+    names: Sequence[tuple[str, str]],
+) -> SolverGraph:
+    """A charted graph with some of its unknowns `held` (edge, freedom), called `names` (joint,
+    coordinate): inputs from `number` on, and as many equations less of the chart."""
+    inputs, driven = list(graph.inputs), list(graph.driven)
+    inputs[number:number] = held
+    driven[number:number] = names
+    blocks = []
+    for block in graph.blocks:
+        unknowns = tuple(at for at in block.unknowns if at not in held)
+        less = len(block.unknowns) - len(unknowns)
+        if unknowns:
+            blocks.append(
+                Block(block.closings, unknowns, block.equations - less, block.charts - less)
+            )
+    return graph._replace(blocks=tuple(blocks), inputs=tuple(inputs), driven=tuple(driven))
+
+
 def exchanged(
     graph: SolverGraph, number: int, unknown: tuple[int, int], name: tuple[str, str]
 ) -> SolverGraph:

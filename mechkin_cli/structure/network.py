@@ -216,8 +216,8 @@ def connections_of(
     """The joints in the order written, then the other constraints between links.
 
     Inputs stay in the tree, and springs whose angle goes beyond half a turn, which a cut joint
-    does not count; so do joints that couplings are between, which need their coordinates; H and
-    free pairs, which close no loop; and joints of loops that are cut.
+    does not count; so do joints that couplings are between, or limits hold at rest, which need
+    their coordinates; H and free pairs, which close no loop; and joints of loops that are cut.
     """
     driven = Counter(joint for joint, _ in inputs)
     sprung = {
@@ -226,7 +226,7 @@ def connections_of(
         if load.has_potential and load.acts_at and is_angle(load.acts_at[1])
     }
     related = {term.joint.name for c in whole.constraints for term in c.terms}
-    stay = driven.keys() | sprung | related | whole.cut
+    stay = driven.keys() | sprung | related | mechanism.kept | whole.cut
     found = [
         Connection(
             name,

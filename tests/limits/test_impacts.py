@@ -108,16 +108,6 @@ def test_what_begins_at_a_limit_inwards_goes() -> None:
     assert not impacts_of(result)
 
 
-def test_of_several_freedoms_a_rest_ends_the_response() -> None:
-    start = "{A.theta: 0.9, B.theta: 0.3, A.theta_dot: 1, B.theta_dot: 3}"
-    bounds = "limits: {B.theta: {max: 0.8, restitution: 0}}\n"
-    run = f"responses: {{swing: {{start: {start}, time: {{from: 0, to: 9, step: 0.01}}}}}}\n"
-    torque = "loads: [{type: torque, joint: B, value: 20 N*m}]\n"
-    result = mk.loads(DOUBLE.partition("loads:")[0] + torque + bounds + run).respond("swing")
-    assert result["time"][-1] < 9.0
-    assert result["row.event"][-1] == "B.theta rests at its limit"
-
-
 def test_a_pendulum_between_stops_swings_with_the_energy_that_is_left() -> None:
     text = """
 format: 1

@@ -14,7 +14,7 @@ constexpr double ROOM_GROWTH = 0.02;   // of the room after a fault, doubled wit
 
 Refusal check(const Motion& motion, const IntegratorSettings& s, const double* time, const std::vector<double>& y,
               const RowTimes& rows) {
-  REQUIRE(motion.lanes() > 0 && motion.freedoms() > 0, "at least one lane and one freedom");
+  REQUIRE(motion.lanes() > 0 && motion.freedoms() + motion.quadratures() > 0, "at least one lane, and one freedom or quadrature");
   REQUIRE(s.tolerance > 0.0 && s.least_step > 0.0 && s.fixed_step >= 0.0 && s.dense_rows > 0 && s.most_steps > 0,
           "tolerance, least step, steps and rows are positive numbers");
   REQUIRE(s.most_steps <= MOST_STEPS, "1 to 1000000 steps");
