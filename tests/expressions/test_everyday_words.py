@@ -112,7 +112,7 @@ def test_python_says_the_same(name: str) -> None:
 FEATURES = {
     "a cable over points and pulleys is a coupling": ("rope", "cable", "ropes", "tendon", "winch"),
     "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
-    "the wheel turns by a law of the crank": ("geneva", "maltese", "geneva_drive"),
+    "the wheel's angle is a function of the crank's": ("geneva", "maltese", "geneva_drive"),
     "whose curve: is a line": ("curved_groove", "curved_slot", "guide_curve"),
     "an oil film is a law of friction": ("hydrodynamic", "lubrication", "oil_film"),
     "links are rigid": ("flexible", "compliant", "beam", "flexure"),

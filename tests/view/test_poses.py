@@ -10,6 +10,7 @@ from view.files import FOUR_BAR, SLIDER_CRANK
 from view.seen import data, moved, number_of, posed_rows, poses
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism import is_written
 from mechkin_cli.view.branch import BranchScene
 from mechkin_cli.view.joints import carried
 from mechkin_cli.view.scene import view_scene
@@ -111,8 +112,8 @@ def test_joints_hold_and_points_are_where_the_tables_have_them(path) -> None:
         named = {f"{name}.position": at for name, at in mechanism.points.items()}
         named |= {f"{name}.point": joint.point for name, joint in mechanism.joints.items()}
         for name, at in named.items():
-            if name not in known:
-                continue
+            if name not in known or not is_written(at.link):
+                continue  # cylinders have links of their own, which are drawn from eye to eye
             quantity = analysis.result.quantity(name).value
             want = np.stack(quantity.components, axis=1)[branch.rows[branch.posed]]
             found = carried(branch.poses[:, branch.links.index(at.link)], at.vector)
