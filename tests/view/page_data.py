@@ -138,6 +138,10 @@ def page_data(
         "links": links,
         "joints": joints,
         "points": [],
+        "wheels": [],
+        "belts": [],
+        "discs": [],
+        "cables": [],
         "runs": [
             {
                 "name": "sweep",
