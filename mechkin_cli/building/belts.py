@@ -21,7 +21,7 @@ from math import pi
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.wheels import Turning, against, on_one_carrier
+from mechkin_cli.building.wheels import Turning, against, on_one_carrier, turning_and_sliding
 from mechkin_cli.mechanism import (
     Attached,
     Joint,
@@ -234,23 +234,11 @@ def screw_relation(
     fields: Fields, path: Path, section: ScrewCoupling, joints: Mapping[str, Joint]
 ) -> Relation | None:
     """The relation of a screw and its nut on two joints; None where errors are noted."""
-    turning, sliding = (joints[name] for name in section.joints)
-    if not turning.type.is_bearing or not sliding.type.is_slider:
-        fields.error(
-            "screw-joints",
-            (*path, "joints"),
-            f"{turning.name} is of type {turning.letter} and {sliding.name} of type "
-            f"{sliding.letter}: a screw is between the R or C joint of the part that turns and the "
-            "P joint of the part that slides",
-            "name the joint that turns, then the one that slides",
-        )
+    words = ("screw", "the part that turns", "the part that slides")
+    found = turning_and_sliding(fields, path, section.joints, joints, words)
+    if found is None:
         return None
-    shared = {turning.first, turning.second} & {sliding.first, sliding.second}
-    if not shared:
-        text = f"the parts at {turning.name} and {sliding.name} have no common link"
-        fields.error("no-carrier", (*path, "joints"), text, "put both on one link")
-        return None
-    carrier = min(shared, key=(turning.first, turning.second).index)
+    turning, sliding, carrier = found
     errors = fields.error_count
     lead = fields.number((*path, "lead"), section.lead, LENGTH)
     if fields.error_count > errors:

@@ -431,26 +431,44 @@ def _on_one_axis(one: Joint, other: Joint, link: str) -> bool:
     return norm(cross(a.z, b.z)) <= tolerances.PARALLEL and off <= near
 
 
+def turning_and_sliding(
+    fields: Fields,
+    path: Path,
+    names: tuple[str, ...],
+    joints: Mapping[str, Joint],
+    words: tuple[str, str, str],
+) -> tuple[Joint, Joint, str] | None:
+    """A joint that turns, one that slides, and the link that both are on; None where errors are
+    noted. `words` say what the coupling is, and what turns and slides there."""
+    turning, sliding = (joints[name] for name in names)
+    what, turns, slides = words
+    if not turning.type.is_bearing or not sliding.type.is_slider:
+        fields.error(
+            "coupled-joints",
+            (*path, "joints"),
+            f"{turning.name} is of type {turning.letter} and {sliding.name} of type "
+            f"{sliding.letter}: a {what} is between the R or C joint of {turns} and the P joint of "
+            f"{slides}",
+            f"name the joint of {turns}, then that of {slides}",
+        )
+        return None
+    shared = {turning.first, turning.second} & {sliding.first, sliding.second}
+    if not shared:
+        text = f"{turns} at {turning.name} and {slides} at {sliding.name} have no common link"
+        fields.error("no-carrier", (*path, "joints"), text, "put both on one link")
+        return None
+    return turning, sliding, min(shared, key=(turning.first, turning.second).index)
+
+
 def rack_relation(
     fields: Fields, path: Path, section: RackCoupling, joints: Mapping[str, Joint]
 ) -> Relation | None:
     """The relation of a pinion and its rack; None where errors are noted in `fields`."""
-    pinion, rack = (joints[name] for name in section.joints)
-    if not pinion.type.is_bearing or not rack.type.is_slider:
-        fields.error(
-            "rack-joints",
-            (*path, "joints"),
-            f"{pinion.name} is of type {pinion.letter} and {rack.name} of type {rack.letter}: a "
-            "rack is between the R or C joint of a pinion and the P joint of a rack",
-            "name the pinion's joint, then the rack's",
-        )
+    words = ("rack", "the pinion", "the rack")
+    found = turning_and_sliding(fields, path, section.joints, joints, words)
+    if found is None:
         return None
-    shared = {pinion.first, pinion.second} & {rack.first, rack.second}
-    if not shared:
-        text = f"the pinion at {pinion.name} and the rack at {rack.name} have no common link"
-        fields.error("no-carrier", (*path, "joints"), text, "put both on one link")
-        return None
-    carrier = min(shared, key=(pinion.first, pinion.second).index)
+    pinion, rack, carrier = found
     errors = fields.error_count
     radius = fields.number((*path, "radius"), section.radius, LENGTH)
     about, along = frame_on(pinion, carrier), frame_on(rack, carrier)
