@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, ClassVar
 
-from mechkin_cli.schema.base import FormChoice, Limits, SchemaName, Section, refuse
+from mechkin_cli.schema.base import FormChoice, Limits, Rule, SchemaName, Section, refuse
 from mechkin_cli.schema.scalars import AngleOrLength, Dimensionless
 
 
@@ -33,8 +33,20 @@ def _limit(value: Any) -> str:
     return "(limit)" if isinstance(value, (dict, LimitSection)) else "(range)"
 
 
+def _two(value: Any) -> Any:
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        text = "limits are a least and a largest value"
+        raise refuse("limit-form", text, "write [-30 deg, 60 deg], or {max: 60 deg}")
+    return value
+
+
 CoordinateLimit = Annotated[
-    Annotated[Annotated[tuple[AngleOrLength, ...], Limits(min_length=2, max_length=2)], "(range)"]
+    Annotated[
+        Annotated[
+            tuple[AngleOrLength, ...], Limits(min_length=2, max_length=2), Rule(_two, before=True)
+        ],
+        "(range)",
+    ]
     | LimitSection,
     FormChoice(_limit),
     SchemaName("CoordinateLimit"),

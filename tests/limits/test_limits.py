@@ -225,7 +225,9 @@ def test_a_fall_from_beyond_the_limit_is_never_ok() -> None:
         ("{S.theta: [0, 1]}", "unknown-coordinate"),
         ("{T.s: [0, 1]}", "unknown-coordinate"),
         ("{S.s: [0 deg, 1]}", "expression"),
-        ("{S.s: [1]}", "wrong-length"),
+        ("{S.s: [1]}", "limit-form"),
+        ("{S.s: [1, 2, 3]}", "limit-form"),
+        ("{S.s: 60 mm}", "limit-form"),
     ],
 )
 def test_limits_that_are_none_are_refused(limits: str, code: str) -> None:
