@@ -88,8 +88,9 @@ class Diagnostic(NamedTuple):
         if self.place and not self.place.in_file and self.place.column > 1:
             text += f" (at character {self.place.column} of the value)"
         if self.measured is not None:
-            bound = f" (limit {self.limit})" if self.limit is not None else ""
-            text += f": {self.measured}{bound}"
+            text += f": {self.measured}"
+        if self.limit is not None:
+            text += f" (limit {self.limit})"
         return f"{text}; {self.hint}" if self.hint else text
 
     def record(self) -> dict[str, object]:
