@@ -122,7 +122,7 @@ def test_a_sphere_in_a_round_groove_is_on_a_rocker() -> None:
     one = mk.loads(SPACE + SPACE_JOINTS + groove + SPACE_MOTION).analyze()
     other = mk.loads(SPACE + "  rocker: {}" + SPACE_JOINTS + rocker + SPACE_MOTION).analyze()
     names = ("B.theta1", "B.theta1_ddot", "B.theta2_dddot", "A.effort", "B.force", "B.moment")
-    assert_same(one, other, {name: name for name in names} | {"D.force": "C.force"}, 1e-11)
+    assert_same(one, other, {name: name for name in names} | {"D.force": "C.force"}, 1e-12)
 
 
 def test_a_sphere_on_a_sphere_is_on_a_rod_of_balls() -> None:
@@ -142,7 +142,7 @@ joints:
     one = mk.loads(SPACE + joints + ball + motion).analyze()
     other = mk.loads(SPACE + "  other: {}" + joints + rod + motion).analyze()
     names = ("B.theta", "B.theta_dot", "B.theta_ddot", "B.theta_dddot", "A.effort", "B.force")
-    assert_same(one, other, {name: name for name in names} | {"D.force": "C.force"}, 1e-11)
+    assert_same(one, other, {name: name for name in names} | {"D.force": "C.force"}, 1e-12)
 
 
 def test_a_line_has_the_bytes_of_a_straight_groove() -> None:
