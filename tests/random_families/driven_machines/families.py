@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from random_families.driven_machines import each_way, wheels_in_space
+from random_families.driven_machines import each_way, rebounds, rises, wheels_in_space
 from random_families.driven_machines.judged import Judged
 
 FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "wheels_in_space": wheels_in_space.judge,
     "each_way": each_way.judge,
+    "rises": rises.judge,
+    "rebounds": rebounds.judge,
 }
 
 
