@@ -466,23 +466,32 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
 def _onward(
     one: Prepared, begun: Beginning, time: float, times: Floats, packing: Packing
 ) -> MotionRows:
-    """The motion from a moment on, its first row, or from that of the first row if hardly anything
-    moves until then."""
-    fastest, first = float(np.max(np.abs(begun.first), initial=0.0)), float(times[0])
-    same = tolerances.SAME_MOMENT * abs(first)
-    near = first - time <= same or 0.0 < (first - time) * fastest <= tolerances.IMPACT_PLACE
-    (later,) = integrate(
-        [(one.free.plan, begun)],
-        first if near else time,
-        times if near else np.array([time, *times]),
-        stops=[watched_stop(each) for each in one.response.stops],
-        driven=one.driven,
-        tolerance=one.response.tolerance,
-        fixed_step=one.response.fixed_step,
-        straight=one.chosen.problem.assembly.straight,
-        packing=packing,
-    )
-    return later
+    """The motion from a moment on, its first row. Where no step resolves the way to the next row,
+    as one of a few roundings of the time, its first row is that one."""
+    first = float(times[0])
+
+    def moved(begin: float, moments: Floats) -> MotionRows:
+        (found,) = integrate(
+            [(one.free.plan, begun)],
+            begin,
+            moments,
+            stops=[watched_stop(each) for each in one.response.stops],
+            driven=one.driven,
+            tolerance=one.response.tolerance,
+            fixed_step=one.response.fixed_step,
+            straight=one.chosen.problem.assembly.straight,
+            packing=packing,
+        )
+        return found
+
+    if first - time > tolerances.SAME_MOMENT * abs(first):
+        found = moved(time, np.array([time, *times]))
+        fastest = float(np.max(np.abs(begun.first), initial=0.0))
+        is_near = (first - time) * fastest <= tolerances.IMPACT_PLACE
+        is_stuck = found.report.end is MotionEnd.STUCK and found.report.rows < 2
+        if not (is_near and is_stuck):
+            return found
+    return moved(first, times)
 
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:

@@ -387,3 +387,33 @@ def test_a_last_row_at_the_moment_of_an_impact_is_reached(height: float, after: 
     rows = mk.loads(text).respond("fall")
     assert rows.complete
     assert abs(rows["S.s"][-1]) <= 4.0 * (5e-12 + last * after * sqrt(20.0 * height))
+
+
+WHEELS = """
+format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links:
+  a: {{mass: 1, center_of_mass: [0, 0], inertia: 0.3}}
+  b: {{mass: 1, center_of_mass: [1, 0], inertia: 0.2}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [ground, b], point: [1, 0]}}
+couplings: {{K: {{type: gear, joints: [A, B], teeth: [{one}, {other}]}}}}
+loads: [{{type: torque, joint: A, value: -0.7}}]
+limits: {{A.theta: {{max: 0.6, restitution: 0}}}}
+responses: {{r: {{start: {{A.theta: 0, A.theta_dot: 2.2}}, time: {{values: [0, 0.2, 0.7, 1.5]}}}}}}
+"""
+
+
+@pytest.mark.parametrize("one", [13, 17, 19, 23, 29, 31])
+@pytest.mark.parametrize("other", [14, 21, 33])
+def test_what_a_limit_stops_and_a_load_draws_off_leaves_at_once(one: int, other: int) -> None:
+    """The rates that an impact leaves may be rounding of zero, which tells nothing of the way that
+    loads make from there to the next row."""
+    rows = mk.loads(WHEELS.format(one=one, other=other)).respond("r")
+    back = -0.7 / (0.3 + 0.2 * (one / other) ** 2)
+    impact = (-2.2 + sqrt(2.2**2 + 2.0 * back * 0.6)) / back
+    after = rows["time"][2:] - impact
+    np.testing.assert_allclose(rows["A.theta"][2:], 0.6 + back / 2.0 * after**2, rtol=1e-9)
+    np.testing.assert_allclose(rows["A.theta_dot"][2:], back * after, rtol=1e-9)

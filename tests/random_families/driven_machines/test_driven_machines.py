@@ -1,0 +1,17 @@
+"""Machines with couplings, laws, limits, cables and curves against closed forms and equations of
+all bodies: `python -P tests/random_families/driven_machines FAMILY --seeds 0:1000` takes more."""
+
+from __future__ import annotations
+
+import pytest
+from random_families.driven_machines.families import FAMILIES, judge
+
+SEEDS = {"wheels_in_space": 40, "each_way": 40, "rises": 20, "rebounds": 30}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_machines_are_as_their_reference_says(family: str) -> None:
+    found = {seed: judge(family, seed) for seed in range(SEEDS[family])}
+    assert {seed: one.fault for seed, one in found.items() if one.faults} == {}
+    assert all(one.rows for one in found.values())
+    assert any(one.worst > 0.0 for one in found.values())
