@@ -63,12 +63,12 @@ def with_losses(
         wheels = tuple(turnings)
     if isinstance(section, GearCoupling) and section.friction is not None:
         at = (*path, "friction")
-        coefficient = _fraction(fields, at, section.friction, least=0.0, most=None)
+        coefficient = _friction(fields, at, section.friction)
         loss = _flanks(fields, at, relation, wheels, joints)
     else:
         assert section.efficiency is not None
         at = (*path, "efficiency")
-        share = _fraction(fields, at, section.efficiency, least=None, most=1.0)
+        share = _share(fields, at, section.efficiency)
         coefficient = None if share is None else 2.0 * (1.0 - share) / (1.0 + share)
         loss = _wheel(carrier, relation, wheels, joints)
     if loss is None or coefficient is None:
@@ -78,20 +78,44 @@ def with_losses(
     return relation._replace(loss=Rubbing(name, coefficient, coefficient, place=place, loss=loss))
 
 
-def _fraction(
-    fields: Fields, path: Path, text: str, least: float | None, most: float | None
-) -> float | None:
-    """A number from `least` on, or of more than 0, up to `most`."""
+def _share(fields: Fields, path: Path, text: str) -> float | None:
+    """An efficiency: more than 0, at most 1; None where an error is noted.
+
+    As it goes to 0, the moment that moves a load grows beyond all bounds: with 0 such a row has no
+    forces.
+    """
+    share = _number(fields, path, text)
+    if share is None or 0.0 < share <= 1.0:
+        return share
+    name = path[-2]
+    told = f"efficiency of {name} is {text}: more power would come out than is put in"
+    hint = "write the share that comes out: 0.98 for 98 %"
+    if share <= 0.0:
+        told = f"efficiency of {name} is {text}: nothing would come out, whatever is put in"
+        hint = (
+            "write the share that comes out, as 0.98 of one pair of spur wheels; a worm that its "
+            "wheel does not drive has friction: 0.2 instead, and what transmits nothing is no "
+            "coupling"
+        )
+    fields.error("no-loss", path, told, hint, limit="more than 0, at most 1")
+    return None
+
+
+def _friction(fields: Fields, path: Path, text: str) -> float | None:
+    """A coefficient of friction, at least 0; None where an error is noted."""
+    coefficient = _number(fields, path, text)
+    if coefficient is None or coefficient >= 0.0:
+        return coefficient
+    told = f"friction of {path[-2]} is {text}"
+    hint = "write the coefficient: 0.05 to 0.1 is usual with oil"
+    fields.error("no-loss", path, told, hint, limit="at least 0")
+    return None
+
+
+def _number(fields: Fields, path: Path, text: str) -> float | None:
     errors = fields.error_count
     number = fields.number(path, text, DIMENSIONLESS)
-    if fields.error_count > errors:
-        return None
-    if (number > 0.0 or number == least) and (most is None or number <= most):
-        return number
-    limit = "at least 0" if most is None else f"more than 0, at most {most:g}"
-    hint = "0.05 to 0.1 is usual with oil" if most is None else "one pair of spur wheels has 0.98"
-    fields.error("no-loss", path, f"{path[-1]} of {path[-2]} is {text}", hint, limit=limit)
-    return None
+    return number if fields.error_count == errors else None
 
 
 def _wheel(

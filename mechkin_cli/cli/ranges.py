@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli import tables
@@ -23,6 +24,7 @@ LIMIT_WORDS = {
     "branch-point": "branch point",
     "hold-ends": "hold of an idle freedom",
     "limit": "limit of a coordinate",
+    "nowhere": "nowhere within the limits",
     "unbounded": "a slide grows out of bounds",
     "branch-lost": "could not be followed further",
     "far": "no end found so far",
@@ -59,8 +61,8 @@ def _record(model: Model, found: Ranges) -> Record:
         "ranges": [
             {
                 "mode": item.mode,
-                "from": item.lower._asdict(),
-                "to": item.upper._asdict(),
+                "from": _end(*item.lower),
+                "to": _end(*item.upper),
                 "full_turn": item.turns > 0,
                 "turns": item.turns,
                 "circuit": item.circuit,
@@ -71,6 +73,10 @@ def _record(model: Model, found: Ranges) -> Record:
         "circuits": [list(circuit) for circuit in found.circuits],
         "diagnostics": [diagnostic.record() for diagnostic in found.diagnostics],
     }
+
+
+def _end(kind: str, value: float) -> Record:
+    return {"kind": kind, "value": value if isfinite(value) else None}
 
 
 def _print(model: Model, found: Ranges, quiet: bool) -> None:

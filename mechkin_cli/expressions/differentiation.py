@@ -25,15 +25,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mechkin_cli.expressions import operations
-from mechkin_cli.expressions.expression import Expression
+from mechkin_cli.expressions.expression import Expression, stays_in_pi
 from mechkin_cli.expressions.grammar import parse_nodes
 from mechkin_cli.expressions.quantity import (
+    ExpressionError,
     Name,
     Node,
     NumberNode,
     OperationNode,
+    Resolve,
     refuse_large,
 )
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Floats
 from mechkin_cli.tape import SLOPES
 from mechkin_cli.units import conversion
@@ -378,8 +381,16 @@ RULES: dict[str, Callable[..., Any]] = {
 Nodes = tuple[Node, ...]
 Rate = Callable[[Name], Nodes | None]
 """The derivative of a name; None where it does not move."""
-_Moving = tuple[Nodes, Nodes | None]
-"""A part of an expression and its derivative, None where it does not move."""
+
+
+class _Part(NamedTuple):
+    """A part of an expression, its derivative, None where it does not move, and whether it is in
+    parts of pi."""
+
+    value: Nodes
+    rate: Nodes | None
+    in_pi: bool
+
 
 TERMS: dict[str, tuple[str, ...]] = {
     "+": ("d", "d"),
@@ -390,9 +401,9 @@ TERMS: dict[str, tuple[str, ...]] = {
     ".x": ("(d).x",),
     ".y": ("(d).y",),
     ".z": ("(d).z",),
-    "sin": ("cos(a)*d/(1 rad)",),
-    "cos": ("-sin(a)*d/(1 rad)",),
-    "tan": ("(1 + tan(a)^2)*d/(1 rad)",),
+    "sin": ("cos(a)*d/r",),
+    "cos": ("-sin(a)*d/r",),
+    "tan": ("(1 + tan(a)^2)*d/r",),
     "asin": ("d/sqrt((1 - a)*(1 + a))*(1 rad)",),
     "acos": ("-d/sqrt((1 - a)*(1 + a))*(1 rad)",),
     "atan": ("d/(1 + a*a)*(1 rad)",),
@@ -418,7 +429,8 @@ TERMS: dict[str, tuple[str, ...]] = {
     "norm": ("dot(a, d)/norm(a)",),
     "unit_vector": ("(d - dot(a, d)/dot(a, a)*a)/norm(a)",),
 }
-"""The terms of an operation's derivative, for the derivative d of each operand a, b, c."""
+"""The terms of an operation's derivative, for the derivative d of each operand a, b, c; r is the
+radian in which a is read: 1 rad of an angle, 1 of a number."""
 
 WHOLE = {
     "[]": "[da, db, dc]",
@@ -436,11 +448,16 @@ WHOLE = {
 STEPS = {"sign", "floor", "ceil", "round", "<", "<=", ">", ">=", "==", "!=", "and", "or", "not"}
 """Operations that are taken for constants."""
 
+_OF_ANGLES = {"sin", "cos", "tan"}
+"""Operations that also take a number in parts of pi, in radians."""
+
 _FOLDED = {"min", "max", "hypot"}
 """Operations of two operands or more: of the first two, then of that and the next."""
 
 
-def differentiated(nodes: Sequence[Node], rate: Rate, unit: str, offset: int) -> Nodes:
+def differentiated(
+    nodes: Sequence[Node], rate: Rate, unit: str, offset: int, resolve: Resolve
+) -> Nodes:
     """The nodes of the derivative by a quantity.
 
     Args:
@@ -448,58 +465,73 @@ def differentiated(nodes: Sequence[Node], rate: Rate, unit: str, offset: int) ->
         rate: the derivatives of names.
         unit: of the quantity, `rad` or `m`.
         offset: where the result's operations are taken to stand.
+        resolve: one row, shape (1,), of a name: it tells an angle from a number in parts of pi.
 
     Raises:
         ExpressionError: from `rate`, or the result exceeds a limit.
     """
-    stack: list[_Moving] = []
+    stack: list[_Part] = []
     for node in nodes:
         if isinstance(node, Name):
-            stack.append(((node,), rate(node)))
+            stack.append(_Part((node,), rate(node), in_pi=False))
         elif isinstance(node, NumberNode):
-            stack.append(((node,), None))
+            stack.append(_Part((node,), None, node.in_pi))
         else:
             operands = stack[-node.arity :]
             del stack[-node.arity :]
-            stack.append(_operated(node, operands, unit, offset))
-        refuse_large(len(stack[-1][0]) + len(stack[-1][1] or ()), offset)
-    value, derivative = stack[-1]
-    if derivative is None:
-        return _rate_of(stack[-1], unit, offset)
+            stack.append(_operated(node, operands, unit, offset, resolve))
+        refuse_large(len(stack[-1].value) + len(stack[-1].rate or ()), offset)
+    whole = stack[-1]
+    if whole.rate is None:
+        return _rate_of(whole, unit, offset)
     # log(x) has none where x < 0, though 1/x has a value, and so for what does not move
-    return _filled(f"d + 0*a/(1 {unit})", {"a": value, "d": derivative}, offset)
+    return _filled(f"d + 0*a/(1 {unit})", {"a": whole.value, "d": whole.rate}, offset)
 
 
-def _operated(node: OperationNode, operands: list[_Moving], unit: str, offset: int) -> _Moving:
+def _operated(
+    node: OperationNode, operands: list[_Part], unit: str, offset: int, resolve: Resolve
+) -> _Part:
     if node.symbol in _FOLDED and node.arity > 2:
         pair = node._replace(arity=2)
-        return reduce(lambda a, b: _operated(pair, [a, b], unit, offset), operands)
-    values, rates = zip(*operands, strict=True)
+        return reduce(lambda a, b: _operated(pair, [a, b], unit, offset, resolve), operands)
+    values, rates, in_pi = zip(*operands, strict=True)
     value = (*chain.from_iterable(values), node)
+    is_in_pi = stays_in_pi(node.symbol, in_pi)
     if node.symbol in STEPS or all(rate is None for rate in rates):
-        return value, None
+        return _Part(value, None, is_in_pi)
     names = dict(zip("abc", values, strict=False))
     if node.symbol in WHOLE:
         all_rates = [_rate_of(operand, unit, offset) for operand in operands]
         names |= dict(zip(("da", "db", "dc"), all_rates, strict=False))
-        return value, _filled(WHOLE[node.symbol], names, offset)
+        return _Part(value, _filled(WHOLE[node.symbol], names, offset), is_in_pi)
     terms: Sequence[str] = TERMS[node.symbol]
     exponent = values[-1][-1]
     if node.symbol in ("^", "pow") and isinstance(exponent, NumberNode) and exponent.unit is None:
         # a literal exponent has its derivative's exponent as a literal, too
         terms = (f"b*a^{float(exponent.value) - 1.0!r}*d", "d")
+    if node.symbol in _OF_ANGLES:
+        names["r"] = _template("1" if in_pi[0] and _is_number(values[0], resolve) else "1 rad")
     total: Nodes = ()
     for rate, text in zip(rates, terms, strict=True):
         if rate is not None:
             term = _filled(text, {**names, "d": rate}, offset)
             total = (*total, *term, OperationNode("+", 2, offset)) if total else term
-    return value, total
+    return _Part(value, total, is_in_pi)
 
 
-def _rate_of(part: _Moving, unit: str, offset: int) -> Nodes:
+def _is_number(nodes: Nodes, resolve: Resolve) -> bool:
+    """Whether a part has no dimension."""
+    try:
+        return Expression("", nodes).evaluate(resolve).dimension.dimensionless
+    except ExpressionError:
+        return False  # told where the derivative is evaluated, which has the part in it
+
+
+def _rate_of(part: _Part, unit: str, offset: int) -> Nodes:
     """The derivative, zero in its dimension where the part does not move."""
-    value, rate = part
-    return _filled(f"0*a/(1 {unit})", {"a": value}, offset) if rate is None else rate
+    if part.rate is not None:
+        return part.rate
+    return _filled(f"0*a/(1 {unit})", {"a": part.value}, offset)
 
 
 _template = cache(parse_nodes)

@@ -183,7 +183,7 @@ class Expression(NamedTuple):
                         operand = of_infinite(node.symbol, operand, operands)
                     stack.append(operand)
                 elif isinstance(node, NumberNode):
-                    stack.append(Operand(literal(node), node.offset, node, node.text == "pi"))
+                    stack.append(Operand(literal(node), node.offset, node, node.in_pi))
                 else:
                     quantity = _look_up(node, resolve)
                     some_infinite = some_infinite or is_infinite(quantity)
@@ -222,14 +222,16 @@ def _operate(node: OperationNode, operands: list[Operand], units: UnitSystem) ->
             f"{site.symbol} has no finite value{of_numbers}", "check the values of the parameters"
         )
     start = min(node.offset, *(operand.offset for operand in operands))
-    return Operand(quantity, start, in_pi=_in_pi(node.symbol, operands))
+    in_pi = stays_in_pi(node.symbol, [operand.in_pi for operand in operands])
+    return Operand(quantity, start, in_pi=in_pi)
 
 
-def _in_pi(symbol: str, operands: list[Operand]) -> bool:
-    """Whether a result is in parts of pi; divided by pi it may be in degrees."""
+def stays_in_pi(symbol: str, in_pi: Sequence[bool]) -> bool:
+    """Whether the result of an operation is in parts of pi, of operands that are or not; divided by
+    pi it may be in degrees."""
     if symbol == "/":
-        return operands[0].in_pi and not operands[1].in_pi
-    return symbol in _IN_PI and any(operand.in_pi for operand in operands)
+        return in_pi[0] and not in_pi[1]
+    return symbol in _IN_PI and any(in_pi)
 
 
 def _literal(number: NumberNode) -> Quantity:
@@ -296,7 +298,8 @@ def _exists(name: str, resolve: Resolve) -> bool:
 
 def exact_literal(number: NumberNode) -> Quantity:
     """The number of a text in double-double, so that functions of it have all their digits, too."""
-    exact = PI if number.text == "pi" else Fraction(number.text)
+    pi = -PI if number.text.startswith("-") else PI
+    exact = pi if number.in_pi else Fraction(number.text)
     if number.unit is None:
         return Quantity(DoubleDoubles.of_fraction(exact))  # type: ignore[arg-type]
     value: Any = DoubleDoubles.of_fraction(exact * number.unit.factor)

@@ -176,6 +176,11 @@ class NumberNode(NamedTuple):
     joined_units: tuple[tuple[str, int], ...] = ()
     """Unit words that follow `*` or `/`, with offsets: they could be meant as parameters."""
 
+    @property
+    def in_pi(self) -> bool:
+        """Whether it is pi or -pi, which are angles in radians where one is taken."""
+        return self.text in ("pi", "-pi")
+
 
 class Name(NamedTuple):
     """A name with dots; a last part `x`, `y` or `z` may be a component of what comes before it,
@@ -309,7 +314,7 @@ class Site(NamedTuple):
         """How to give an operand a dimension."""
         label = self.units.label(dimension)
         number = operand.number
-        bare = number is not None and number.unit is None and number.text != "pi"
+        bare = number is not None and number.unit is None and not number.in_pi
         if number is not None and bare and label and len(number.text) <= MAX_QUOTED:
             return f"write the number with a unit: {number.text} {label}"
         if operand.dimension.dimensionless and dimension == ANGLE:

@@ -18,6 +18,7 @@ from mechkin_cli.expressions import (
     NumberNode,
     OperationNode,
     Quantity,
+    UnknownName,
     parse_nodes,
 )
 from mechkin_cli.mechanism.curve import LoadLaw
@@ -339,7 +340,7 @@ def differentiation(problem: Problem) -> Differentiate:
         from mechkin_cli.expressions import differentiated
 
         influence = _Influence(problem, by)
-        return differentiated(nodes, influence.rate, influence.unit, offset)
+        return differentiated(nodes, influence.rate, influence.unit, offset, influence.sample)
 
     return differentiate
 
@@ -394,6 +395,19 @@ class _Influence:
         if wanted.kind == "joint_point":
             hint = f"name the place in points: and write its position; {_POSITIONS}"
         raise ExpressionError(f"{text} has no derivative by an input", name.offset, hint)
+
+    def sample(self, name: str) -> Quantity:
+        """One row of a name, of its dimension.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        if name in self.problem.parameters:
+            return Quantity(np.ones(1), self.problem.parameters[name].dimension)
+        if name not in self.known:
+            raise UnknownName(name)
+        wanted = self.known[name]
+        return Quantity(wanted.value([np.ones(1)] * 3), wanted.dimension)
 
     def _of_coordinate(self, text: str, name: Name) -> tuple[Node, ...] | None:
         if text in self.inputs:

@@ -38,6 +38,7 @@ EndKind = Literal[
     "full-turn",
     "far",
     "limit",
+    "nowhere",
 ]
 
 
@@ -47,7 +48,8 @@ class End(NamedTuple):
     `hold-ends`: a coordinate that holds an idle freedom cannot be kept beyond it, where the
     mechanism itself is regular; `unbounded`: a slide grew out of bounds before it; `full-turn`: it
     came to an assembly that was met before, turns ago; `far`: not found within the reach that is
-    looked over; `limit`: a coordinate comes to its limit.
+    looked over; `limit`: a coordinate comes to its limit; `nowhere`: along the whole branch one is
+    beyond it.
     """
 
     kind: EndKind
@@ -251,19 +253,19 @@ def undecided(circuits: Sequence[Circuit], name: str) -> list[Diagnostic]:
 
 
 class Stationary:
-    """Zeros of an output's rate along a branch: signs at many places, then Newton."""
+    """Zeros of an output's rate along branches: signs at many places, then Newton."""
 
-    def __init__(self, walker: Walker, branch: Branch, wanted: Wanted) -> None:
-        self.walker, self.branch = walker, branch
+    def __init__(self, walker: Walker, wanted: Wanted) -> None:
+        self.walker = walker
         self.session, known = walker.session, walker.session.problem.quantities()
         orders = [known[wanted.name + suffix] for suffix in ("", "_dot", "_ddot")]
         self.readout = self.session.readout(orders)
         self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
 
-    def places(self) -> list[tuple[float, float]]:
-        """(input, output) in kernel units and SI."""
-        begin, state = self.branch.places[0]
-        ends = (self.branch.lower.value, self.branch.upper.value)
+    def places(self, branch: Branch) -> list[tuple[float, float]]:
+        """(input, output) in kernel units and SI, along a branch."""
+        begin, state = branch.places[0]
+        ends = (branch.lower.value, branch.upper.value)
         places: list[tuple[float, float]] = []
         if not all(isfinite(end) for end in ends):
             return places
@@ -276,7 +278,7 @@ class Stationary:
             count = followed.reached
             rates = self._derivatives(steps[:count], followed.guess[:, :count])[1]
             for k in np.flatnonzero(rates[:-1] * rates[1:] <= 0.0):
-                place = self._refined(followed.guess[:, k], steps[k], steps[k + 1])
+                place = self.between(followed.guess[:, k], steps[k], steps[k + 1])
                 if place is not None and not any(place[0] == other[0] for other in places):
                     places.append(place)
         return sorted(places)
@@ -290,8 +292,10 @@ class Stationary:
         assert batch.outputs is not None
         return batch.outputs[self.slots]
 
-    def _refined(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
-        """Newton within a bracket of the rate's zero, by bisection where it would leave it."""
+    def between(self, guess: Floats, first: float, last: float) -> tuple[float, float] | None:
+        """The zero (input, output) of a rate that changes its sign between two inputs, the first
+        with the state (states,) `guess`: by Newton, or by bisection where that would leave the
+        bracket; None where it does not converge."""
         low, high = min(first, last), max(first, last)
         value = 0.5 * (low + high)
         sign_low: float | None = None

@@ -7,7 +7,8 @@ limits, if there are any.
 
 from __future__ import annotations
 
-from math import ceil, isfinite, ldexp, pi
+from itertools import pairwise
+from math import ceil, inf, isfinite, ldexp, nan, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,10 +17,14 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import dimension_of
-from mechkin_cli.plan import Demand
+from mechkin_cli.modes.circuits import End, Stationary
+from mechkin_cli.plan import Demand, TrackEnd
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from mechkin_cli.mechanism import Limit, Problem
     from mechkin_cli.modes.circuits import Passage, Walker
     from mechkin_cli.show import Floats
@@ -65,13 +70,24 @@ def beyond_notes(
     return notes
 
 
+class _Course(NamedTuple):
+    """A coordinate at places along a branch, and at its extremes between them: the input (places,)
+    in kernel units, the coordinate (places,) in SI without jumps of whole turns, and the states
+    (states, places)."""
+
+    inputs: Floats
+    values: Floats
+    states: Floats
+
+
 class LimitedWalk:
-    """A limited coordinate along branches: where it comes to its limit."""
+    """A limited coordinate along branches: where it comes to its limit, and where it comes back."""
 
     def __init__(self, walker: Walker, limit: Limit) -> None:
         self.walker, self.limit, self.session = walker, limit, walker.session
         known = self.session.problem.quantities()
         orders = [known[limit.name], known[f"{limit.name}_dot"]]
+        self.stationary = Stationary(walker, known[limit.name])
         self.readout = self.session.readout(orders)
         self.slots = [self.readout.slots[quantity.name].start for quantity in orders]
         self.turn = 2.0 * pi if is_cyclic(self.session.problem.mechanism, limit.name) else None
@@ -84,27 +100,90 @@ class LimitedWalk:
     def reached(self, start: Passage, end: float) -> float | None:
         """The input at the first place on the way to an end, from one within the limits, at which
         the coordinate comes to a limit and goes beyond."""
-        first, state = start
         before = self.begin(start)
-        if before is None or first == end or not isfinite(end):
+        if before is None or start[0] == end or not isfinite(end):
             return None
+        course = self._course(start, end, before)
+        off = self.limit.beyond(course.values, self.session.layout.length)
+        beyond = np.flatnonzero(off)
+        if not beyond.size:
+            return None
+        k = int(beyond[0])
+        return self._passed(course, k, self.limit.high if off[k] > 0.0 else self.limit.low)
+
+    def passed(self, start: Passage, end: float) -> list[float]:
+        """The inputs on the way to an end at which the coordinate passes one of its limits, of an
+        angle in any turn; in their order."""
+        if start[0] == end or not isfinite(end):
+            return []
+        first = float(self._read(np.array([start[0]]), start[1][:, None])[0, 0])
+        course = self._course(start, end, first)
+        places: list[float] = []
+        for k in range(1, course.values.size):
+            one, other = course.values[k - 1 : k + 1].tolist()
+            levels = self._levels(min(one, other), max(one, other))
+            own = [self._passed(course, k, at) for at in levels if at != one]
+            places += sorted(own, reverse=end < start[0])
+        return places
+
+    def _course(self, start: Passage, end: float, value: float) -> _Course:
+        """The coordinate from a place, where it has a value, on the way to an end."""
+        first, state = start
         count = tolerances.RANGE_SAMPLES
         parts = np.linspace(0.0, 1.0, count + 1)[:-1]
         # towards a dead centre the coordinate may go as the root of the distance
         near = [1.0 - ldexp(1.0, -2 * k) / count for k in range(1, NEAR_END)]
         steps = first + (end - first) * np.concatenate([parts, near])
         followed = self.walker.follow(steps, state)
-        reached = followed.reached
-        values = self._read(steps[:reached], followed.guess[:, :reached])[0]
-        for k, value in enumerate(values):
-            now = self._beside(float(value), before)
-            off = float(self.limit.beyond(np.array([now]), self.session.layout.length)[0])
-            if off != 0.0:
-                at = self.limit.high if off > 0.0 else self.limit.low
-                here = max(k - 1, 0)
-                return self._refined(followed.guess[:, here], steps[here], steps[k], before, at)
-            before = now
-        return None
+        steps, states = steps[: followed.reached], followed.guess[:, : followed.reached]
+        found, rates = self._read(steps, states)
+        values: list[float] = []
+        for now in found.tolist():
+            value = self._beside(now, value)
+            values.append(value)
+        inner = list(self._extremes(steps, np.array(values), rates, states))
+        places = [k for k, _, _, _ in inner]
+        return _Course(
+            np.insert(steps, places, [at for _, at, _, _ in inner]),
+            np.insert(values, places, [extreme for _, _, extreme, _ in inner]),
+            np.insert(states, places, np.array([one for *_, one in inner]).T, axis=1)
+            if inner
+            else states,
+        )
+
+    def _extremes(
+        self, steps: Floats, values: Floats, rates: Floats, states: Floats
+    ) -> Iterator[tuple[int, float, float, Floats]]:
+        """Extremes of the coordinate between places that might lie beyond a limit: the number of
+        the place behind each, its input, the coordinate and the state (states,)."""
+        far = np.abs(np.diff(steps)) * np.maximum(np.abs(rates[:-1]), np.abs(rates[1:]))
+        for k in np.flatnonzero(rates[:-1] * rates[1:] < 0.0).tolist():
+            low, high = sorted(values[k : k + 2].tolist())
+            if not self._levels(low - far[k], high + far[k]):
+                continue
+            place = self.stationary.between(states[:, k], steps[k], steps[k + 1])
+            if place is not None:
+                state = self.walker.follow(np.array([steps[k], place[0]]), states[:, k]).state
+                yield k + 1, place[0], self._beside(place[1], float(values[k])), state
+
+    def _levels(self, low: float, high: float) -> list[float]:
+        """The limits between two values, of an angle in all turns."""
+        ends = [end for end in (self.limit.low, self.limit.high) if isfinite(end)]
+        if self.turn is not None:
+            ends = [
+                end + self.turn * k
+                for end in ends
+                for k in range(ceil((low - end) / self.turn), ceil((high - end) / self.turn) + 1)
+            ]
+        return [end for end in ends if low <= end <= high]
+
+    def _passed(self, course: _Course, k: int, at: float) -> float:
+        """The input at which the coordinate is `at`, between the place before a number and it."""
+        before = max(k - 1, 0)
+        one, other = course.inputs[before], course.inputs[k]
+        value = float(course.values[before])
+        rising = bool(course.values[k] > at)
+        return self._refined(course.states[:, before], one, other, value, at, rising)
 
     def _beside(self, value: float, before: float) -> float:
         """The angle in the turn in which it is next to the one before."""
@@ -121,10 +200,17 @@ class LimitedWalk:
         assert batch.outputs is not None
         return batch.outputs[self.slots]
 
-    def _refined(self, guess: Floats, first: float, last: float, before: float, at: float) -> float:
+    def _refined(
+        self,
+        guess: Floats,
+        first: float,
+        last: float,
+        before: float,
+        at: float,
+        rising: bool,
+    ) -> float:
         """Newton within a bracket, by bisection where it would leave it."""
         near, far = first, last
-        rising = at == self.limit.high
         value = 0.5 * (first + last)
         for _ in range(tolerances.DEAD_CENTRE_ITERATIONS):
             state = self.walker.follow(np.array([first, value]), guess).state
@@ -139,6 +225,68 @@ class LimitedWalk:
                 return float(following)
             value = following
         return value
+
+
+def limited_ends(
+    name: str, walks: Sequence[LimitedWalk], start: Passage, ends: tuple[End, End]
+) -> tuple[tuple[End, End], list[Diagnostic]]:
+    """Where limits of coordinates end a branch, else its own ends, and notes of that: about a place
+    or, of one beyond a limit, about the nearest place within all limits.
+
+    Args:
+        name: of the mode that stands at the place.
+        walks: all limited coordinates.
+        start: the place.
+        ends: the branch's, below and above.
+    """
+    left, notes = [walk for walk in walks if walk.begin(start) is None], []
+    inner = _nearest_within(walks, start, [end.value for end in ends]) if left else start
+    range_is = "its range is the nearest one within all limits"
+    if inner is None:
+        range_is = "and a coordinate is beyond its limits along the whole branch"
+    for walk in left:
+        notes.append(_at_limit(walk, f": mode {name} stands beyond it, {range_is}"))
+    if inner is None:
+        nowhere = End("nowhere", nan)
+        return (nowhere, nowhere), notes
+    found: list[End] = []
+    for end, word in zip(ends, ("below", "above"), strict=True):
+        for walk in walks:
+            at = walk.reached(inner, end.value)
+            if at is not None:
+                end = End("limit", at)
+                notes.append(_at_limit(walk, f" ends the range {word} of mode {name}"))
+        found.append(end)
+    return (found[0], found[1]), notes
+
+
+def _at_limit(walk: LimitedWalk, words: str) -> Diagnostic:
+    text = f"a limit of {walk.limit.name}{words}"
+    return Diagnostic("range-at-limit", "note", text, walk.limit.place)
+
+
+def _nearest_within(
+    walks: Sequence[LimitedWalk], start: Passage, ends: Sequence[float]
+) -> Passage | None:
+    """The middle of the stretch of a branch in which all limits hold that is nearest to a place, on
+    the ways from there to some ends; of two as near that of the last end. None where there is
+    none."""
+    nearest, found = inf, None
+    for end in reversed(ends):
+        passed = {at for walk in walks for at in walk.passed(start, end)}
+        places = sorted((start[0], *passed, end), key=lambda at: abs(at - start[0]))
+        for one, other in pairwise(places):
+            middle = 0.5 * (one + other)
+            followed = walks[0].walker.follow(np.array([start[0], middle]), start[1])
+            place = middle, followed.state
+            if followed.end != TrackEnd.FINISHED:
+                break
+            if all(walk.begin(place) is not None for walk in walks):
+                away = abs(one - start[0])
+                if away < nearest - tolerances.DEAD_CENTRE_STEP:
+                    nearest, found = away, place
+                break
+    return found
 
 
 NEAR_END = 13

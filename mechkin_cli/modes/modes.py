@@ -12,6 +12,7 @@ which modes belong to one circuit.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,7 +44,7 @@ from mechkin_cli.modes.circuits import (
     joined,
     undecided,
 )
-from mechkin_cli.modes.limits import LimitedWalk, beyond_notes
+from mechkin_cli.modes.limits import LimitedWalk, beyond_notes, limited_ends
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
@@ -357,10 +358,15 @@ def _search_notes(assemblies: Assemblies) -> list[Diagnostic]:
 
 
 class Limit(NamedTuple):
-    """An end of a range in the file's units; `kind` as in `End`."""
+    """An end of a range in the file's units; `kind` as in `End`, `nowhere` has the value nan."""
 
     kind: str
     value: float
+
+    @property
+    def words(self) -> str:
+        """Its value and its kind."""
+        return self.kind if self.kind == "nowhere" else f"{self.value:.9g} ({self.kind})"
 
 
 class OutputExtreme(NamedTuple):
@@ -409,10 +415,7 @@ class Ranges(Listed):
         rows = tuple(
             (
                 item.mode,
-                *(
-                    "turns fully" if item.turns else f"{end.value:.9g} ({end.kind})"
-                    for end in (item.lower, item.upper)
-                ),
+                *("turns fully" if item.turns else end.words for end in (item.lower, item.upper)),
                 str(item.circuit),
             )
             for item in self.ranges
@@ -595,39 +598,23 @@ class _Survey:
         start = next((place for place in branch.places if place[0] == value), None)
         if start is None or not self.limited:
             return None
-        ends = [branch.lower, branch.upper]
+        ends = branch.lower, branch.upper
         if branch.upper.kind == "full-turn":
             turned = branch.upper.value - branch.lower.value
-            ends = [End("far", value - turned), End("far", value + turned)]
-        found: list[End] = []
-        for end, word in zip(ends, ("below", "above"), strict=True):
-            for walk in self.limited:
-                if walk.begin(start) is None:
-                    self._say(name, walk, "stands beyond it: its range is that without it")
-                    continue
-                at = walk.reached(start, end.value)
-                if at is not None:
-                    end = End("limit", at)
-                    self._say(name, walk, f"ends the range {word}")
-            found.append(end)
-        return (found[0], found[1]) if any(end.kind == "limit" for end in found) else None
-
-    def _say(self, name: str, walk: LimitedWalk, words: str) -> None:
-        text = f"a limit of {walk.limit.name}: mode {name} {words}"
-        if words.startswith("ends"):
-            text = f"a limit of {walk.limit.name} {words} of mode {name}"
-        note = Diagnostic("range-at-limit", "note", text, walk.limit.place)
-        if note not in self.limit_notes:
-            self.limit_notes.append(note)
+            ends = End("far", value - turned), End("far", value + turned)
+        found, notes = limited_ends(name, self.limited, start, ends)
+        self.limit_notes += [note for note in notes if note not in self.limit_notes]
+        return found if found != ends else None
 
     def _limit(self, end: End, shift: float) -> Limit:
-        return Limit(end.kind, self._limit_value(end.value - shift))
+        value = nan if end.kind == "nowhere" else self._limit_value(end.value - shift)
+        return Limit(end.kind, value)
 
     def _extremes(self, branch: Branch, shift: float) -> tuple[OutputExtreme, ...]:
         """Dead centres of the outputs along a branch: where their rate by the input vanishes."""
         extremes = []
         for wanted in self.outputs if branch.places else ():
-            for at, value in Stationary(self.walker, branch, wanted).places():
+            for at, value in Stationary(self.walker, wanted).places(branch):
                 output = float(self.problem.units.from_si(value, wanted.dimension))
                 extremes.append(OutputExtreme(wanted.name, output, self._limit_value(at - shift)))
         return tuple(extremes)

@@ -24,6 +24,9 @@ quantities:
   arm: pin.position - knee.position
   swing: derivative(angle_between(arm, [1, 0, 0]), O.theta)
   reach: derivative(norm(knee.position - post.position), O.theta)
+  wave: derivative(sin(2*pi*stroke/(40 mm)) + cos(-pi*stroke/l), O.theta)
+  slope: derivative(tan(pi*(0.1 + 0.2*cos(O.theta))), O.theta)
+  part: derivative(sin(pi*O.theta) + cos(O.theta/pi), O.theta)
   bent: derivative(if(O.theta > 90 deg, 2*stroke, -stroke), O.theta)
 links:
   crank: {mass: 1, center_of_mass: [0, 0, 0]}
@@ -65,6 +68,12 @@ CLOSED = {
     "lean_gain": lean,
     "swing": lambda t: abs(lean(t)),
     "reach": lambda t: mp.sqrt((crank(t)[0] - 20) ** 2 + (crank(t)[1] - 100) ** 2 + 25),
+    # numbers in parts of pi are in radians, angles in parts of pi are angles
+    "wave": lambda t: (
+        mp.sin(2 * mp.pi * (slider(t) - L) / 40) + mp.cos(mp.pi * (slider(t) - L) / L)
+    ),
+    "slope": lambda t: mp.tan(mp.pi * (1 + 2 * mp.cos(t)) / 10),
+    "part": lambda t: mp.sin(mp.pi * t) + mp.cos(t / mp.pi),
     "bent": lambda t: (2 if t > mp.pi / 2 else -1) * (slider(t) - L),
 }
 
@@ -102,8 +111,15 @@ def test_order_and_names_do_not_matter(rows: Any) -> None:
         np.testing.assert_array_equal(renamed[name], rows[name])
 
 
+def test_a_number_in_parts_of_minus_pi_is_an_angle(rows: Any) -> None:
+    expected = np.cos(np.pi * rows["stroke"] / L)
+    np.testing.assert_allclose(rows["cos(-pi*stroke/l)"], expected, rtol=0, atol=1e-13)
+    assert rows.errors["cos(-pi*stroke/l)"].max() < 1e-14
+
+
 def test_derivatives_have_errors_and_variants(rows: Any) -> None:
     assert rows.errors["gain"].max() < 1e-12
+    assert rows.errors["wave"].max() < 1e-12
     varied = mk.loads(SLIDER_CRANK).vary({"l": [100.0, 120.0]}, ["gain"])
     np.testing.assert_allclose(varied["gain"][1], rows["gain"], rtol=1e-12, atol=1e-12)
     alone = mk.loads(SLIDER_CRANK, parameters={"l": "100 mm"}).analyze()["gain"]

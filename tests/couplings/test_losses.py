@@ -249,7 +249,9 @@ def test_every_drive_has_its_efficiency(
 
 WRONG = {
     "nothing comes out": ("efficiency: 0.9", "efficiency: 0", "more than 0, at most 1"),
+    "it says so": ("efficiency: 0.9", "efficiency: 0", "nothing would come out, whatever is put"),
     "more comes out": ("efficiency: 0.9", "efficiency: 1.1", "more than 0, at most 1"),
+    "in percent": ("efficiency: 0.9", "efficiency: 98", "0.98 for 98 %"),
     "both": ("efficiency: 0.9", "efficiency: 0.9, friction: 0.1", "both tell the losses"),
     "no sliding": ("efficiency: 0.9", "friction: 0.1", "slide at their pitch point"),
     "no teeth": (
@@ -265,7 +267,7 @@ def test_losses_that_cannot_be_are_refused(before: str, after: str, words: str) 
     assert before in SPUR
     with pytest.raises(InvalidFile) as told:
         mk.loads(SPUR.replace("LOAD", "6").replace(before, after))
-    assert any(words in f"{d} {d.limit}" for d in told.value.diagnostics)
+    assert any(words in f"{d} {d.limit} {d.hint}" for d in told.value.diagnostics)
 
 
 def test_friction_below_zero_is_refused() -> None:

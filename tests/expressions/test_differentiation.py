@@ -35,7 +35,7 @@ def rate(name: Name) -> tuple[Node, ...] | None:
 
 
 def by_x(nodes: tuple[Node, ...], by: Name, offset: int) -> tuple[Node, ...]:
-    return differentiated(nodes, rate, "rad", offset)
+    return differentiated(nodes, rate, "rad", offset, lookup(ROWS))
 
 
 DEFINITIONS = Definitions({}, by_x)

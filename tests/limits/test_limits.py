@@ -201,6 +201,115 @@ def test_the_limit_of_the_input_ends_its_range_and_modes_beyond_one_are_named() 
         assert one.upper.value == pytest.approx(2.0, abs=1e-12)
 
 
+CRANK, ROD = 0.04, 0.12
+SLIDER = """
+format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{crank: {{}}, rod: {{}}, block: {{}}}}
+joints:
+  O: {{type: R, links: [ground, crank], point: [0, 0]}}
+  A: {{type: R, links: [crank, rod], point: [0.04, 0]}}
+  B: {{type: R, links: [rod, block], point: [0.16, 0]}}
+  S: {{type: P, links: [ground, block], point: [0.16, 0], axis: [1, 0]}}
+limits: {limits}
+motion: {{inputs: {{O.theta: {{from: 0, to: 1, count: 3}}}}}}
+"""
+
+
+def crank_at(slide: float) -> float:
+    """The turn at which the block has slid so far, by the law of cosines."""
+    x = CRANK + ROD + slide
+    return acos((x * x + CRANK * CRANK - ROD * ROD) / (2.0 * x * CRANK))
+
+
+@pytest.mark.parametrize(
+    ("limits", "expected"),
+    [
+        # beyond it at the first row: it comes within on both sides
+        ("{S.s: {max: -0.01}}", (crank_at(-0.01), 2.0 * pi - crank_at(-0.01))),
+        ("{S.s: [-0.07, -0.01]}", (crank_at(-0.01), crank_at(-0.07))),
+        # between two half degrees, beyond on either side of a dead centre
+        ("{S.s: {max: -0.0799999}}", (crank_at(-0.0799999), 2.0 * pi - crank_at(-0.0799999))),
+        ("{S.s: [-0.03000001, -0.03]}", (crank_at(-0.03), crank_at(-0.03000001))),
+        # beyond its limit for less than half a degree
+        ("{S.s: {min: -0.0799999}}", (-crank_at(-0.0799999), crank_at(-0.0799999))),
+        # two limits, each of which holds at the first row or beside the other one's range
+        ("{S.s: {max: -0.01}, O.theta: [-3, 1.5]}", (crank_at(-0.01), 1.5)),
+        ("{S.s: {max: -0.01}, O.theta: [-3, 0.5]}", (-3.0, -crank_at(-0.01))),
+        ("{O.theta: [1, 2]}", (1.0, 2.0)),
+    ],
+)
+def test_ranges_are_the_nearest_within_all_limits(
+    limits: str, expected: tuple[float, float]
+) -> None:
+    found = mk.loads(SLIDER.format(limits=limits)).ranges().ranges[0]
+    assert (found.lower.kind, found.upper.kind) == ("limit", "limit")
+    assert (found.lower.value, found.upper.value) == pytest.approx(expected, abs=1e-9)
+
+
+def test_where_limits_never_hold_there_is_no_range() -> None:
+    found = mk.loads(SLIDER.format(limits="{S.s: {max: -0.09}, O.theta: {max: 3}}")).ranges()
+    own = found.ranges[0]
+    assert (own.lower.kind, own.upper.kind) == ("nowhere", "nowhere")
+    assert np.isnan([own.lower.value, own.upper.value]).all()
+    (note,) = (d for d in found.diagnostics if "mode A stands beyond" in d.message)
+    assert note.message == (
+        "a limit of S.s: mode A stands beyond it, and a coordinate is beyond its limits along the "
+        "whole branch"
+    )
+
+
+def nearest_within(drawn: Drawn, ends: tuple[float, float]) -> tuple[float, float] | None:
+    """The turns of the crank between which the rocker is within its ends, in any turn, nearest to
+    the first row; by bisection."""
+
+    def off(turn: float) -> float:
+        there = drawn.angle(turn)
+        assert there is not None
+        assert drawn.start is not None
+        middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
+        away = there - drawn.start - middle
+        return abs(away - 2.0 * pi * round(away / (2.0 * pi))) - half
+
+    def passed(one: float, other: float) -> float:
+        for _ in range(80):
+            middle = 0.5 * (one + other)
+            one, other = (middle, other) if off(middle) * off(one) > 0.0 else (one, middle)
+        return other
+
+    found = []
+    for way in (1.0, -1.0):
+        turns = [way * 2.0 * pi * k / 8000 for k in range(16001)]
+        inside = [off(turn) <= 0.0 for turn in turns]
+        if True in inside:
+            k = inside.index(True)
+            j = inside.index(False, k)
+            found.append((passed(turns[k - 1], turns[k]), passed(turns[j - 1], turns[j])))
+    if not found:
+        return None
+    one, other = min(found, key=lambda pair: abs(pair[0]))
+    return min(one, other), max(one, other)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_ranges_of_a_first_row_beyond_a_limit(seed: int) -> None:
+    drawn = Drawn(seed)
+    while any(drawn.angle(2.0 * pi * k / 360) is None for k in range(360)):
+        drawn = Drawn(drawn.rng.randrange(10**6))  # the crank turns fully
+    low = drawn.rng.uniform(0.1, 0.6) * drawn.rng.choice((-1.0, 1.0))
+    ends = (low, low + 0.08) if low > 0.0 else (low - 0.08, low)
+    model = mk.loads(drawn.text(f"{{D.theta: [{ends[0]!r}, {ends[1]!r}]}}"))
+    picked = model.modes().picked
+    (own,) = (one for one in model.ranges().ranges if one.mode == picked)
+    expected = nearest_within(drawn, ends)
+    if expected is None:
+        assert own.lower.kind == "nowhere"
+        return
+    assert (own.lower.kind, own.upper.kind) == ("limit", "limit")
+    assert (own.lower.value, own.upper.value) == pytest.approx(expected, abs=1e-8)
+
+
 def test_a_fall_ends_at_the_limit() -> None:
     responses = "responses: {fall: {start: {S.s: 0}, time: {from: 0, to: 1, step: 0.1}}}\n"
     result = mk.loads(SLIDE + "limits: {S.s: [-2, 3]}\n" + responses).respond("fall")
