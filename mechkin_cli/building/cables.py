@@ -303,9 +303,7 @@ class _Cable:
             angle = angle + 2.0 * pi
         whole = 2.0 * pi * place.radius
         length, where = place.radius * angle, f"at {self.names[i]}"
-        self.extents.append(
-            Extent("leaves the pulley", where, length, tuple(self.wound[i]), whole)
-        )
+        self.extents.append(Extent("leaves the pulley", where, length, tuple(self.wound[i]), whole))
 
     def _wind(self, i: int, turn: Joint, radius: float) -> None:
         """Counts what a turn winds on the pulley at place `i`."""

@@ -406,8 +406,10 @@ class Mechanism:
     @property
     def told_loops(self) -> int:
         """Those that users see: stretches of cables close none."""
-        return self.loops - sum(not is_told(name) for name in self.joints) + sum(
-            not is_told(name) for name in self.links
+        return (
+            self.loops
+            - sum(not is_told(name) for name in self.joints)
+            + sum(not is_told(name) for name in self.links)
         )
 
     def told_name(self, name: str) -> str:
