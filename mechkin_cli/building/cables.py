@@ -231,6 +231,7 @@ class _Cable:
         self, name: str, keys: Sequence[str], places: Sequence[_Place], plane: bool
     ) -> None:
         self.name, self.places, self.plane = name, places, plane
+        self.names = [key.partition(" ")[0] for key in keys]
         self.links: dict[str, RigidLink] = {}
         self.joints: dict[str, Joint] = {}
         self.slides: list[Term] = []
@@ -247,9 +248,9 @@ class _Cable:
                 behind = None
             else:
                 behind = self._add(i, float(counts[way]) if is_straight else 1.0, behind)
-        for i, key in list(enumerate(keys))[1:-1]:
-            if places[i].is_round:
-                self._add_arc(i, key.partition(" ")[0])
+        for i, place in list(enumerate(places))[1:-1]:
+            if place.is_round:
+                self._add_arc(i)
 
     @property
     def relation(self) -> Relation | None:
@@ -278,8 +279,8 @@ class _Cable:
         slide = counted(self._joint(f"{name} slide", "P", near, far, axis))
         self.joints[slide.name] = slide
         self.slides.append(Term(slide, "s", count))
-        words = "has no straight stretch between two places"
-        self.extents.append(Extent(words, length, (Term(slide, "s", 1.0),)))
+        words, place = "has no straight stretch", f"between {self.names[i]} and {self.names[i + 1]}"
+        self.extents.append(Extent(words, place, length, (Term(slide, "s", 1.0),)))
         if not other.is_round or any(self.moves[i + 1 : i + 2]):
             self._joint(f"{name} end", hinge, far, other.centre.link, finish)
             return far if other.is_round else None
@@ -292,7 +293,7 @@ class _Cable:
         self._joint(f"{name} end", "W", far, hub, GROUND)
         return None
 
-    def _add_arc(self, i: int, name: str) -> None:
+    def _add_arc(self, i: int) -> None:
         """The arc on the pulley at place `i`."""
         before, place, after = self.places[i - 1 : i + 2]
         one, other = _stretch(before, place)[1], _stretch(place, after)[1]
@@ -301,8 +302,8 @@ class _Cable:
         if angle < -tolerances.PARALLEL:
             angle = angle + 2.0 * pi
         whole = 2.0 * pi * place.radius
-        words = f"leaves the pulley at {name}"
-        self.extents.append(Extent(words, place.radius * angle, tuple(self.wound[i]), whole))
+        length, where = place.radius * angle, f"at {self.names[i]}"
+        self.extents.append(Extent("leaves the pulley", where, length, tuple(self.wound[i]), whole))
 
     def _wind(self, i: int, turn: Joint, radius: float) -> None:
         """Counts what a turn winds on the pulley at place `i`."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -265,11 +265,8 @@ def _loops(analysis: Analysis) -> str:
     )
     words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
-    # links and joints of a cable's stretches have no names that are told
-    stretches = sum(not is_told(name) for name in mechanism.joints)
-    stretches -= sum(not is_told(name) for name in mechanism.links)
-    loops = mechanism.loops - stretches
-    return f"{loops or 'none'}, {', '.join(filter(None, words))}; {sizes} unknowns"
+    unknowns = f"{sizes} unknown{'s' * (sizes != '1')}"
+    return f"{mechanism.told_loops or 'none'}, {', '.join(filter(None, words))}; {unknowns}"
 
 
 def _rows(analysis: Analysis) -> str:
@@ -367,32 +364,57 @@ def explanation(analysis: Analysis) -> str:
     graph = analysis.result.graph
     of = analysis.model.name if analysis.run == SWEEP else f"the start of {analysis.run}"
     lines = [f"solver graph of {of}", "  tree"]
+    told = analysis.result.problem.mechanism.told_name
     for edge in graph.edges:
+        if not is_told(edge.child):
+            continue
         words = "" if edge.forward else ", passed from its second link to its first"
         words = ", hung between its spheres" if edge.hung else words
-        lines.append(f"    {edge.parent} -> {edge.child} by {_joint(edge.joint, words)}")
+        by = _joint(edge.joint, words) if is_told(edge.joint.name) else told(edge.joint.name)
+        lines.append(f"    {told(edge.parent)} -> {edge.child} by {by}")
     closed = [pair for pair in zip(graph.closings, graph.loops, strict=True) if not pair[0].terms]
     lines.append("  loops closed at" if closed else "  no loops")
     for closing, passed in closed:
-        loop = ", ".join(graph.edges[k].joint.name for k, _ in passed)
-        count = closing.equations
-        equations = f", {count} equation{'s' * (count > 1)}"
-        if closing.words:
+        name, is_own = told(closing.joint.name), is_told(closing.joint.name)
+        others = dict.fromkeys(told(graph.edges[k].joint.name) for k, _ in passed)
+        loop = ", ".join(other for other in others if other != name)
+        equations = f", {counted(closing.equations, 'equation')}"
+        if closing.words and is_own:
             equations += f": {closing.words}"
-        lines.append(f"    {_joint(closing.joint, equations)}" + f" with {loop}" * bool(loop))
+        shown = _joint(closing.joint, equations) if is_own else f"{name} ({equations[2:]})"
+        lines.append(f"    {shown}" + f" with {loop}" * bool(loop))
     coupled = [closing for closing in graph.closings if closing.terms]
     lines += ["  coupled by"] * bool(coupled)
     lines += [f"    {closing.name}, {closing.words}" for closing in coupled]
     if graph.blocks:
         lines.append("  blocks, solved in this order")
     for number, block in enumerate(graph.blocks, 1):
-        names = ", ".join(_freedom(graph.edges[k].joint, f) for k, f in block.unknowns)
-        unknowns = f"{len(block.unknowns)} unknowns {names}"
+        names = _unknowns([(graph.edges[k].joint, f) for k, f in block.unknowns], told)
+        unknowns = f"{counted(len(block.unknowns), 'unknown')} {', '.join(names)}"
         more = block.equations > len(block.unknowns)
-        lines.append(f"    {number}: {unknowns}" + f" from {block.equations} equations" * more)
+        of = f" from {counted(block.equations, 'equation')}"
+        lines.append(f"    {number}: {unknowns}" + of * more)
     lines.append("demand plan")
     lines += [f"  {line}" for line in _demand_lines(analysis)]
     return "\n".join(lines) + "\n"
+
+
+def _unknowns(freedoms: list[tuple[Joint, int]], told: Callable[[str], str]) -> list[str]:
+    """Their names; those of one stretch of a cable together."""
+    found: dict[str, list[str]] = {}
+    for joint, freedom in freedoms:
+        if is_told(joint.name):
+            found[_freedom(joint, freedom)] = []
+        else:
+            known = found.setdefault(told(joint.name), [])
+            known.append("length" if joint.type.slides[freedom] else "turn")
+    return [f"{_of_stretch(kinds)} of {name}" if kinds else name for name, kinds in found.items()]
+
+
+def _of_stretch(kinds: list[str]) -> str:
+    turns = kinds.count("turn")
+    words = ("turns" if turns > 1 else "turn") * bool(turns), "length" * ("length" in kinds)
+    return " and ".join(filter(None, words))
 
 
 def _freedom(joint: Joint, freedom: int) -> str:
@@ -444,7 +466,7 @@ def _demand_lines(analysis: Analysis) -> list[str]:
 def _positions(analysis: Analysis) -> str:
     result = analysis.result
     if analysis.run == SWEEP:
-        nodes = f"{result.nodes} nodes followed, the rest filled in between"
+        nodes = f"{counted(result.nodes, 'node')} followed, the rest filled in between"
         return f"positions: {result.rows} rows, {nodes}"
     response = analysis.model.design.response(analysis.run)
     step = f"a tolerance of {response.tolerance:g}"

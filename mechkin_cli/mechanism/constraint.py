@@ -86,9 +86,10 @@ class Tension(NamedTuple):
 
 class Extent(NamedTuple):
     """A length of a cable (m): as `drawn`, and what `terms` add to it. It is more than nothing and,
-    where it is known, less than `most`; else the cable does what `words` say."""
+    where it is known, less than `most`; else the cable does what `words` say at `place`."""
 
     words: str
+    place: str
     drawn: float
     terms: tuple[Term, ...]
     most: float | None = None

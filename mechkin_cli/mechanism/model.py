@@ -18,7 +18,13 @@ from mechkin_cli.mechanism.constraint import (
     Relation,
     find_constraints,
 )
-from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written, told_coordinates
+from mechkin_cli.mechanism.joint import (
+    GROUND_NAME,
+    Joint,
+    is_told,
+    is_written,
+    told_coordinates,
+)
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
@@ -396,6 +402,28 @@ class Mechanism:
         """Number of independent loops."""
         moving = sum(name != GROUND_NAME for name in self.links)
         return len(self.joints) - moving
+
+    @property
+    def told_loops(self) -> int:
+        """Those that users see: stretches of cables close none."""
+        return (
+            self.loops
+            - sum(not is_told(name) for name in self.joints)
+            + sum(not is_told(name) for name in self.links)
+        )
+
+    def told_name(self, name: str) -> str:
+        """What a link or joint is called: a part of a cable is that cable, and where."""
+        return name if is_told(name) else self._told_stretches[name.partition(" ")[0]]
+
+    @cached_property
+    def _told_stretches(self) -> dict[str, str]:
+        return {
+            extent.terms[0].joint.name.partition(" ")[0]: f"cable {name} {extent.place}"
+            for name, relation in self.couplings.items()
+            for extent in relation.extents
+            if extent.most is None
+        }
 
     @property
     def kutzbach(self) -> int:

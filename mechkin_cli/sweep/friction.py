@@ -172,7 +172,8 @@ def lifted(result: RunRows) -> list[Diagnostic]:
         if where.any():
             rows.status[where & (rows.status == int(Status.ok))] = Status.slack
             least = float(units.from_si(float(np.min(value[where])), LENGTH))
-            text = f"{name} {extent.words} in {_rows(where)}: it is led as if it stuck there"
+            text = f"{name} {extent.words} {extent.place} in {_rows(where)}"
+            text += ": it is led as if it stuck there"
             measured = f"{least:.6g} {units.label(LENGTH)}"
             hint = "end the sweep before it, or leave that place out of the cable's path"
             code = Status.slack.label

@@ -104,3 +104,59 @@ def test_derived_quantities_say_what_they_take(mechkin, write) -> None:
     assert "mechanical advantages: one more run, with unit rate of one input" in found
     assert "transmission angles: static runs with a unit load, 1 in all" in found
     assert any(line.startswith("input efforts and closing wrenches: skipped") for line in found)
+
+
+def test_a_cable_is_named_by_its_ends(mechkin, write) -> None:
+    """What its stretches are made of, which the file does not have, is not told."""
+    for text in CABLES:
+        out = mechkin("analyze", write("cable.yaml", text), "--explain").out
+        graph = out.partition("demand plan")[0]
+        assert not re.search(r"K\.\d| (near|far|hub|slide|end|back)\b", graph), graph
+        assert len(re.findall(r"cable K between \w+ and \w+ \(\d equation", graph)) >= 2, graph
+    found = lines(mechkin, write("tackle.yaml", CABLES[0]))
+    assert found[1:4] == ["tree", "ground -> block by G (P)", "ground -> cart by C (P)"]
+    assert "cable K between d and c (2 equations) with C" in found
+    assert "1: 2 unknowns turn and length of cable K between d and c" in found
+
+
+def test_loops_of_cables_are_no_loops_of_the_mechanism(mechkin, write) -> None:
+    run = mechkin("mobility", write("tackle.yaml", CABLES[0]), "--json")
+    assert (run.json["loops"], run.json["mobility"]) == (0, 1)
+
+
+HOIST = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {block: {}, cart: {}}
+joints:
+  G: {type: P, links: [ground, block], point: [20, -90], axis: [0, 1]}
+  C: {type: P, links: [ground, cart], point: [110, -60], axis: [0, -1]}
+points:
+  a: {link: ground, at: [0, 0]}
+  b: {link: block, at: [20, -90]}
+  d: {link: ground, at: [70, 0]}
+  c: {link: cart, at: [110, -60]}
+couplings: {K: {type: cable, path: PATH}}
+motion: {inputs: {C.s: {from: 0, to: 4, step: 2}}}
+"""
+SPACE = """
+format: 1
+units: {length: m, angle: deg}
+links: {arm: {}, block: {}}
+joints:
+  A: {type: R, links: [ground, arm], point: [0, 0, 0], axis: [0, 1, 2]}
+  S: {type: P, links: [ground, block], point: [3, 1, 0], axis: [0, 0, 1]}
+points:
+  p: {link: arm, at: [1, 0, 0.5]}
+  e: {link: ground, at: [2, 0, 2]}
+  q: {link: block, at: [3, 1, 0]}
+couplings: {K: {type: cable, path: [p, e, q, e]}}
+motion: {inputs: {A.theta: {from: 0, to: 4, count: 2}}}
+"""
+OVER = "[a, {pulley: b, radius: 20, side: right}, {pulley: d, radius: 30, side: left}, c]"
+CABLES = [
+    HOIST.replace("PATH", "[a, b, a, b, d, c]"),
+    HOIST.replace("PATH", OVER),
+    SPACE,
+]
