@@ -23,7 +23,6 @@ from mechkin_cli.errors.motion import (
 from mechkin_cli.errors.rows import (
     AS_DRIVEN,
     CROSSED,
-    FRICTION,
     IMPACTS,
     OTHER_RATES,
     STOP,
@@ -34,6 +33,7 @@ from mechkin_cli.errors.rows import (
     as_number,
     as_parts,
     reason_of,
+    sticking,
     wide_run,
 )
 from mechkin_cli.expressions import Quantity, exact_literal
@@ -65,7 +65,7 @@ def repetition(result: Result) -> Repeated:
     if not isinstance(result, ResponseResult):
         return Repeated(result, wide_run(result))
     if result.problem.mechanism.frictions:
-        raise NotRepeated(FRICTION)
+        raise NotRepeated(sticking(result.problem))
     if result.impacts:
         raise NotRepeated(IMPACTS)
     if result.report is not None and result.report.crossings:

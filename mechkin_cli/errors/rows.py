@@ -29,7 +29,9 @@ from mechkin_cli.mechanism import (
     LEDGER_KINDS,
     TIME_OF_ROW,
     bearing_load,
+    friction_states,
     is_angle,
+    rubbing_words,
 )
 from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.session import Ask, KernelInputs, PreciseConstants, RowInputs
@@ -61,7 +63,6 @@ def as_parts(numbers: Any) -> Floats:
 VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
-FRICTION = "friction"
 TABLE_LOADS = "a load that is read from a table"
 IMPACTS = "the motion rebounds from a limit"
 CROSSED = "the motion passes a branch point"
@@ -73,6 +74,13 @@ DENSE = "a dense system"
 BALANCE = "a balance over all rows"
 SUMMARY = "a summary: off by no more than twice the worst cell of its column"
 AS_DRIVEN = "read as if the start's coordinates were driven"
+
+
+def sticking(problem: Problem) -> str:
+    """Why a response that rubs is not repeated."""
+    named = rubbing_words(problem.mechanism.frictions)
+    return f"{named}: when what rubs sticks and slips is found in doubles"
+
 
 _NUMBERS_OF_ROWS = {"time", "kinetic_energy", "potential_energy", "work", "dissipated"}
 
@@ -86,9 +94,6 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
     if problem.response is not None and quantity.kind in COEFFICIENT_KINDS:
         return AS_DRIVEN
     forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
-    if problem.mechanism.frictions and forces:
-        # whether a joint sticks or slips is decided by doubles
-        return FRICTION
     if forces and any(law.curve is not None for law in problem.load_laws):
         # the curve through the table is known in doubles
         return TABLE_LOADS
@@ -209,14 +214,25 @@ class Repeated:
         """Quantities on the rows, as `Result.evaluated`; of the balance of least norm alone."""
         session = session or self.session
         demand |= demand_of(session.problem.mechanism, wanted)
-        columns = self.wide.run(wanted, session, self._exact(inputs), demand)
+        read = list(wanted)
+        if demand & Demand.FORCES:
+            read += friction_states(session.problem.mechanism)
+        columns = self.wide.run(read, session, self._exact(inputs), demand)
+        # codes of `FrictionState`, 0 where friction has its forces
+        states = [columns.pop(state.name)[0] for state in read[len(wanted) :]]
         rows = self.row_states
+        without = np.zeros(self.rows, dtype=bool)
+        for state in states:
+            without |= state.high != 0.0
         unclear = ~has_rates(rows.status)
         for quantity in wanted:
             own = columns[quantity.name]
             own[:, ~rows.reached] = np.nan
-            if unclear.any() and demand_of(self.problem.mechanism, [quantity]):
+            asked = demand_of(self.problem.mechanism, [quantity])
+            if asked:
                 own[:, unclear] = np.nan
+            if asked & Demand.FORCES:
+                own[:, without] = np.nan
         return columns
 
     def _exact(self, inputs: KernelInputs | None) -> KernelInputs:

@@ -58,7 +58,7 @@ __getattr__, __dir__ = lazy_names(
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "
         "ORDERS Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
-        "FrictionLaw JointType Loss Motion Part Rubbing SECOND Screw screws_at",
+        "FrictionLaw JointType Loss Motion Part Rubbing SECOND Screw rubbing_words screws_at",
         "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES dimension_of guide_letter is_angle joint_type "
         "seat_letter",
         "problem": "Laws Problem differentiation law_value quantities_read read_by "

@@ -6,7 +6,7 @@ screws go through that frame's origin along its axes; they stand still in the bo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -232,6 +232,19 @@ class Rubbing(NamedTuple):
     across: Attached | None = None
     place: Place | None = None
     loss: Loss | None = None
+
+    @property
+    def word(self) -> str:
+        """What its key in the file is called: `friction`, or `efficiency` of a coupling."""
+        return "efficiency" if self.loss is not None and self.loss.turns else "friction"
+
+
+def rubbing_words(named: Iterable[Rubbing]) -> str:
+    """`friction of A, B and efficiency of G`: joints and couplings by what rubs there."""
+    names: dict[str, list[str]] = {}
+    for one in named:
+        names.setdefault(one.word, []).append(one.joint)
+    return " and ".join(f"{word} of {', '.join(own)}" for word, own in names.items())
 
 
 class Contact(NamedTuple):

@@ -12,7 +12,14 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.exact import PI
-from mechkin_cli.mechanism import DERIVED_KINDS, LEDGER_KINDS, Problem, Wanted, is_angle
+from mechkin_cli.mechanism import (
+    DERIVED_KINDS,
+    LEDGER_KINDS,
+    Problem,
+    Wanted,
+    is_angle,
+    rubbing_words,
+)
 from mechkin_cli.proofs.boxes import (
     FULL_TURN,
     MEASURED,
@@ -190,7 +197,8 @@ def is_angle_of_place(quantity: Wanted) -> bool:
 def reason_unknown(problem: Problem) -> str:
     """Why forces of a mechanism have no enclosure in any row that is proven; "" where they have."""
     if problem.mechanism.frictions:
-        return "friction, whose sticking and slipping is decided in doubles"
+        named = rubbing_words(problem.mechanism.frictions)
+        return f"{named}, which is solved for in doubles"
     if any(law.curve is not None for law in problem.load_laws):
         return "a load that is read from a table, whose curve is known in doubles"
     drives = problem.mechanism.drives

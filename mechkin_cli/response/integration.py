@@ -17,7 +17,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import threads_for, width
-from mechkin_cli.mechanism import CrossingEnd, DeadCentreEnd, dimension_of
+from mechkin_cli.mechanism import CrossingEnd, DeadCentreEnd, dimension_of, rubbing_words
 from mechkin_cli.plan import Demand, Layout, kink_laws
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import (
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel._kernel import DrivenLaws, Plan
-    from mechkin_cli.mechanism import Limit, LoadLaw, Problem, ResponseProblem, Stop
+    from mechkin_cli.mechanism import Limit, LoadLaw, Problem, ResponseProblem, Rubbing, Stop
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension
 
@@ -356,8 +356,7 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
         hint = "write a value that is defined along the motion"
         return Status.step_limit, _error("stop-undefined", text, hint, place=stop.place)
     if fault & Fault.FRICTION:
-        rubbing = _rubbing(free, report)
-        whose = f"friction of {rubbing}" if rubbing else "friction"
+        whose = rubbing_words(_rubbing(free, report)) or "friction"
         text = f"{whose} has no answer there, or more than one: the mechanism may jam, or slip"
         hint = "make a coefficient smaller, or bearings longer"
         return Status.friction_undecided, _error("friction-undecided", text, hint)
@@ -380,23 +379,27 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
         )
         return Status.branch_lost, _error("branch-lost", text, hint)
     if report.joints and _runs_away(response, report):
-        text = (
-            f"friction of {_rubbing(free, report)} feeds itself without bound: the mechanism jams"
-        )
+        named = rubbing_words(_rubbing(free, report))
+        text = f"{named} feeds itself without bound: the mechanism jams"
         hint = "make a coefficient smaller, or bearings longer"
         growth = f"rates grow by themselves in {1.0 / report.growth:.1e} s"
         return Status.friction_undecided, _error("friction-undecided", text, hint, growth)
     if report.joints:
-        text = f"{_rubbing(free, report)} starts to slip in a direction that no step determines"
+        named = _names(_rubbing(free, report))
+        text = f"{named} starts to slip in a direction that no step determines"
         hint = "make its static coefficient a little larger than that of sliding"
         return Status.friction_undecided, _error("friction-undecided", text, hint)
     return _tolerance(response, report)
 
 
-def _rubbing(free: Session, report: MotionReport) -> str:
-    """The names of the joints whose friction ends a motion."""
+def _rubbing(free: Session, report: MotionReport) -> list[Rubbing]:
+    """The joints and couplings whose friction ends a motion."""
     frictions = free.problem.mechanism.frictions
-    return ", ".join(frictions[number].joint for number in report.joints)
+    return [frictions[number] for number in report.joints]
+
+
+def _names(named: Sequence[Rubbing]) -> str:
+    return ", ".join(one.joint for one in named)
 
 
 def _branch_point(response: ResponseProblem) -> Reason:
@@ -430,7 +433,7 @@ def _step_limit(free: Session, report: MotionReport) -> Reason:
 def _held(free: Session, report: MotionReport) -> Reason:
     law = _law(free, report.which)
     if law is None:
-        whose = _rubbing(free, report) or "the motion"
+        whose = _names(_rubbing(free, report)) or "the motion"
         text = f"{whose} comes to rest again and again at one place"
         hint = "make a static coefficient a little larger than that of sliding, or bearings longer"
         return Status.friction_undecided, _error("friction-undecided", text, hint)

@@ -12,7 +12,13 @@ import numpy as np
 
 from mechkin_cli import idle, tolerances
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.mechanism import REACTION_LEVEL, SELF_LOCKING, friction_states, strands_of
+from mechkin_cli.mechanism import (
+    REACTION_LEVEL,
+    SELF_LOCKING,
+    friction_states,
+    rubbing_words,
+    strands_of,
+)
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState, is_lifted
 from mechkin_cli.sweep.rows import RunRows
 from mechkin_cli.units import FORCE, LENGTH, MOMENT, Dimension
@@ -27,16 +33,16 @@ CODE = "friction-undecided"
 
 _WHY = {
     FrictionState.AT_REST: (
-        "friction of {} has no direction: nothing slides there, or is about to",
+        "{} has no direction: nothing slides there, or is about to",
         "give the inputs the rate, or the acceleration, of the motion that is meant; a joint that "
         "never moves needs no friction",
     ),
     FrictionState.NOT_UNIQUE: (
-        "friction of {} may jam: no proof that its forces are the only ones",
+        "{} may jam: no proof that its forces are the only ones",
         "make the coefficient smaller or the bearings longer, or drive the mechanism elsewhere",
     ),
     FrictionState.NOT_SOLVED: (
-        "friction of {} has no forces in balance with its reactions",
+        "{} has no forces in balance with its reactions",
         "make the coefficient smaller, or move the sweep by a fraction of its step",
     ),
 }
@@ -196,12 +202,8 @@ def _undecided(result: RunRows, judged: Bools) -> Findings:
             where = np.any(masks, axis=0)
             if code is FrictionState.AT_REST and not result.problem.motion.inputs:
                 cure = "while all rests, each friction takes what holds it: positions are known"
-            text = f"{why.format(_list(named))}; forces stay empty in {_rows(where)}"
+            text = f"{why.format(rubbing_words(named))}; forces stay empty in {_rows(where)}"
             yield where, Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
-
-
-def _list(named: Sequence[Rubbing]) -> str:
-    return ", ".join(one.joint for one in named)
 
 
 def _not_unique(result: RunRows, judged: Bools) -> Findings:
@@ -235,7 +237,7 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
     return Diagnostic(
         "friction-not-unique",
         "error",
-        f"the friction of {_list(named)} goes by reactions that redundant "
+        f"the {rubbing_words(named)} goes by reactions that redundant "
         "constraints leave arbitrary; forces stay empty",
         named[0].place,
         hint=f"free a joint of the loop (a sphere for a pin, a cylinder for a slide){without}",
@@ -280,8 +282,8 @@ def unfounded_in_motion(problem: Problem, *, redundant: bool) -> Diagnostic | No
                 return Diagnostic(
                     "loaded-spin",
                     "error",
-                    f"{freedom.words}, and friction of {rubbing.joint} may drive it: that is a "
-                    "dynamic freedom, on which the motion depends",
+                    f"{freedom.words}, and {rubbing.word} of {rubbing.joint} may drive it: that is "
+                    "a dynamic freedom, on which the motion depends",
                     rubbing.place,
                     hint=f"{freedom.cure}, or accept that it is held with idle: hold",
                 )

@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import mpmath as mp
 import numpy as np
 import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.tape.double_double import exactly
 
 SPUR = """
 format: 1
@@ -323,3 +327,58 @@ def test_joints_and_teeth_rub_together_in_a_loop() -> None:
     assert moved["row.energy_error"].max() < 1e-9
     assert moved["row.power_error"][1:].max() < 1e-13
     np.testing.assert_allclose(moved["G.efficiency"][1:], 0.85, rtol=1e-9)
+
+
+def share_of_worm(friction: mp.mpf) -> mp.mpf:
+    cosine, lead = mp.cos(mp.pi / 9), mp.mpf("0.2")
+    return (cosine - friction * lead) / (cosine * lead + friction) * lead
+
+
+@pytest.mark.parametrize(
+    ("text", "parameter", "at", "effort"),
+    [
+        (SPUR, "efficiency: 0.9", "0.9", lambda share: 3000 / share),
+        (WORM, "friction: MU", "0.08", lambda friction: 5000 / share_of_worm(friction)),
+    ],
+    ids=["efficiency", "friction"],
+)
+def test_losses_of_a_sweep_have_true_errors_and_sensitivities(
+    text: str, parameter: str, at: str, effort: Callable[[mp.mpf], mp.mpf]
+) -> None:
+    key = parameter.partition(":")[0]
+    text = text.replace(parameter, f"{key}: x").replace("LOAD", "6").replace("RATE", "10")
+    model = mk.loads(f"{text}parameters: {{x: {at}}}\n")
+    errors = model.analyze(["A.effort", "G.efficiency"]).errors
+    found = model.sensitivities(["A.effort"], ["x"])
+    with mp.workdps(50):
+        x = mp.mpf(at)
+        value, slope, bend = effort(x), mp.diff(effort, x), mp.diff(effort, x, 2)
+        for cell in exactly(errors.repeated.quantity("A.effort").value):
+            in_file_units = 1000 * (mp.mpf(float(cell.high)) + mp.mpf(float(cell.low)))
+            assert abs(in_file_units - value) < 1e-27 * value
+    assert errors["A.effort"].max() < 1e-14 * value
+    assert errors["G.efficiency"].max() < 1e-15
+    np.testing.assert_allclose(found["A.effort", "x"], float(slope), rtol=1e-12)
+    scale = float(value / x**2)
+    np.testing.assert_allclose(found.curvature("A.effort", "x"), float(bend), atol=1e-7 * scale)
+
+
+def test_losses_without_a_direction_have_no_errors() -> None:
+    still = mk.loads(SPUR.replace("LOAD", "6").replace(", rate: 10 rad/s", "")).analyze()
+    assert set(still["row.status"]) == {"friction-undecided"}
+    assert np.isnan(still.errors["A.effort"]).all()
+    assert still.errors["B.theta"].max() < 1e-13
+
+
+def test_where_a_load_turns_round_a_loss_has_no_slope() -> None:
+    """A drive needs 1/eta of a load that brakes and eta of one that drives it."""
+    model = mk.loads(SPUR.replace("LOAD N*m", "load") + "parameters: {load: 0 N*m}\n")
+    found = model.sensitivities(["A.effort", "B.theta_dot"], ["load"])
+    assert set(found.verdict("A.effort", "load")) == {"bent"}
+    assert set(found.verdict("B.theta_dot", "load")) == {"ok"}
+
+
+def test_a_response_with_losses_says_what_is_not_repeated() -> None:
+    text = SHAFTS.replace("AT_A", "7").replace("AT_B", "0").replace("RATE", "1")
+    errors = mk.loads(text).respond("r", ["A.theta_dot"]).errors
+    assert errors.why["r.A.theta"].startswith("efficiency of G: when what rubs sticks and slips")

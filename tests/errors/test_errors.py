@@ -91,12 +91,27 @@ def test_rows_without_a_position_have_no_errors():
     assert sum(column.lost for column in r.errors.columns) == 0
 
 
-def test_friction_is_not_repeated_and_says_so():
-    errors = mk.loads(RUBBING).analyze().errors
-    assert errors.why == {"one.A.effort": "friction", "one.row.power_error": "a verdict"}
-    assert errors["crank.omega.z"].max() == 0.0
-    with pytest.raises(mk.UsageError, match="friction"):
-        errors["2*A.effort"]
+def test_friction_of_a_sweep_is_repeated():
+    """The bearing carries m r omega^2 = 0.09 N: the effort is 0.1 (8 mm) of that."""
+    r = mk.loads(RUBBING).analyze()
+    assert r.errors.why == {"one.row.power_error": "a verdict"}
+    assert r.errors["crank.omega.z"].max() == 0.0
+    assert 0.0 < r.errors["A.effort"].max() < 1e-16
+    for cell in true(r, "A.effort"):
+        assert abs(Fraction(cell.high) + Fraction(cell.low) - Fraction("7.2e-5")) < Fraction(
+            "1e-33"
+        )
+
+
+def test_responses_with_friction_are_not_repeated_and_say_what_rubs():
+    text = RUBBING.replace(
+        "motion: {inputs: {A.theta: {from: 0, to: 90, step: 30, rate: 3 rad/s}}}", ""
+    )
+    text = text[: text.index("tables:")]
+    motion = "start: {A.theta: 0}, efforts: {A.theta: 9}, time: {from: 0, to: 1, step: 0.5}"
+    text += f"responses: {{r: {{{motion}}}}}"
+    why = mk.loads(text).respond("r").errors.why["r.A.theta"]
+    assert why == "friction of A: when what rubs sticks and slips is found in doubles"
 
 
 def test_a_varied_model_is_repeated_with_its_own_numbers():
