@@ -118,6 +118,11 @@ class Status(IntEnum):
         "position, rates, forces",
         "solved as if a belt, chain or cable pushed, or stuck to a pulley that it leaves.",
     )
+    fleet_angle = (
+        14,
+        "position, rates, forces",
+        "solved as if a cable ran in the plane of a pulley that it leaves at a fleet angle.",
+    )
 
     has_solution: bool
     has_rates: bool

@@ -31,6 +31,7 @@ LABELS = {
     "unsupported": 11,
     "beyond-limit": 12,
     "slack": 13,
+    "fleet-angle": 14,
 }
 
 
@@ -48,7 +49,7 @@ def test_every_status_has_a_sentence(status):
 def test_rows_with_a_position_have_a_solution():
     solved = {status.label for status in Status if status.has_solution}
     judged = {"ok", "near-singular", "rank-unclear", "friction-undecided", "dead-centre"}
-    assert solved == {*judged, "unsupported", "beyond-limit", "slack"}
+    assert solved == {*judged, "unsupported", "beyond-limit", "slack", "fleet-angle"}
 
 
 @pytest.mark.parametrize("status", Status)

@@ -1,4 +1,4 @@
-"""Cables over points and pulleys to massless telescopes, and to the sum that their length is.
+"""Cables over points, pulleys and drums to massless telescopes, and to the sum of their lengths.
 
 Every straight stretch of a cable is a telescope from where it leaves one place to where it meets
 the next, hinged at both. At a pulley of radius r it is hinged at the centre and runs beside it at
@@ -13,6 +13,11 @@ ends along their line, and the moment r times that about the centres of pulleys,
 turned freely. Where a cable runs several times between two points, one telescope counts as often.
 
 At a drum the cable ends on its rim, which turns with the drum's link: the turn is that against it.
+
+In space a telescope turns about the axis of its pulley alone, and what its other end does beside
+that plane is left free and measured: a slide along the axis, and the tilt of another pulley's axis.
+These are zero as long as the cable runs in the grooves. A swivelling pulley hangs on a fork that
+turns about its line, so that its telescope reaches any point.
 """
 
 from __future__ import annotations
@@ -23,13 +28,14 @@ from itertools import pairwise
 from math import pi
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.building.cable_places import Place, arc, read_places, stretch
+from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import Halves, parts_of
-from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import (
     GROUND,
     Attached,
     Extent,
+    Fleet,
     Frame,
     Joint,
     Mechanism,
@@ -41,42 +47,17 @@ from mechkin_cli.mechanism import (
     add,
     counted,
     cross,
-    dot,
     frame_about,
     joint_type,
-    norm,
     perpendicular,
     scale,
-    subtract,
     upright,
 )
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema import AnyCoupling, CableCoupling, PathPart
-from mechkin_cli.tape import of_two, square_root
-from mechkin_cli.units import LENGTH
+from mechkin_cli.schema import AnyCoupling, CableCoupling
 
 _Built = tuple[dict[str, RigidLink], dict[str, Joint], dict[str, Relation]]
 """Links and joints of telescopes, and relations, by name."""
-
-
-class _Place(NamedTuple):
-    """A place that a cable passes: a point of a link, about which it runs at a radius (m), on its
-    left (1) or right (-1) seen along the way; 0: through it. `is_drum`: it ends there."""
-
-    centre: Attached
-    radius: float = 0.0
-    side: float = 0.0
-    is_drum: bool = False
-
-    @property
-    def is_round(self) -> bool:
-        """Whether the cable runs about it."""
-        return self.side != 0.0
-
-    @property
-    def beside(self) -> float:
-        """How far the cable runs to the left of the centre (m)."""
-        return self.side * self.radius
 
 
 def build_cables(
@@ -92,23 +73,18 @@ def build_cables(
     for name, section in couplings.items():
         if not isinstance(section, CableCoupling):
             continue
-        path = ("couplings", name)
-        errors = fields.error_count
-        places = [
-            _place(fields, (*path, "path", i), part, joints, points)
-            for i, part in enumerate(section.path)
-        ]
-        found = [place for place in places if place is not None]
-        if fields.error_count > errors or not _fits(fields, path, section, found):
+        path = ("couplings", name, "path")
+        places = read_places(fields, path, section.path, joints, points)
+        if places is None:
             continue
         keys = [
             f"{part.point or part.pulley or part.drum} {part.radius} {part.side}"
             for part in section.path
         ]
-        cable = _Cable(name, keys, found, fields.plane)
+        cable = _Cable(name, keys, places, fields.plane)
         if cable.relation is None:
             text = "both ends of every stretch of this cable are on one link"
-            fields.error("cable-at-rest", (*path, "path"), text, "lead it over links that move")
+            fields.error("cable-at-rest", path, text, "lead it over links that move")
             continue
         links |= cable.links
         added |= cable.joints
@@ -118,10 +94,15 @@ def build_cables(
 
 class DrawnCable(NamedTuple):
     """A cable as pages and pictures draw it: the points and centres that it passes, as drawn on
-    their links, and how far it runs to the left of each (m), seen along its way."""
+    their links, how far it runs to the left of each (m), seen along its way, and the axes of its
+    pulleys. One that swivels has its place and axis on the line about which it does, along the
+    cable as it runs onto the pulley; `swivels` is 1 where it comes along that line, -1 where it
+    leaves along it, else 0."""
 
     places: tuple[Attached, ...]
     beside: tuple[float, ...]
+    axes: tuple[Vector, ...]
+    swivels: tuple[int, ...]
 
 
 def drawn_cables(
@@ -131,104 +112,29 @@ def drawn_cables(
     found = []
     for name, section in couplings.items():
         if isinstance(section, CableCoupling):
-            places = [
-                _place(
-                    fields, ("couplings", name, "path", i), part, mechanism.joints, mechanism.points
-                )
-                for i, part in enumerate(section.path)
-            ]
-            known = [place for place in places if place is not None]
-            centres = tuple(place.centre for place in known)
-            found.append(DrawnCable(centres, tuple(float(place.beside) for place in known)))
+            path = ("couplings", name, "path")
+            places = read_places(fields, path, section.path, mechanism.joints, mechanism.points)
+            found.append(DrawnCable(*zip(*map(_drawn, places or ()), strict=True)))
     return tuple(found)
 
 
-def _place(
-    fields: Fields,
-    path: Path,
-    part: PathPart,
-    joints: Mapping[str, Joint],
-    points: Mapping[str, Attached],
-) -> _Place | None:
-    """A place of a path; None where errors are noted."""
-    if part.point is not None:
-        if part.point in points:
-            return _Place(points[part.point])
-        if not fields.is_refused(part.point):
-            hint = nearest_hint(part.point, list(points)) or "name it under points"
-            fields.error("unknown-point", path, f"there is no point {part.point}", hint)
-        return None
-    key = "pulley" if part.drum is None else "drum"
-    name = part.pulley if part.drum is None else part.drum
-    assert name is not None
-    if name not in joints:
-        if part.drum is None and name in points:
-            centre = points[name]
-        else:
-            if not fields.is_refused(name):
-                text = f"there is no joint {name}"
-                fields.error("unknown-joint", (*path, key), text, nearest_hint(name, list(joints)))
-            return None
-    elif not joints[name].type.is_bearing:
-        letter = joints[name].letter
-        text = f"{name} is of type {letter}: a {key} turns on an R joint"
-        fields.error("wheel-joint", (*path, key), text, "name the joint that it turns on")
-        return None
-    else:
-        # on the wheel, so that its bearing takes the pull
-        centre = Attached(joints[name].second, joints[name].on_second.o)
-    errors = fields.error_count
-    assert part.radius is not None
-    radius = fields.number((*path, "radius"), part.radius, LENGTH)
-    if fields.error_count > errors:
-        return None
-    if not radius > tolerances.SMALLEST_DIVISOR:
-        text = f"the radius of a pulley is {part.radius}"
-        fields.error("no-wheel", (*path, "radius"), text, limit="more than 0")
-        return None
-    side = 1.0 if part.side == "left" else -1.0
-    return _Place(centre, radius, side, part.drum is not None)
-
-
-def _fits(fields: Fields, path: Path, section: CableCoupling, places: Sequence[_Place]) -> bool:
-    """Whether the stretches of a cable can be drawn; what is wrong is noted."""
-    for i, (place, part) in enumerate(zip(places, section.path, strict=True)):
-        if place.is_round and not fields.plane:
-            text = "a cable runs over pulleys in files of a plane alone"
-            hint = "lead it through points, or write the mechanism in its plane (plane: xy)"
-            fields.error("spatial-pulley", (*path, "path", i), text, hint)
-            return False
-        if place.is_drum and 0 < i < len(places) - 1:
-            text = f"the cable ends on the drum at {part.drum}, in the middle of its path"
-            hint = "name the drum first or last, or write a pulley"
-            fields.error("drum-between", (*path, "path", i), text, hint)
-            return False
-    for i, (one, other) in enumerate(pairwise(places)):
-        distance = norm(subtract(other.centre.vector, one.centre.vector))
-        beside = abs(one.beside - other.beside)
-        if not distance > beside * (1.0 + tolerances.PARALLEL):
-            measured, limit = (fields.units.text(float(x), LENGTH) for x in (distance, beside))
-            fields.error(
-                "no-stretch",
-                (*path, "path", i + 1),
-                "there is no straight stretch of the cable from the place before to this one",
-                "draw them apart, or lead the cable over the other side of a pulley",
-                measured=f"{measured} apart",
-                limit=f"more than {limit}",
-            )
-            return False
-    return True
+def _drawn(place: Place) -> tuple[Attached, float, Vector, int]:
+    """What a drawn cable knows of a place."""
+    if place.swivel is None:
+        return place.centre, float(place.beside), place.axis, 0
+    return place.swivel.entry, float(place.beside), place.swivel.along, place.swivel.way
 
 
 class _Cable:
     """The telescopes of a cable along its places, and its relation.
 
-    They hang on each other along the way: what leaves a pulley is hinged to what comes to it, about
-    the centre, so that one turn is the bend there.
+    In a plane they hang on each other along the way: what leaves a pulley is hinged to what comes
+    to it, about the centre, so that one turn is the bend there. In space each hangs on the links at
+    its ends.
     """
 
     def __init__(
-        self, name: str, keys: Sequence[str], places: Sequence[_Place], plane: bool
+        self, name: str, keys: Sequence[str], places: Sequence[Place], plane: bool
     ) -> None:
         self.name, self.places, self.plane = name, places, plane
         self.names = [key.partition(" ")[0] for key in keys]
@@ -237,6 +143,7 @@ class _Cable:
         self.slides: list[Term] = []
         self.wound: list[list[Term]] = [[] for _ in places]
         self.extents: list[Extent] = []
+        self.fleets: list[Fleet] = []
         self.moves = [one.centre.link != other.centre.link for one, other in pairwise(places)]
         # between points there and back is one way
         ways = [frozenset(way) for way in pairwise(keys)]
@@ -244,10 +151,13 @@ class _Cable:
         behind = None
         for i, way in enumerate(ways):
             is_straight = not (places[i].is_round or places[i + 1].is_round)
+            count = float(counts[way]) if is_straight else 1.0
             if not self.moves[i] or (is_straight and way in ways[:i]):
                 behind = None
+            elif plane:
+                behind = self._add(i, count, behind)
             else:
-                behind = self._add(i, float(counts[way]) if is_straight else 1.0, behind)
+                self._add_in_space(i, count)
         for i, place in list(enumerate(places))[1:-1]:
             if place.is_round:
                 self._add_arc(i)
@@ -256,49 +166,125 @@ class _Cable:
     def relation(self) -> Relation | None:
         """None of a cable that nothing moves."""
         terms = (*self.slides, *(term for each in self.wound for term in each))
+        if not terms:
+            return None
         # the multiplier pushes the slides out
         tension = (("tension", Tension(-1.0, 0.0, 0.0)),)
-        extents = tuple(self.extents)
-        return Relation(terms, length=True, tensions=tension, extents=extents) if terms else None
+        extents, fleets = tuple(self.extents), tuple(self.fleets)
+        return Relation(terms, length=True, tensions=tension, extents=extents, fleets=fleets)
 
     def _add(self, i: int, count: float, behind: str | None) -> str | None:
         """The telescope of stretch `i`, whose slide counts as often as `count`; `behind`: the link
         that comes to its first place. The link that comes to its last one, if that is a pulley."""
         one, other = self.places[i], self.places[i + 1]
         name = f"{self.name}.{i + 1}"
-        near, far = f"{name} near", f"{name} far"
-        self.links |= {link: RigidLink(link) for link in (near, far)}
-        length, along = _stretch(one, other)
-        hinge = "R" if self.plane else "S"
-        start, finish = (self._upright(place.centre.vector) for place in (one, other))
-        turn = self._joint(f"{name} turn", hinge, behind or one.centre.link, near, start)
+        length, along = stretch(one, other)
+        start, finish = (_upright(place.centre.vector) for place in (one, other))
+        near = f"{name} near"
+        turn = self._joint(f"{name} turn", "R", behind or one.centre.link, near, start)
         if one.is_round:
             self._wind(i, turn, -one.beside)
-        from_start = add(one.centre.vector, scale(one.beside, cross(GROUND.z, along)))
-        axis = frame_about(along, perpendicular(along), from_start)
-        slide = counted(self._joint(f"{name} slide", "P", near, far, axis))
-        self.joints[slide.name] = slide
-        self.slides.append(Term(slide, "s", count))
-        words, place = "has no straight stretch", f"between {self.names[i]} and {self.names[i + 1]}"
-        self.extents.append(Extent(words, place, length, (Term(slide, "s", 1.0),)))
+        far = self._slide(i, near, one, length, along, count)
         if not other.is_round or any(self.moves[i + 1 : i + 2]):
-            self._joint(f"{name} end", hinge, far, other.centre.link, finish)
+            self._joint(f"{name} end", "R", far, other.centre.link, finish)
             return far if other.is_round else None
         # no stretch goes on whose bend would tell what is wound here
         hub = f"{name} hub"
-        self.links[hub] = RigidLink(hub)
-        self._wind(
-            i + 1, self._joint(f"{name} back", "R", other.centre.link, hub, finish), other.beside
-        )
+        turn = self._joint(f"{name} back", "R", other.centre.link, hub, finish)
+        self._wind(i + 1, turn, other.beside)
         self._joint(f"{name} end", "W", far, hub, GROUND)
         return None
 
+    def _add_in_space(self, i: int, count: float) -> None:
+        """As `_add`, from a pulley to a point where it leads to one, and from the line of a
+        swivelling pulley."""
+        one, other = self.places[i].facing(1), self.places[i + 1].facing(-1)
+        name, at = f"{self.name}.{i + 1}", i + 1
+        if (other.is_round and not one.is_round and one.swivel is None) or (
+            other.swivel is not None and not other.is_round
+        ):
+            one, other, at = other.reversed, one.reversed, i
+        length, along = stretch(one, other)
+        finish = upright(other.centre.vector)
+        link, near = one.centre.link, f"{name} near"
+        if not (one.is_round or other.is_round or one.swivel is not None):
+            self._joint(f"{name} turn", "S", link, near, upright(one.centre.vector))
+            far = self._slide(i, near, one, length, along, count)
+            self._joint(f"{name} end", "S", far, other.centre.link, finish)
+            return
+        if one.is_round:
+            if one.swivel is not None:
+                fork = f"{name} fork"
+                line = _about(one.swivel.along, one.swivel.entry.vector)
+                self._joint(f"{name} swivel", "R", link, fork, line)
+                link = fork
+            turn = self._joint(f"{name} turn", "R", link, near, _about(one.axis, one.centre.vector))
+            self._wind(2 * i + 1 - at, turn, -one.beside)
+        else:
+            near = link
+        far = self._slide(i, near, one, length, along, count)
+        if one.swivel is not None and one.is_round:
+            self._joint(f"{name} end", "S", far, other.centre.link, finish)
+            return
+        words = "leaves the plane of a pulley"
+        rounds = [place.axis for place in (one, other) if place.is_round]
+        across = (*rounds, perpendicular(along))[0]
+        if not one.is_round:
+            words = "leaves the line of a swivelling pulley"
+            far = self._stray(name, "beside", far, cross(across, along), finish, words, length)
+        if not other.is_round:
+            far = self._stray(name, "off", far, across, finish, words, length)
+            self._joint(f"{name} end", "S", far, other.centre.link, finish)
+            return
+        hub, link = f"{name} hub", other.centre.link
+        link = self._stray(name, "tilt", link, along, finish, words)
+        link = self._stray(name, "lean", link, cross(across, along), finish, words)
+        link = self._stray(name, "off", link, across, finish, words, length)
+        back = self._joint(f"{name} back", "R", link, hub, _about(other.axis, other.centre.vector))
+        self._wind(at, back, other.beside)
+        self._joint(f"{name} end", "W", far, hub, GROUND)
+
+    def _slide(
+        self, i: int, near: str, one: Place, length: float, along: Vector, count: float
+    ) -> str:
+        """The slide of the telescope of stretch `i` on its part at the first place, and the part
+        that slides."""
+        name = f"{self.name}.{i + 1}"
+        far = f"{name} far"
+        start = one.centre.vector
+        if one.is_round:
+            start = add(start, scale(one.beside, cross(one.axis, along)))
+        axis = frame_about(along, perpendicular(along), start)
+        slide = self._joint(f"{name} slide", "P", near, far, axis, is_counted=True)
+        self.slides.append(Term(slide, "s", count))
+        words, place = "has no straight stretch", f"between {self.names[i]} and {self.names[i + 1]}"
+        self.extents.append(Extent(words, place, length, (Term(slide, "s", 1.0),)))
+        return far
+
+    def _stray(
+        self,
+        name: str,
+        word: str,
+        link: str,
+        along: Vector,
+        at: Frame,
+        words: str,
+        length: float | None = None,
+    ) -> str:
+        """A part on a link that gives way where the cable leaves its groove: along a direction at
+        the end of a stretch of a `length` (m), or about it."""
+        own = f"{name} {word}ward"
+        letter, coordinate = ("R", "theta") if length is None else ("P", "s")
+        joint = self._joint(
+            f"{name} {word}", letter, link, own, _about(along, at.o), is_counted=True
+        )
+        self.fleets.append(Fleet(words, Term(joint, coordinate, 1.0), length))
+        return own
+
     def _add_arc(self, i: int) -> None:
         """The arc on the pulley at place `i`."""
-        before, place, after = self.places[i - 1 : i + 2]
-        one, other = _stretch(before, place)[1], _stretch(place, after)[1]
-        turned = of_two("ATAN2", dot(cross(one, other), GROUND.z), dot(one, other))
-        angle = -place.side * turned
+        place = self.places[i]
+        angle = arc(*self.places[i - 1 : i + 2])
         if angle < -tolerances.PARALLEL:
             angle = angle + 2.0 * pi
         whole = 2.0 * pi * place.radius
@@ -310,23 +296,31 @@ class _Cable:
         self.joints[turn.name] = turn = counted(turn)
         self.wound[i].append(Term(turn, "theta", radius))
 
-    def _upright(self, at: Vector) -> Frame:
-        return frame_about(GROUND.z, GROUND.x, at) if self.plane else upright(at)
-
-    def _joint(self, name: str, letter: str, first: str, second: str, frame: Frame) -> Joint:
+    def _joint(
+        self,
+        name: str,
+        letter: str,
+        first: str,
+        second: str,
+        frame: Frame,
+        *,
+        is_counted: bool = False,
+    ) -> Joint:
+        """A joint, and those of its links that are parts of the cable."""
+        for link in (first, second):
+            if link.startswith(f"{self.name}."):
+                self.links.setdefault(link, RigidLink(link))
         kind = joint_type(letter, self.plane)
         parts = parts_of(kind, Halves(frame, frame, (frame, frame)))
         joint = Joint(name, kind.letter, first, second, frame, frame, parts, plane=self.plane)
+        joint = counted(joint) if is_counted else joint
         self.joints[name] = joint
         return joint
 
 
-def _stretch(one: _Place, other: _Place) -> tuple[float, Vector]:
-    """Length of the straight stretch between two places (m), and its direction."""
-    apart = subtract(other.centre.vector, one.centre.vector)
-    # apart = length * along + beside * (to the left of that)
-    beside = one.beside - other.beside
-    square = dot(apart, apart)
-    length = square_root(square - beside * beside)
-    across = scale(-beside / square, cross(GROUND.z, apart))
-    return length, add(scale(length / square, apart), across)
+def _upright(at: Vector) -> Frame:
+    return frame_about(GROUND.z, GROUND.x, at)
+
+
+def _about(axis: Vector, at: Vector) -> Frame:
+    return frame_about(axis, perpendicular(axis), at)

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint Extent Follower InputConstraint Mesh "
+        "constraint": "Constraint DistanceConstraint Extent Fleet Follower InputConstraint Mesh "
         "PairConstraint Relation Tension Term",
         "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
         "smooth_curve",

@@ -95,6 +95,16 @@ class Extent(NamedTuple):
     most: float | None = None
 
 
+class Fleet(NamedTuple):
+    """How a stretch of a cable leaves the plane of a pulley or its line: a `term` that is an angle
+    (rad), or over the `length` of the stretch (m) the tangent of one; else the cable does what
+    `words` say."""
+
+    words: str
+    term: Term
+    length: float | None = None
+
+
 class Follower(NamedTuple):
     """What a disc cam moves: it `oscillates` about a pivot or slides, with a `contact` by a knife's
     edge, a roller of a `radius` or a flat face. Lengths in m: the cam's base circle; by how much a
@@ -114,8 +124,8 @@ class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
     strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing. `extents`: those of a cable. One that a cam keeps may
-    know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
+    other with (N) when it transmits nothing. `extents` and `fleets`: those of a cable. One that a
+    cam keeps may know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
 
     terms: tuple[Term, ...]
     length: bool
@@ -124,6 +134,7 @@ class Relation(NamedTuple):
     tensions: tuple[tuple[str, Tension], ...] = ()
     pull: tuple[Attached, Attached, float] | None = None
     extents: tuple[Extent, ...] = ()
+    fleets: tuple[Fleet, ...] = ()
     follower: Follower | None = None
     loss: Rubbing | None = None
 

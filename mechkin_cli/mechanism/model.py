@@ -395,7 +395,8 @@ class Mechanism:
     def has_arcs(self) -> bool:
         """Whether cables run over pulleys, which they may leave."""
         relations = self.couplings.values()
-        return any(extent.most is not None for each in relations for extent in each.extents)
+        arcs = any(extent.most is not None for each in relations for extent in each.extents)
+        return arcs or any(each.fleets for each in relations)
 
     @property
     def loops(self) -> int:

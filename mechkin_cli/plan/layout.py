@@ -37,7 +37,7 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Extent, Laws, Relation, Track
+    from mechkin_cli.mechanism import CoordinateLaw, Extent, Fleet, Laws, Relation, Term, Track
     from mechkin_cli.show import Bools, Floats
 
 
@@ -234,11 +234,24 @@ class Layout:
             for extent in relation.extents:
                 value = np.full(states.shape[1], float(extent.drawn))
                 for term in extent.terms:
-                    freedom = term.joint.freedom_number(term.coordinate)
-                    state = states[self.state(self.edge_number[term.joint.name], freedom)]
-                    unit = term.joint.unit_of(term.coordinate, self.length)
-                    value += float(term.factor) * unit * state
+                    value += self._value(term, states)
                 yield name, extent, value
+
+    def fleets(self, states: Floats) -> Iterator[tuple[str, Fleet, Floats]]:
+        """Those of cables, with the coupling's name, and the tangents of their angles at some
+        states (states, places)."""
+        for name, relation in self.mechanism.couplings.items():
+            for fleet in relation.fleets:
+                value = self._value(fleet.term, states)
+                yield name, fleet, value if fleet.length is None else value / float(fleet.length)
+
+    def _value(self, term: Term, states: Floats) -> Floats:
+        """A factor times a coordinate (rad, m) that has a state, at some states."""
+        freedom = term.joint.freedom_number(term.coordinate)
+        state = states[self.state(self.edge_number[term.joint.name], freedom)]
+        unit = term.joint.unit_of(term.coordinate, self.length)
+        value: Floats = float(term.factor) * unit * state
+        return value
 
     def relation_rows(self, relation: Relation, loop: Loop) -> list[RelationRow]:
         """All parts of the joints of a coupling; those that have none of its coordinates come

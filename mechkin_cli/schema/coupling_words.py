@@ -168,6 +168,21 @@ CABLE_KEYS: Final = {
 }
 """Keys of a cable."""
 
+PATH_KEYS: Final = {
+    **dict.fromkeys(
+        ("normal", "direction", "plane"),
+        "the axis of a pulley in space is axis: [0, 1, 0], or that of the joint that it names",
+    ),
+    **dict.fromkeys(
+        ("caster", "swivels", "swivelling", "swiveling", "pan", "free"),
+        "a pulley that turns to where its cable leads has the line about which it does: swivel: "
+        "[0, 0, 1]",
+    ),
+    **dict.fromkeys(("joint", "centre", "center"), "write pulley: A, its R joint or its centre"),
+    **dict.fromkeys(("r", "diameter", "d"), "radius: 50 mm reaches to the middle of the cable"),
+}
+"""Keys of a place of a cable."""
+
 LINEAR_KEYS: Final = dict.fromkeys(
     ("ratio", "joints", "of", "gives", "factors", "factor", "coefficients", "coordinates"),
     "write terms: {A.theta: 1, B.theta: 2}: their sum is constant",

@@ -23,6 +23,7 @@ from mechkin_cli.schema.coupling_words import (
     FUNCTION_KEYS,
     GEAR_KEYS,
     LINEAR_KEYS,
+    PATH_KEYS,
     RACK_KEYS,
     TABLE_KEYS,
 )
@@ -34,6 +35,7 @@ from mechkin_cli.schema.scalars import (
     Coordinate,
     CsvPath,
     Dimensionless,
+    DirectionVector,
     Force,
     JoinedTable,
     Length,
@@ -307,33 +309,53 @@ FollowedCoupling = FunctionCoupling | TableCoupling
 class PathPart(Section):
     """A place that a cable passes: a point, a pulley or a drum."""
 
+    advice: ClassVar[dict[str, str]] = PATH_KEYS
+
     point: Name | None = None
     """A named point, through which the cable runs, or where it ends; left out, a pulley or a
     drum."""
     pulley: Name | None = None
-    """The R joint of a pulley, or a named point that is its centre; the cable runs over it without
-    friction; left out, a point or a drum."""
+    """The R joint of a pulley, or a named point that is its centre; of one that swivels, a point of
+    the line about which it does, level with its centre. The cable runs over it without friction;
+    left out, a point or a drum."""
     drum: Name | None = None
     """The R joint of a drum, its second link, on which the cable is wound and ends; left out, a
     point or a pulley."""
     radius: Length | None = None
     """Of the pulley or drum, to the middle of the cable, which they need; left out, a point."""
     side: Literal["left", "right"] | None = None
-    """On which side of the centre the cable passes, seen along its path, which pulleys and drums
-    need; left out, a point."""
+    """On which side of the centre the cable passes, seen along its path, in space with the axis
+    pointing to the viewer, which pulleys and drums need; left out, a point, or a pulley that
+    swivels."""
+    axis: DirectionVector | None = None
+    """In space, the axis of a pulley whose centre is a named point; left out, that of its joint."""
+    swivel: DirectionVector | None = None
+    """In space, along the line about which a pulley swivels to where its cable leads. On its other
+    side the cable runs along this line, which touches the pulley at the named point; left out, it
+    does not swivel."""
 
     def check(self) -> None:
         """One place, with what it needs."""
         if sum(key is not None for key in (self.point, self.pulley, self.drum)) != 1:
             text = "a place of a cable is a point, a pulley or a drum"
             raise refuse("two-choices", text, "give one of point, pulley and drum")
+        if self.swivel is not None and self.pulley is None:
+            text = "points and drums do not swivel"
+            raise refuse("two-choices", text, "write pulley, or leave out swivel", "swivel")
+        for key in ("side", "axis"):
+            if self.swivel is not None and getattr(self, key) is not None:
+                text = f"a pulley that swivels has no {key}: it turns to where its cable leads"
+                raise refuse("two-choices", text, f"leave out {key}", key)
         for key, value in (("radius", self.radius), ("side", self.side)):
-            if self.point is None and value is None:
-                text = f"a pulley needs its {key}"
-                raise refuse("missing-key", text, "add radius: 50 mm, side: left")
             if self.point is not None and value is not None:
                 text = f"a point has no {key}"
                 raise refuse("two-choices", text, "write pulley instead of point", key)
+            if self.point is None and value is None and (self.swivel is None or key == "radius"):
+                text = f"a pulley needs its {key}"
+                raise refuse("missing-key", text, "add radius: 50 mm, side: left")
+        if self.point is not None and self.axis is not None:
+            text = "a point has no axis"
+            raise refuse("two-choices", text, "write pulley instead of point", "axis")
 
 
 def _as_point(value: Any) -> Any:

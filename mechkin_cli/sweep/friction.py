@@ -21,7 +21,8 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.plan import FORCE_KINDS, Demand, FrictionState, is_lifted
 from mechkin_cli.sweep.rows import RunRows
-from mechkin_cli.units import FORCE, LENGTH, MOMENT, Dimension
+from mechkin_cli.tape import of_two
+from mechkin_cli.units import ANGLE, FORCE, LENGTH, MOMENT, Dimension
 from mechkin_cli.verdict import Status, has_rates
 
 if TYPE_CHECKING:
@@ -170,7 +171,8 @@ def _slack(result: RunRows, lost: Bools) -> Findings:
 
 
 def lifted(result: RunRows) -> list[Diagnostic]:
-    """Warns of rows in which a cable would leave a pulley, which then are slack."""
+    """Warns of rows in which a cable would leave a pulley, which then are slack, or the plane of
+    one."""
     rows, units = result.row_states, result.problem.units
     found = []
     for name, extent, value in result.session.layout.extents(rows.states):
@@ -184,6 +186,18 @@ def lifted(result: RunRows) -> list[Diagnostic]:
             hint = "end the sweep before it, or leave that place out of the cable's path"
             code = Status.slack.label
             found.append(Diagnostic(code, "warning", text, None, measured, "0", hint))
+    for name, fleet, value in result.session.layout.fleets(rows.states):
+        where = rows.reached & (np.abs(value) > tolerances.FLEET)
+        if where.any():
+            rows.status[where & (rows.status == int(Status.ok))] = Status.fleet_angle
+            most = float(of_two("ATAN2", float(np.max(np.abs(value[where]))), 1.0))
+            text = f"{name} {fleet.words} in {_rows(where)}: it is led as if it did not"
+            hint = (
+                "guide it in that plane, or lead it over a pulley that swivels: swivel: [0, 0, 1]"
+            )
+            measured = f"fleet angle {units.text(most, ANGLE)}"
+            code, limit = Status.fleet_angle.label, units.text(tolerances.FLEET, ANGLE)
+            found.append(Diagnostic(code, "warning", text, None, measured, limit, hint))
     return found
 
 

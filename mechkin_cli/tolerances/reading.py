@@ -68,6 +68,11 @@ PARALLEL: Final = 1e-9
 """Sine of the angle below which a reference direction is parallel to the axis it should stand
 square to."""
 
+FLEET: Final = 1e-7
+"""Angle (rad) by which a cable may leave the plane of a pulley, or the line about which one
+swivels: drawings have eight digits, and closure leaves as many. Its length is wrong by half of the
+square, 5e-15."""
+
 LARGEST_FLANK: Final = 1.4
 """Angle (rad) of a thread's flank against the plane square to the axis, some 80 degrees: no thread
 is nearly a cylinder, and the normal load goes with 1 / cos."""

@@ -51,7 +51,13 @@ from mechkin_cli.view.joints import (
 )
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
 from mechkin_cli.view.tracks import DrawnTrack, drawn_track
-from mechkin_cli.view.wheels import belt_line, cable_line, wheel_outlines
+from mechkin_cli.view.wheels import (
+    belt_line,
+    cable_line,
+    cable_pulleys,
+    round_about,
+    wheel_outlines,
+)
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -314,9 +320,6 @@ SURFACE_LINES = 4
 LEAST_PITCH = 2.5
 """From tooth to tooth on the picture: below it wheels are circles."""
 
-_TURNS = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-_ROUND = np.stack([np.cos(_TURNS), np.sin(_TURNS), np.zeros_like(_TURNS)], axis=1)
-
 NEAR_DECIMALS = 6
 """Of how near a thing is, in parts of the mechanism's size: the rest is rounding."""
 
@@ -414,9 +417,8 @@ class _Scene:
         for between in self.settings.between:
             if between.kind == "cylinder":
                 parts += [self._placed(at.link, np.array([at.vector])) for at in between.ends]
-        for cable in self.settings.cables:
-            for at, beside in zip(cable.places, cable.beside, strict=True):
-                parts.append(self._placed(at.link, np.array(at.vector) + abs(beside) * _ROUND))
+        for line, rims in self._ropes:
+            parts += [self.view.seen(each) for each in (line, *rims)]
         for wheel in self._drawn_wheels():
             parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
@@ -511,20 +513,38 @@ class _Scene:
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
 
     def _cables(self) -> Iterator[Mark]:
+        for line, rims in self._ropes:
+            for rim in rims:
+                places = tuple(self._on_picture(one) for one in self.view.seen(rim))
+                yield Stroke(places, "k", 1.2, closed=True, filled=True)
+            yield Stroke(tuple(self._on_picture(one) for one in self.view.seen(line)), "k", 1.2)
+
+    @cached_property
+    def _ropes(self) -> list[tuple[Floats, list[Floats]]]:
+        """The line of each cable, and the rims of its pulleys, in the pose drawn (m)."""
+        found = []
         for cable in self.settings.cables:
-            centres = np.array(
+            own = [self.poses[0, self.links.index(at.link)] for at in cable.places]
+            places = np.array(
+                [carried(pose, at.vector) for pose, at in zip(own, cable.places, strict=True)]
+            )
+            zero = np.zeros(3)
+            axes = np.array(
                 [
-                    carried(self.poses[0, self.links.index(at.link)], at.vector)
-                    for at in cable.places
+                    carried(pose, axis) - carried(pose, zero)
+                    for pose, axis in zip(own, cable.axes, strict=True)
                 ]
             )
-            line = self.view.seen(cable_line(centres, cable.beside))
-            for centre, beside in zip(centres, cable.beside, strict=True):
-                if beside:
-                    rim = centre + abs(beside) * _ROUND
-                    places = tuple(self._on_picture(one) for one in self.view.seen(rim))
-                    yield Stroke(places, "k", 1.2, closed=True, filled=True)
-            yield Stroke(tuple(self._on_picture(one) for one in line), "k", 1.2)
+            shape = cable.beside, axes, cable.swivels
+            rims = [
+                centre + abs(beside) * round_about(axis)
+                for centre, axis, beside in zip(
+                    *cable_pulleys(places, *shape), cable.beside, strict=True
+                )
+                if beside
+            ]
+            found.append((cable_line(places, *shape), rims))
+        return found
 
     @cached_property
     def _tracks(self) -> list[DrawnTrack]:

@@ -295,13 +295,16 @@ class Scene:
         ]
 
     def _cables(self) -> list[Plain]:
-        """Places of cables as drawn on their links, and how far to the left of each they run."""
+        """Places of cables as drawn on their links, how far to the left of each they run, and the
+        axes of their pulleys (`DrawnCable`)."""
         lengths = self._lengths
         return [
             {
                 "links": [self.links.index(at.link) for at in cable.places],
                 "places": [lengths.vector(at.vector) for at in cable.places],
                 "beside": [lengths.one(one) for one in cable.beside],
+                "axes": [list(axis) for axis in cable.axes],
+                "swivels": list(cable.swivels),
             }
             for cable in self.settings.cables
         ]

@@ -4,7 +4,6 @@ the lines of cables."""
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,41 +52,80 @@ def belt_line(belt: DrawnBelt) -> Floats:
     return np.array(belt.line)
 
 
-def cable_line(centres: Floats, beside: Sequence[float]) -> Floats:
+def cable_pulleys(
+    places: Floats, beside: Sequence[float], axes: Floats, swivels: Sequence[int]
+) -> tuple[Floats, Floats]:
+    """Centres (n, 3) and axes of the pulleys at a cable's places (m), and the places of what is
+    none. One that swivels turns about its line to the place after it, or before it where the cable
+    leaves along the line (`DrawnCable`)."""
+    centres, turned = np.array(places), np.array(axes)
+    for k, way in enumerate(swivels):
+        if way:
+            apart = places[k + way] - places[k]
+            out = apart - (apart @ axes[k]) * axes[k]
+            out = out / np.linalg.norm(out)
+            centres[k] = places[k] + abs(beside[k]) * out
+            turned[k] = np.cross(out, axes[k])
+    return centres, turned
+
+
+def cable_line(
+    places: Floats, beside: Sequence[float], axes: Floats, swivels: Sequence[int]
+) -> Floats:
     """The line (n, 3) of a cable past places (m): straight between two, round where it runs
-    `beside` a centre, to the left in the plane z where that is more than 0. Its begin and end on
+    `beside` a centre, to the left against its axis where that is more than 0. Its begin and end on
     drums are where it leaves them."""
+    centres, turned = cable_pulleys(places, beside, axes, swivels)
     line = [centres[0]] if beside[0] == 0.0 else []
-    for k, ((one, other), (near, far)) in enumerate(
-        zip(pairwise(centres), pairwise(beside), strict=True)
-    ):
-        apart = other - one
-        if near == far == 0.0:
-            line.append(other)
-            continue
-        square = float(apart @ apart)
-        by = near - far
-        length = np.sqrt(max(square - by * by, 0.0))
-        along = (length * apart - by * np.array([-apart[1], apart[0], 0.0])) / square
-        left = np.array([-along[1], along[0], 0.0])
-        start, end = one + near * left, other + far * left
-        if k == 0 and near != 0.0:
+    for k in range(len(places) - 1):
+        one, other, near, far = centres[k], centres[k + 1], beside[k], beside[k + 1]
+        # on its line a swivelling pulley is a point
+        if swivels[k] == -1:
+            one, near = places[k], 0.0
+        if swivels[k + 1] == 1:
+            other, far = places[k + 1], 0.0
+        start, end = one, other
+        if not near == far == 0.0:
+            axis = turned[k] if near else turned[k + 1]
+            if near and far and axis @ turned[k + 1] < 0.0:
+                far = -far
+            apart = other - one
+            apart = apart - (apart @ axis) * axis
+            square = float(apart @ apart)
+            by = near - far
+            length = np.sqrt(max(square - by * by, 0.0))
+            along = (length * apart - by * np.cross(axis, apart)) / square
+            left = np.cross(axis, along)
+            start, end = one + near * left, other + far * left
+        if beside[k] != 0.0 and k == 0:
             line.append(start)
-        elif near != 0.0:
-            line += _wound(one, line[-1] - one, start - one, near)
+        elif beside[k] != 0.0:
+            line += _wound(centres[k], line[-1], start, beside[k], turned[k])
         line.append(end)
     return np.array(line)
 
 
-def _wound(centre: Floats, first: Floats, last: Floats, beside: float) -> list[Floats]:
-    """Places on a pulley from one end of the arc to the other: clockwise where it is passed on its
-    left."""
-    sense = -1.0 if beside > 0.0 else 1.0
-    start = np.arctan2(first[1], first[0])
-    turn = sense * (np.arctan2(last[1], last[0]) - start) % (2.0 * np.pi)
+def round_about(axis: Floats) -> Floats:
+    """A circle of radius 1 about an axis (SIDES, 3)."""
+    x = np.eye(3)[np.argmin(np.abs(axis))]
+    x = x - (x @ axis) * axis
+    x = x / np.linalg.norm(x)
+    turns = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
+    found: Floats = np.cos(turns)[:, None] * x + np.sin(turns)[:, None] * np.cross(axis, x)
+    return found
+
+
+def _wound(
+    centre: Floats, first: Floats, last: Floats, beside: float, axis: Floats
+) -> list[Floats]:
+    """Places on a pulley from one end of the arc to the other: clockwise about its axis where it is
+    passed on its left."""
+    x = first - centre
+    y = np.cross(axis, x) * (-1.0 if beside > 0.0 else 1.0)
+    turn = np.arctan2((last - centre) @ y, (last - centre) @ x) % (2.0 * np.pi)
     steps = max(1, int(np.ceil(turn * SIDES / (2.0 * np.pi))))
-    angles = start + sense * turn * np.arange(1, steps + 1) / steps
-    return [centre + abs(beside) * np.array([np.cos(a), np.sin(a), 0.0]) for a in angles]
+    angles = turn * np.arange(1, steps + 1) / steps
+    return [centre + np.cos(a) * x + np.sin(a) * y for a in angles]
 
 
 def _teeth(wheel: DrawnWheel, module: float) -> tuple[Floats, Floats]:

@@ -381,7 +381,7 @@ def test_a_cable_in_space() -> None:
 
 
 WRONG = {
-    "spatial": (SPACE, "p, e,", "p, {pulley: e, radius: 0.1, side: left},", "files of a plane"),
+    "spatial": (SPACE, "p, e,", "p, {pulley: e, radius: 0.1, side: left},", "has no axis"),
     "point": (SPACE, "p, e,", "p, f,", "there is no point f"),
     "side": (OVER, "WAY", "{pulley: o, radius: 0.1}", "a pulley needs its side"),
     "both": (OVER, "WAY", "{pulley: o, point: c, radius: 1, side: left}", "a point, a pulley or"),

@@ -134,6 +134,8 @@ DATA = _object(
             links=_list(INDEX, minItems=2),
             places=_list(VECTOR, minItems=2),
             beside=_list(NUMBER, minItems=2),
+            axes=_list(VECTOR, minItems=2),
+            swivels=_list({"enum": [-1, 0, 1]}, minItems=2),
         )
     ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),

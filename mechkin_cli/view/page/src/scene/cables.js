@@ -9,39 +9,59 @@ const SIDES = 48; // of a full turn
 const ALONG = new Vector3(0, 0, 1);
 const [WIRE, PULLEY] = [0.14, 0.5]; // radius of a cable and half the width of a pulley, in joint sizes
 
-/** The line of a cable past centres, `beside` to the left of each in the plane z, as `cable_line` of the small pictures. */
-export function cableLine(centres, beside) {
-  const line = beside[0] === 0 ? [centres[0]] : [];
-  centres.slice(1).forEach((other, k) => {
-    const [one, near, far] = [centres[k], beside[k], beside[k + 1]];
-    if (near === 0 && far === 0) {
-      line.push(other);
-      return;
-    }
-    const apart = other.clone().sub(one);
-    const square = apart.lengthSq();
-    const by = near - far;
-    const length = Math.sqrt(Math.max(square - by * by, 0));
-    const along = apart.clone().multiplyScalar(length).sub(leftOf(apart).multiplyScalar(by)).divideScalar(square);
-    const start = one.clone().addScaledVector(leftOf(along), near);
-    if (near !== 0) line.push(...(k > 0 ? wound(one, line.at(-1), start, near) : [start]));
-    line.push(other.clone().addScaledVector(leftOf(along), far));
+/** Centres and axes of the pulleys at a cable's places, as `cable_pulleys` of the small pictures: one that swivels turns to
+ * the place after it, or before it where the cable leaves along its line. */
+function pulleys(places, beside, axes, swivels) {
+  const [centres, turned] = [[...places], [...axes]];
+  swivels.forEach((way, k) => {
+    if (way === 0) return;
+    const out = squared(places[k + way].clone().sub(places[k]), axes[k]).normalize();
+    centres[k] = places[k].clone().addScaledVector(out, Math.abs(beside[k]));
+    turned[k] = out.cross(axes[k]);
   });
+  return [centres, turned];
+}
+
+const squared = (each, axis) => each.addScaledVector(axis, -each.dot(axis));
+
+/** The line of a cable past places, `beside` to the left of each against its axis, as `cable_line` of the small pictures. */
+export function cableLine(places, beside, axes, swivels) {
+  const [centres, turned] = pulleys(places, beside, axes, swivels);
+  const line = beside[0] === 0 ? [centres[0]] : [];
+  for (let k = 0; k + 1 < places.length; k++) {
+    let [one, other, near, far] = [centres[k], centres[k + 1], beside[k], beside[k + 1]];
+    // on its line a swivelling pulley is a point
+    if (swivels[k] === -1) [one, near] = [places[k], 0];
+    if (swivels[k + 1] === 1) [other, far] = [places[k + 1], 0];
+    let [start, end] = [one, other];
+    if (near !== 0 || far !== 0) {
+      const axis = near !== 0 ? turned[k] : turned[k + 1];
+      if (near !== 0 && far !== 0 && axis.dot(turned[k + 1]) < 0) far = -far;
+      const apart = squared(other.clone().sub(one), axis);
+      const square = apart.lengthSq();
+      const by = near - far;
+      const length = Math.sqrt(Math.max(square - by * by, 0));
+      const along = apart.clone().multiplyScalar(length).addScaledVector(axis.clone().cross(apart), -by).divideScalar(square);
+      const left = axis.clone().cross(along);
+      start = one.clone().addScaledVector(left, near);
+      end = other.clone().addScaledVector(left, far);
+    }
+    if (beside[k] !== 0) line.push(...(k > 0 ? wound(centres[k], line.at(-1), start, beside[k], turned[k]) : [start]));
+    line.push(end);
+  }
   return line;
 }
 
-const leftOf = ({ x, y }) => new Vector3(-y, x, 0);
-
-/** Places on a pulley: clockwise where it is passed on its left. */
-function wound(centre, first, last, beside) {
-  const sense = beside > 0 ? -1 : 1;
-  const angle = (place) => Math.atan2(place.y - centre.y, place.x - centre.x);
-  const start = angle(first);
-  const turn = (((sense * (angle(last) - start)) % (2 * Math.PI)) + 2 * Math.PI) % (2 * Math.PI);
+/** Places on a pulley: clockwise about its axis where it is passed on its left. */
+function wound(centre, first, last, beside, axis) {
+  const x = first.clone().sub(centre);
+  const y = axis.clone().cross(x).multiplyScalar(beside > 0 ? -1 : 1);
+  const to = last.clone().sub(centre);
+  const turn = (Math.atan2(to.dot(y), to.dot(x)) + 2 * Math.PI) % (2 * Math.PI);
   const steps = Math.max(1, Math.ceil((turn * SIDES) / (2 * Math.PI)));
   return Array.from({ length: steps }, (_, k) => {
-    const now = start + (sense * turn * (k + 1)) / steps;
-    return new Vector3(Math.cos(now), Math.sin(now), 0).multiplyScalar(Math.abs(beside)).add(centre);
+    const now = (turn * (k + 1)) / steps;
+    return centre.clone().addScaledVector(x, Math.cos(now)).addScaledVector(y, Math.sin(now));
   });
 }
 
@@ -69,10 +89,15 @@ export class Cables {
 
   /** Lays them where the mechanism has their places now. */
   show(mechanism) {
-    this.cables.forEach(({ links, places, beside }, n) => {
-      const centres = places.map((place, k) => mechanism.now(links[k], place));
-      this.wheels[n].forEach((wheel, k) => wheel?.position.copy(centres[k]));
-      this.#lay(this.pieces[n], cableLine(centres, beside));
+    this.cables.forEach(({ links, places, beside, axes, swivels }, n) => {
+      const now = places.map((place, k) => mechanism.now(links[k], place));
+      const turned = axes.map((axis, k) => vector(axis).applyQuaternion(mechanism.links[links[k]].quaternion));
+      const [centres, about] = pulleys(now, beside, turned, swivels);
+      this.wheels[n].forEach((wheel, k) => {
+        wheel?.position.copy(centres[k]);
+        wheel?.quaternion.setFromUnitVectors(ALONG, about[k]);
+      });
+      this.#lay(this.pieces[n], cableLine(now, beside, turned, swivels));
     });
   }
 
