@@ -9,6 +9,8 @@ from math import sqrt, tan
 
 import numpy as np
 import pytest
+import yaml
+from couplings.dense import Dense, State
 
 import mechkin_cli as mk
 from mechkin_cli.response import Impact, ResponseResult
@@ -333,3 +335,190 @@ def test_racks_and_nuts_have_play_along_their_slide(
     speed = force * rows["time"][after] / (one + 2.0)
     np.testing.assert_allclose(rows["S.s_dot"][after], way * speed, rtol=1e-10)
     np.testing.assert_allclose(rows["K.force"][after], way * 2.0 * force / (one + 2.0), rtol=1e-10)
+
+
+OFF_CENTRE = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  one: {mass: 1, center_of_mass: [0.02, -0.03], inertia: 0.02}
+  two: {mass: 2, center_of_mass: [0.33, 0.05], inertia: 0.03}
+joints:
+  A: {type: R, links: [ground, one], point: [0, 0]}
+  B: {type: R, links: [ground, two], point: [0.3, 0]}
+"""
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_bearings_of_a_pair_take_the_momentum_of_both_wheels(side: float) -> None:
+    """Six momenta, five conditions: both bearings and the teeth, whose force leans away from either
+    axis by the pressure angle whichever flank bears."""
+    run = (
+        f"{{start: {{A.theta: 0, B.theta: 0, A.theta_dot: {2.0 * side}}}, "
+        "time: {from: 0, to: 0.03, step: 0.001}}"
+    )
+    rows = pair(f"{GEAR}, restitution: 0.4}}", run, OFF_CENTRE)
+    (impact, *_) = impacts_of(rows)
+    assert impact.time == pytest.approx(0.001 / (R1 * 2.0), rel=1e-12)
+    turn = side * 0.001 / R1
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    arms = rotation @ [0.02, -0.03], np.array([0.03, 0.05])
+    mass = np.diag([1.0, 1.0, 0.02, 2.0, 2.0, 0.03])
+    jacobian = np.zeros((5, 6))  # of bearings, and of what flanks part by
+    for k, (x, y) in enumerate(arms):
+        jacobian[2 * k, 3 * k : 3 * k + 3] = 1.0, 0.0, y
+        jacobian[2 * k + 1, 3 * k : 3 * k + 3] = 0.0, 1.0, -x
+    pitch = np.array([0.1, 0.0])
+    lean = side * tan(np.radians(20.0))
+    act = jacobian.T.copy()
+    for k, (arm, sign, axis) in enumerate(zip(arms, (-1.0, 1.0), (0.0, 0.3), strict=True)):
+        lever = pitch - [axis, 0.0] - arm
+        force = sign * np.array([lean, 1.0])  # on this wheel per unit along the second one's way
+        act[3 * k : 3 * k + 3, 4] = [*force, lever[0] * force[1] - lever[1] * force[0]]
+    jacobian[4, [2, 5]] = R1, R2
+    x, y = arms[0]
+    before = np.array([-2.0 * side * y, 2.0 * side * x, 2.0 * side, 0.0, 0.0, 0.0])
+    np.testing.assert_allclose(jacobian[:4] @ before, 0.0, atol=1e-15)
+    system = np.block([[mass, -act], [jacobian, np.zeros((5, 5))]])
+    right = np.concatenate([mass @ before, np.zeros(4), [-0.4 * 0.2 * side]])
+    solved = np.linalg.solve(system, right)
+    cells = cells_of(rows)
+    found = [cells[f"{joint}.impulse.{axis}"][0] for joint in "AB" for axis in "xy"]
+    np.testing.assert_allclose(found, solved[6:10], rtol=1e-10)
+    teeth = [cells[f"K.tooth_impulse.{axis}"][0] for axis in "xy"]
+    np.testing.assert_allclose(teeth, solved[10] * np.array([lean, 1.0]), rtol=1e-10)
+    np.testing.assert_allclose(impact.impulses[0], abs(solved[10]), rtol=1e-10)
+    np.testing.assert_allclose(cells["K.play.impulse"][0], -solved[10], rtol=1e-10)
+    after = (rows["time"] > impact.time) & (rows["time"] < impact.time + 0.002)
+    np.testing.assert_allclose(rows["A.theta_dot"][after], solved[2], rtol=1e-10)
+    np.testing.assert_allclose(rows["B.theta_dot"][after], solved[5], rtol=1e-10)
+
+
+LINKAGE = {
+    "plane": "xy",
+    "links": {
+        "motor": {"mass": 1.0, "center_of_mass": [-0.29, 0.02], "inertia": 0.02},
+        "crank": {"mass": 1.0, "center_of_mass": [0.05, 0.1], "inertia": 0.02},
+        "rod": {"mass": 2.0, "center_of_mass": [0.7, 0.8], "inertia": 0.3},
+        "rocker": {"mass": 1.5, "center_of_mass": [1.25, 0.5], "inertia": 0.15},
+    },
+    "joints": {
+        "M": {"type": "R", "links": ["ground", "motor"], "point": [-0.3, 0.0]},
+        "A": {"type": "R", "links": ["ground", "crank"], "point": [0.0, 0.0]},
+        "B": {"type": "R", "links": ["crank", "rod"], "point": [0.2, 0.4]},
+        "C": {"type": "R", "links": ["rod", "rocker"], "point": [1.2, 1.0]},
+        "D": {"type": "R", "links": ["ground", "rocker"], "point": [1.3, 0.0]},
+    },
+    "loads": [{"type": "gravity", "g": [0.0, -9.81]}],
+}
+TOOTHED = {"K": {"type": "gear", "joints": ["M", "A"], "teeth": [20, 40], "pressure_angle": 0.35}}
+"""A wheel drives the crank of a four-bar."""
+LASHED = {"K": {**TOOTHED["K"], "backlash": 0.002, "restitution": 0}}
+UNITS = {"length": "m", "angle": "rad", "mass": "kg", "force": "N"}
+
+
+def struck(whole: Dense, state: State, e: float) -> tuple[State, np.ndarray, np.ndarray]:
+    """The state behind an impact of the flanks; what teeth give, and what the joint A."""
+    conditions, owners = whole.conditions(state)
+    keep = whole.kept
+    jacobian = np.array([c.by for c in conditions])[:, keep]
+    mass, _ = whole.applied(state, {})
+    mesh = whole.teeth("K", state)
+    assert mesh is not None
+    one, other, at, along, away = mesh
+    act = np.array([c.by for c in conditions]).T
+    row = owners.index("K")
+    # the flank of the impact: the multiplier is the moment on the first wheel, against its turn
+    side = -np.sign(conditions[row].rate)
+    force = along + side * away
+    act[:, row] = whole.pushed(other, force, at, state) + whole.pushed(one, -force, at, state)
+    count, size = len(conditions), len(keep)
+    matrix = np.zeros((size + count, size + count))
+    matrix[:size, :size] = mass[np.ix_(keep, keep)]
+    matrix[:size, size:] = -act[keep]
+    matrix[size:, :size] = jacobian
+    right = np.concatenate([mass[np.ix_(keep, keep)] @ state.rates[keep], np.zeros(count)])
+    right[size + row] = -e * conditions[row].rate
+    solved = np.linalg.solve(matrix, right)
+    rates = np.zeros(whole.width)
+    rates[keep] = solved[:size]
+    bearing = np.zeros(2)
+    for number, owner in enumerate(owners):
+        if owner == "A":
+            bearing += solved[size + number] * whole.wrench("A", act[:, number], state)[:2]
+    after = State(state.centres, state.turns, rates, state.angles)
+    return after, solved[size + row] * force, bearing
+
+
+@pytest.mark.parametrize("e", [0.0, 0.5])
+def test_a_gear_with_play_in_a_linkage_is_that_of_all_its_bodies(e: float) -> None:
+    """Flight, impact, and flight again or contact up to where the flanks would pull, each by the
+    dense equations without the teeth or with them."""
+    loose, whole = Dense(LINKAGE), Dense({**LINKAGE, "couplings": TOOTHED})
+    efforts = {"M.theta": 3.0}
+
+    def play(state: State) -> float:
+        return 0.1 * (state.angles["M"] + 2.0 * state.angles["A"])
+
+    def beyond(state: State) -> float:
+        return abs(play(state)) - 0.001
+
+    times = np.linspace(0.0, 0.1, 11).tolist()
+    start = loose.with_rates(loose.at_home(), {"M.theta": 0.0, "A.theta": 0.0})
+    *flown, met = loose.followed(start, efforts, times, beyond)
+    at = loose.ended
+    assert at is not None
+    after, teeth, bearing = struck(whole, met, e)
+    written = yaml.safe_dump({"format": 1, "units": UNITS, **LINKAGE, "couplings": LASHED})
+    written = written.replace("restitution: 0", f"restitution: {e}")
+    later = np.linspace(at, at + 0.05, 11).tolist()
+    text = (
+        f"{written}\nresponses: {{run: {{start: {{M.theta: 0, A.theta: 0}}, "
+        f"efforts: {{M.theta: 3}}, time: {{values: {[*times[: len(flown)], *later[1:]]}}}}}}}\n"
+    )
+    rows = mk.loads(text).respond("run")
+    impact = impacts_of(rows)[0]
+    assert impact.time == pytest.approx(at, rel=1e-9)
+    cells = cells_of(rows)
+    np.testing.assert_allclose(
+        [cells[f"K.tooth_impulse.{axis}"][0] for axis in "xy"], teeth[:2], rtol=1e-8
+    )
+    np.testing.assert_allclose([cells[f"A.impulse.{axis}"][0] for axis in "xy"], bearing, rtol=1e-8)
+    names = ["M.theta", "A.theta", "B.theta", "D.theta"]
+    solver = loose if e > 0.0 else whole
+    going = solver.followed(after, efforts, later, beyond if e > 0.0 else None)
+    expected = [loose.solved(s, efforts) for s in flown]
+    expected += [solver.solved(s, efforts) for s in going[1:11]]
+    reached = len(expected)
+    assert reached >= len(flown) + 3
+    for row, solved in enumerate(expected[: reached - (e > 0.0)]):
+        for name in names:
+            value, rate, acceleration = solved.coordinates[name]
+            assert rows[name][row] == pytest.approx(value, abs=1e-9)
+            assert rows[f"{name}_dot"][row] == pytest.approx(rate, abs=1e-8)
+            assert rows[f"{name}_ddot"][row] == pytest.approx(acceleration, rel=1e-7, abs=1e-6)
+        np.testing.assert_allclose(
+            rows["A.force"][row], solved.wrenches["A"][:2], rtol=1e-7, atol=1e-6
+        )
+        if e == 0.0 and row >= len(flown):
+            np.testing.assert_allclose(rows["K.tooth_force"][row], solved.teeth["K"][:2], rtol=1e-7)
+    assert np.nanmax(rows["row.energy_error"]) < 1e-10
+
+
+def test_a_smaller_and_smaller_play_comes_to_the_gear() -> None:
+    run = (
+        "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
+        "time: {from: 0, to: 0.1, step: 0.01}}"
+    )
+    tight = pair(f"{GEAR.replace(', backlash: 2 mm', '')}}}", run.replace(", B.theta: 0", ""))
+    off = []
+    for backlash in (1e-3, 1e-4, 1e-5):
+        rows = pair(f"{GEAR.replace('2 mm', f'{backlash!r}')}}}", run)
+        off.append(np.abs(rows["A.theta"] - tight["A.theta"])[2:].max())
+        np.testing.assert_allclose(rows["A.theta_dot"][5:], tight["A.theta_dot"][5:], rtol=1e-9)
+        np.testing.assert_allclose(rows["A.force"][5:], tight["A.force"][5:], rtol=1e-9)
+    # no farther than the play lets the wheel turn
+    assert all(
+        one <= 0.5 * b / R1 * (1.0 + 1e-9) for one, b in zip(off, (1e-3, 1e-4, 1e-5), strict=True)
+    )
