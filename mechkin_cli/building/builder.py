@@ -35,6 +35,7 @@ from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
 from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
+from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
     build_assembly,
     build_follow,
@@ -258,22 +259,30 @@ def build_problem(
     guide_links, guide_joints = point_guides(fields, file.motion, points)
     links = links | guide_links | cable_links
     joints = joints | guide_joints | cable_joints
-    per_row = numbers_per_row(file, joints)
+    plays, flanks = build_plays(fields, file.couplings, couplings, joints)
+    moving_joints = joints | {name: play.terms[-1].joint for name, play in plays.items()}
+    per_row = numbers_per_row(file, moving_joints)
     if motion is None:
-        motion = build_motion(fields, file.motion, joints, per_row)
+        motion = build_motion(fields, file.motion, moving_joints, per_row)
     assembly = build_assembly(fields, file.assembly, joints)
-    limits = build_limits(fields, file, joints, couplings)
+    limits = (*build_limits(fields, file, joints, couplings), *flanks.values())
     name = file.name or fields.document.file
     drives = build_drives(fields, file.actuators, file.motion, joints, motion)
     mechanism = Mechanism(
         name, links, joints, points, directions, drives=drives, plane=fields.plane
     )
     mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
+    loose = loose_in_sweep(plays, motion)
+    if motion.inputs:
+        note_tight(fields, plays, loose)
+    mechanism = with_plays(mechanism, loose)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     problem = replace(problem, limits=limits)
-    # rows of responses have a time
+    # rows of responses have a time, and all plays
     swept = problem.quantities()
     timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
+    if plays and file.responses:
+        timed = {**replace(problem, mechanism=with_plays(mechanism, plays)).quantities(), **timed}
     quantities = {name: swept if name == SWEEP else timed for name in runs_of(file)}
     loads = LoadBuilder(fields, links, joints, points, quantities)
     loads.add_all(file.loads)
@@ -284,7 +293,8 @@ def build_problem(
         return problem
     from mechkin_cli.building.responses import build_responses
 
-    args = (fields, file.responses, problem, loads, per_row, moving)
+    free = replace(problem, mechanism=with_plays(mechanism, plays))
+    args = (fields, file.responses, free, loads, per_row, moving)
     return replace(problem, responses=build_responses(*args))
 
 

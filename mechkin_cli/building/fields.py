@@ -253,7 +253,7 @@ class Fields:
         values: list[float] = []
         dimensions: list[Dimension] = []
         for i, text in enumerate(texts):
-            value, dimension = self._component((*path, i), text)
+            value, dimension = self.of_any_dimension((*path, i), text)
             values.append(value)
             if literal(text) is None or value != 0.0:
                 dimensions.append(dimension)
@@ -268,7 +268,8 @@ class Fields:
             return (1.0, 0.0, 0.0)
         return unit(vector)
 
-    def _component(self, path: Path, text: str) -> tuple[float, Dimension]:
+    def of_any_dimension(self, path: Path, text: str) -> tuple[float, Dimension]:
+        """The SI value of a scalar field and its dimension; a bare number has none."""
         bare = number_of(text)
         if bare is not None:
             return bare, DIMENSIONLESS

@@ -259,7 +259,7 @@ def _loops(analysis: Analysis) -> str:
     ]
     closed = ", ".join(dict.fromkeys((*labels, *lifts)))
     coupled = ", ".join(
-        f"cable {c.name}" if mechanism.couplings[c.name].extents else c.name
+        f"cable {c.owner}" if mechanism.couplings[c.owner].extents else c.owner
         for c in graph.closings
         if c.terms
     )

@@ -59,8 +59,8 @@ __getattr__, __dir__ = lazy_names(
         "ORDERS Parameter",
         "pair_type": "Attached Condition Coordinate Drawing DrawnDirection ELEMENTARY FIRST "
         "FrictionLaw JointType Loss Motion Part Rubbing SECOND Screw rubbing_words screws_at",
-        "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES dimension_of guide_letter is_angle joint_type "
-        "seat_letter",
+        "pairs": "FREE JOINT_TYPES PLANE_JOINT_TYPES PLAY PLAY_ANGLE dimension_of guide_letter "
+        "is_angle joint_type seat_letter",
         "problem": "Laws Problem differentiation law_value quantities_read read_by "
         "response_problem undefined_laws",
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "

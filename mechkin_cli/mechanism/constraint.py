@@ -139,6 +139,11 @@ class Relation(NamedTuple):
     loss: Rubbing | None = None
 
     @property
+    def has_play(self) -> bool:
+        """Whether the last of its terms is the play of its flanks."""
+        return self.terms[-1].joint.is_play
+
+    @property
     def has_teeth(self) -> bool:
         """Whether the force of its mesh is one."""
         return self.mesh is not None and self.mesh.other is None
@@ -170,6 +175,11 @@ class Constraint:
     def name(self) -> str:
         """Its joint's name."""
         return self.joint.name
+
+    @property
+    def owner(self) -> str:
+        """What it is called in the file, where its quantities go by that."""
+        return self.name
 
     @property
     def joints(self) -> tuple[str, ...]:
@@ -540,6 +550,11 @@ class CouplingConstraint(Constraint):
 
     @property
     def name(self) -> str:
+        """That in the file; with play, whose joint has that name, another one."""
+        return f"{self.own_name} with play" if self.relation.has_play else self.own_name
+
+    @property
+    def owner(self) -> str:
         """That in the file."""
         return self.own_name
 
@@ -573,7 +588,7 @@ class CouplingConstraint(Constraint):
     def words(self) -> str:
         """Its coordinates, or that it is a cable."""
         if self.relation.extents:
-            return f"the length of {self.name}"
+            return f"the length of {self.owner}"
         names = dict.fromkeys(f"{term.joint.name}.{term.coordinate}" for term in self.terms)
         return f"a relation between {', '.join(names)}"
 

@@ -14,7 +14,7 @@ from mechkin_cli.mechanism.pair_type import (
     Part,
     Screw,
 )
-from mechkin_cli.mechanism.pairs import JOINT_TYPES, joint_type
+from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLAY, PLAY_ANGLE, joint_type
 from mechkin_cli.mechanism.track import Track
 from mechkin_cli.mechanism.vectors import (
     Frame,
@@ -82,6 +82,11 @@ class Joint(NamedTuple):
     def is_telescope(self) -> bool:
         """Whether it is the slide of a cylinder, whose links are its own."""
         return is_written(self.name) and not (is_written(self.first) or is_written(self.second))
+
+    @property
+    def is_play(self) -> bool:
+        """Whether it is that of a coupling's flanks, no joint of the machine."""
+        return self.letter in (PLAY, PLAY_ANGLE)
 
     @property
     def point(self) -> Attached:

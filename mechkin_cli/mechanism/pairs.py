@@ -296,6 +296,17 @@ FREE = JointType(
 )
 """The pair without constraints by which the solver hangs a body that no joint leads to."""
 
+PLAY, PLAY_ANGLE = "play", "lash"
+"""The play of a coupling as a coordinate: a length, or an angle."""
+
+_PLAYS = {
+    PLAY: JointType(PLAY, (PairStep("P"),), (_length(PLAY, 0),), Drawing("weld"), point_on=None),
+    PLAY_ANGLE: JointType(
+        PLAY_ANGLE, (PairStep("R"),), (_angle(PLAY_ANGLE, 0),), Drawing("weld"), point_on=None
+    ),
+}
+"""The pairs along which the flanks of couplings have play."""
+
 
 _POINT = Condition("lengths", "xyz")
 _ACROSS = Condition("lengths", "xy")
@@ -351,6 +362,8 @@ def joint_type(letter: str, plane: bool = False, counted: bool = False) -> Joint
     kind, _, rest = letter.partition(" ")
     if letter in CARRIED_TYPES:
         return CARRIED_TYPES[letter]
+    if letter in _PLAYS:
+        return replace(_PLAYS[letter], space=3) if plane else _PLAYS[letter]
     if letter in _AS_COUNTED:
         return joint_type(_AS_COUNTED[letter], plane, counted=True)
     if kind == "along":
@@ -391,5 +404,5 @@ def is_angle(coordinate: str) -> bool:
 
 @cache
 def _dimensions() -> dict[str, Dimension]:
-    entries = (*_TABLE, *_IN_PLANE, *CARRIED_TYPES.values())
+    entries = (*_TABLE, *_IN_PLANE, *CARRIED_TYPES.values(), *_PLAYS.values())
     return {c.name: c.dimension for entry in entries for c in entry.named}

@@ -145,7 +145,7 @@ def _of_coordinates(mechanism: Mechanism) -> Iterator[Wanted]:
 
 def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
     for joint in mechanism.joints.values():
-        if not is_written(joint.name):
+        if not is_written(joint.name) or joint.is_play:
             continue
         if joint.type.has_point:
             yield Wanted(f"{joint.name}.point", "joint_point", joint.name, LENGTH, True)
@@ -183,7 +183,7 @@ def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
     for name, relation in mechanism.couplings.items():
         places: dict[tuple[Kind, Dimension], str] = {}
         for term in relation.terms:
-            if not is_written(term.joint.name):
+            if not is_written(term.joint.name) or term.joint.is_play:
                 continue
             angle = is_angle(term.coordinate)
             what: tuple[Kind, Dimension] = (

@@ -114,7 +114,7 @@ class Frame(NamedTuple):
         return Frame(self.x, scale(-1.0, self.y), scale(-1.0, self.z), self.o)
 
 
-GROUND = Frame((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), ZERO)
+GROUND: Frame = Frame((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), ZERO)
 
 
 def upright(point: Vector) -> Frame:

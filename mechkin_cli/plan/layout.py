@@ -158,7 +158,13 @@ class Layout:
         """The kernel's number of a joint: k of its last part for a tree joint, -1-c for a closing
         joint."""
         tree = {e.joint.name: self.link_number[e.child] for e in self.graph.edges}
-        return tree | {c.name: -1 - k for k, c in enumerate(self.graph.closings)}
+        closings = enumerate(self.graph.closings)
+        return tree | {c.name: -1 - k for k, c in closings if not c.terms}
+
+    @cached_property
+    def coupling_number(self) -> dict[str, int]:
+        """The closing number of each coupling."""
+        return {c.owner: k for k, c in enumerate(self.graph.closings) if c.terms}
 
     @cached_property
     def hung_number(self) -> dict[str, int]:
@@ -168,9 +174,14 @@ class Layout:
 
     @cached_property
     def place_number(self) -> dict[str, int]:
-        """Number of the place in the kernel of each joint, and of each coupling that rubs."""
+        """Number of the place in the kernel of each joint."""
+        return {name: k for k, name in enumerate(self.mechanism.joints)}
+
+    @cached_property
+    def loss_number(self) -> dict[str, int]:
+        """Number of the place in the kernel of each coupling that rubs."""
         rubbing = (one.joint for one in self.mechanism.frictions if one.loss is not None)
-        return {name: k for k, name in enumerate((*self.mechanism.joints, *rubbing))}
+        return {name: k for k, name in enumerate(rubbing, start=len(self.mechanism.joints))}
 
     @cached_property
     def axis_number(self) -> dict[tuple[str, str], int]:

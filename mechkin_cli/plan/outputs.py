@@ -234,7 +234,7 @@ class OutputPlan:
     def _coupling(self, wanted: Wanted) -> int:
         """What a coupling applies along one of its coordinates, or by its teeth."""
         layout = self.layout
-        number = next(k for k, c in enumerate(layout.graph.closings) if c.name == wanted.owner)
+        number = layout.coupling_number[wanted.owner]
         if wanted.kind == "tooth_force":
             return self._output(OutputCode.MESH_FORCE, number, layout.length)
         if wanted.kind == "tension":

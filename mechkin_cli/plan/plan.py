@@ -78,7 +78,7 @@ def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
     along, turns = FreeCode.ALONG, loss.turns
     yield record(
         "add_friction",
-        layout.place_number[rubbing.joint],
+        layout.loss_number[rubbing.joint],
         along if turns else NO_MOTION,
         NO_MOTION if turns else along,
         layout.link_number[loss.carrier],
@@ -256,7 +256,7 @@ def _closing(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[Pla
 
 
 def _relation(layout: Layout, constraint: Constraint, loop: Loop) -> Iterator[PlanRecord]:
-    relation = layout.mechanism.couplings[constraint.name]
+    relation = layout.mechanism.couplings[constraint.owner]
     rows = layout.relation_rows(relation, loop)
     total = relation.total / layout.length if relation.length else relation.total
     places = [(row.part, row.sign, row.freedom, row.axis, row.function) for row in rows]
@@ -312,7 +312,7 @@ def _places(layout: Layout) -> Iterator[PlanRecord]:
             continue
         yield record(
             "add_place",
-            layout.joint_reference[rubbing.joint],
+            -1 - layout.coupling_number[rubbing.joint],
             *(layout.link_number[link] for link in (loss.first, loss.second, loss.carrier)),
             layout.point(Attached(loss.carrier, loss.point)),
             1.0,

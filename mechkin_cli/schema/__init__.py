@@ -33,7 +33,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "base": "fields_of section_of",
-        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling FollowerSection "
+        "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling Flanks FollowerSection "
         "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
         "TableCoupling",
         "curves": "Curve Surface",

@@ -80,14 +80,20 @@ _LOSSES = (
     "write efficiency: 0.9, the share of the power that comes out; friction of bearings is a load "
     "at their joints"
 )
+_PLAY = (
+    "the play of flanks is backlash: 0.1 mm along the pitch circle, or an angle of the first "
+    "joint; restitution: 0.4 beside it lets them rebound"
+)
+_OF_FLANKS: Final = {
+    **dict.fromkeys(("play", "lash", "clearance", "slack", "gap", "lost_motion"), _PLAY),
+    **dict.fromkeys(("bounce", "rebound", "impact", "e"), _PLAY),
+}
 _OF_JOINTS: Final = {
     **dict.fromkeys(("wheels", "gears", "pulleys", "between", "links", "bodies"), _JOINTS),
     **dict.fromkeys(("axes", "shafts", "a", "b", "first", "second", "from", "to"), _JOINTS),
     **dict.fromkeys(("input", "output", "driver", "driven", "pinion", "wheel", "joint"), _JOINTS),
     **dict.fromkeys(("efficiency", "eta", "friction", "losses"), _LOSSES),
-    **dict.fromkeys(
-        ("backlash", "play", "clearance", "stiffness"), "teeth and belts have no play and no give"
-    ),
+    "stiffness": "teeth and belts have no give",
     **dict.fromkeys(
         ("carrier", "arm", "frame", "housing"),
         "the carrier is the link that both joints have; leave it out",
@@ -96,6 +102,7 @@ _OF_JOINTS: Final = {
 
 GEAR_KEYS: Final = {
     **_OF_JOINTS,
+    **_OF_FLANKS,
     **dict.fromkeys(("ratio", "gear_ratio", "transmission", "i", "n"), _TEETH),
     **dict.fromkeys(("z", "number_of_teeth", "tooth_numbers", "tooth", "zs"), _TEETH),
     **dict.fromkeys(("radius", "r"), "radii: [20 mm, 40 mm] has both pitch radii"),
@@ -132,6 +139,10 @@ RACK_KEYS: Final = {
 BELT_KEYS: Final = {
     **_OF_JOINTS,
     **dict.fromkeys(
+        ("backlash", "restitution", "play", "clearance", "slack"),
+        "a belt has no play: its slack strand gives way; a chain has backlash: 5 mm",
+    ),
+    **dict.fromkeys(
         ("diameter", "diameters", "d", "radius", "r", "ratio"),
         "radii: [30 mm, 50 mm] reach to the middle of the belt, in the order of the joints",
     ),
@@ -143,6 +154,7 @@ BELT_KEYS: Final = {
 
 CHAIN_KEYS: Final = {
     **BELT_KEYS,
+    **_OF_FLANKS,
     **dict.fromkeys(
         ("radii", "diameters", "ratio", "z"), "write teeth: [17, 38] and pitch: 12.7 mm"
     ),
@@ -183,11 +195,17 @@ PATH_KEYS: Final = {
 }
 """Keys of a place of a cable."""
 
-LINEAR_KEYS: Final = dict.fromkeys(
-    ("ratio", "joints", "of", "gives", "factors", "factor", "coefficients", "coordinates"),
-    "write terms: {A.theta: 1, B.theta: 2}: their sum is constant",
-)
+LINEAR_KEYS: Final = {
+    **_OF_FLANKS,
+    **dict.fromkeys(
+        ("ratio", "joints", "of", "gives", "factors", "factor", "coefficients", "coordinates"),
+        "write terms: {A.theta: 1, B.theta: 2}: their sum is constant",
+    ),
+}
 """Keys of a linear coupling."""
+
+SCREW_KEYS: Final = _OF_FLANKS
+"""Keys of a screw."""
 
 FUNCTION_KEYS: Final = {
     **dict.fromkeys(

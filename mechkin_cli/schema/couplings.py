@@ -25,6 +25,7 @@ from mechkin_cli.schema.coupling_words import (
     LINEAR_KEYS,
     PATH_KEYS,
     RACK_KEYS,
+    SCREW_KEYS,
     TABLE_KEYS,
 )
 from mechkin_cli.schema.motion import LAWS, Law, law_tag
@@ -60,7 +61,25 @@ TwoJoints = Annotated[
 ]
 
 
-class LinearCoupling(Section):
+class Flanks(Section):
+    """Two flanks that bear by turns, with play between them or without."""
+
+    type: str
+    backlash: AngleOrLength | None = None
+    """Play between the flanks: a length along the pitch circle, along the rack or the nut, or an
+    angle of the first joint; of coordinates that of the first one. Left out, none."""
+    restitution: Dimensionless | None = None
+    """Part of its rate, 0 to 1, with which the play rebounds in a response where flanks meet; left
+    out, 0: they stay together until what is between them pulls."""
+
+    def check(self) -> None:
+        """Flanks meet where they have play."""
+        if self.restitution is not None and self.backlash is None:
+            text = "flanks without play do not part, nor do they meet"
+            raise refuse("missing-key", text, "add backlash: 0.1 mm", "restitution")
+
+
+class LinearCoupling(Flanks):
     """The sum of some coordinates, each with its factor, is constant."""
 
     advice: ClassVar[dict[str, str]] = LINEAR_KEYS
@@ -77,6 +96,7 @@ class LinearCoupling(Section):
         if len(self.terms) < 2:
             text = "a coupling is between two coordinates or more"
             raise refuse("too-few-terms", text, "name another coordinate with its factor", "terms")
+        super().check()
 
 
 CoordinateLaw = Annotated[Law, by_word("law", LAWS, law_tag)]
@@ -177,7 +197,7 @@ class TableCoupling(JoinedTable):
             raise refuse("linear-law", text, "write interpolation: monotone", "interpolation")
 
 
-class Toothed(Section):
+class Toothed(Flanks):
     """Teeth that push on each other along their flanks."""
 
     pressure_angle: Angle | None = None
@@ -197,6 +217,7 @@ class Toothed(Section):
         if self.ideal and self.pressure_angle is not None:
             text = "an ideal coupling has no teeth that push"
             raise refuse("two-choices", text, "leave out one of the two", "pressure_angle")
+        super().check()
 
 
 class GearCoupling(Toothed):
@@ -277,7 +298,7 @@ class BeltCoupling(Strands):
     """Whether the strands cross, so that the pulleys turn opposite ways; left out, no."""
 
 
-class ChainCoupling(Strands):
+class ChainCoupling(Strands, Flanks):
     """A chain over two wheels."""
 
     advice: ClassVar[dict[str, str]] = CHAIN_KEYS
@@ -289,8 +310,10 @@ class ChainCoupling(Strands):
     """Distance of the chain's pins."""
 
 
-class ScrewCoupling(Section):
+class ScrewCoupling(Flanks):
     """A screw and its nut, one of which turns and the other slides, on joints of their own."""
+
+    advice: ClassVar[dict[str, str]] = SCREW_KEYS
 
     type: Literal["screw"]
     joints: TwoJoints

@@ -233,6 +233,13 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("Cylinder", "stroke"): ["0.6 m", "1 m"],
     ("Cylinder", "to"): "Q",
     ("LimitSection", "restitution"): 0.6,
+    **{
+        (kind, key): value
+        for kind in (
+            *("GearCoupling", "RackCoupling", "ChainCoupling", "ScrewCoupling", "LinearCoupling"),
+        )
+        for key, value in (("backlash", "0.1 mm"), ("restitution", 0.4))
+    },
     ("Crossing", "value"): "O1.theta - O2.theta",
     **EXAMPLES,
     ("DeadCentre", "dead_centre"): "O4.theta",

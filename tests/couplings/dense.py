@@ -16,7 +16,7 @@ pitch point. In a plane bodies keep three of six coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -583,6 +583,17 @@ class Dense:
     ) -> list[Solved]:
         """The rows of a response from home with given rates."""
         start = self.with_rates(self.at_home(), rates)
+        return [self.solved(state, efforts) for state in self.followed(start, efforts, times)]
+
+    def followed(
+        self,
+        start: State,
+        efforts: Mapping[str, float],
+        times: Sequence[float],
+        until: Callable[[State], float] | None = None,
+    ) -> list[State]:
+        """The states at some times of a motion that begins at the first of them; with `until`, up
+        to where that becomes zero from below, the last state being that."""
         joints = [name.partition(".")[0] for name in self.names() if name.endswith(".theta")]
         count = len(self.links)
 
@@ -606,7 +617,14 @@ class Dense:
             found = self.solved(state, efforts, full=False).accelerations
             return np.concatenate([rates[:, :3].ravel(), turning.ravel(), found, angles])
 
+        def end(_: float, y: Floats) -> float:
+            return -1.0 if until is None else until(unpacked(y))
+
+        end.terminal, end.direction = True, 1.0  # type: ignore[attr-defined]
         span = (times[0], times[-1])
-        answer = solve_ivp(slope, span, packed(start), "DOP853", times, rtol=1e-12, atol=1e-13)
+        answer = solve_ivp(
+            slope, span, packed(start), "DOP853", times, events=end, rtol=1e-12, atol=1e-13
+        )
         assert answer.success
-        return [self.solved(unpacked(y), efforts) for y in answer.y.T]
+        self.ended = float(answer.t_events[0][0]) if answer.t_events[0].size else None
+        return [unpacked(y) for y in (*answer.y.T, *answer.y_events[0][:1])]

@@ -276,8 +276,9 @@ WITHOUT = {
     ("Column", "value"),
     *(("ShapeOfLink", key) for key in ("axis", "points", "radius", "width")),
     ("PartBetween", "radius"),
-    # in other units: tests/couplings/test_metamorphic.py
+    # in other units: tests/couplings/test_metamorphic.py and test_play.py
     *(("LinearCoupling", key) for key in ("terms", "sum")),
+    ("Flanks", "backlash"),
     *(("GearCoupling", key) for key in ("radii", "module")),
     *(("Toothed", key) for key in ("pressure_angle", "helix")),
     ("RackCoupling", "radius"),

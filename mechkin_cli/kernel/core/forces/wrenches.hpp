@@ -246,22 +246,29 @@ inline Vec3 mesh_force(const Workspace& w, const ClosingJoint& j, Pack multiplie
 }
 inline void transmit_by_force(const Plan& p, Workspace& w, int c, Pack multiplier) {
   const ClosingJoint& j = p.closing[c];
-  w.reaction[c] = {zero3(), {multiplier, Pack(0.0), Pack(0.0)}};
   Wrench r = wrench_by(w, j, j.on_first, multiplier);
   if (j.is_pair_of_forces) r += wrench_by(w, j, j.on_second, multiplier);
   for (int l = j.path_begin; l < j.path_end; ++l) w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * r;
 }
 
-// A relation acts along its coordinates, on each joint's second link and opposite on its first. Its multiplier stands where
-// a closing joint's wrench does.
-inline void transmit_along_coordinates(const Plan& p, Workspace& w, int c, Pack multiplier) {
+inline bool is_on_way(const Plan& p, const ClosingJoint& j, int joint) {
+  for (int l = j.path_begin; l < j.path_end; ++l)
+    if (p.loop[l].joint == joint) return true;
+  return false;
+}
+
+// A relation acts along its coordinates, on each joint's second link and opposite on its first, but for those that the way
+// of its force passes. Its multiplier stands where a closing joint's wrench does.
+inline void transmit(const Plan& p, Workspace& w, int c, Pack multiplier) {
   const ClosingJoint& j = p.closing[c];
   w.reaction[c] = {zero3(), {multiplier, Pack(0.0), Pack(0.0)}};
   for (int l = j.loop_begin; l < j.loop_end; ++l) {
     const LoopEntry& e = p.loop[l];
+    if (is_on_way(p, j, e.joint)) continue;
     const Term& t = p.term[e.term];
     w.carried[e.joint] -= Pack(e.sign) * along_coordinate(p, w, t.axis, term_slope(p, w.curve, e.term) * multiplier);
   }
+  if (j.path_end) transmit_by_force(p, w, c, multiplier);
 }
 
 // The wrenches of a block's closing joints from the multipliers of its equations, and into the sums.
@@ -270,7 +277,7 @@ inline void take_closing_wrenches(const Plan& p, Workspace& w, int index, const 
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     if (is_relation(j.type)) {
-      j.path_end ? transmit_by_force(p, w, c, multiplier[j.row]) : transmit_along_coordinates(p, w, c, multiplier[j.row]);
+      transmit(p, w, c, multiplier[j.row]);
       continue;
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
