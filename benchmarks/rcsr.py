@@ -8,6 +8,7 @@ here as metres, times a scale.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 RATE = 0.1
@@ -84,6 +85,19 @@ loads:
 """
 
 
+MOTOR = """\
+  motor: {mass: 1, center_of_mass: [-s1, 0.9 m, 0], inertia: {xx: .01, yy: .01, zz: .01}}
+"""
+"""A wheel beside the crank, among the links."""
+
+WHEELS = """\
+couplings: {G: {type: gear, joints: [M, O1], teeth: [20, 40], pressure_angle: 20 deg}}
+joints:
+  M: {type: R, links: [ground, motor], point: [-s1, 0.9, 0], axis: [-1, 0, 0]}
+"""
+"""How it turns the crank, with the head of the joints."""
+
+
 @dataclass(frozen=True)
 class Dimensions:
     """Lengths in m, tensors in kg m^2 and the torque in N m."""
@@ -141,3 +155,13 @@ def dimensions(scale: float = 1.0) -> Dimensions:
 
 def _entries(tensor: dict[str, float]) -> str:
     return ", ".join(f"{name}: {value!r}" for name, value in tensor.items())
+
+
+def behind_wheels(motion: str) -> str:
+    """The file of RCSR at scale 1 whose crank a motor turns through wheels of 20 and 40 teeth;
+    `motion` gives the values of M.theta, -2 times those of O1.theta."""
+    law = f"rate: {-2.0 * RATE!r} rad/s, acceleration: {-2.0 * ACCELERATION!r} rad/s^2"
+    text = dimensions().text("")
+    text = re.sub(r"O1\.theta: \{.*\}", f"M.theta: {{{motion}, {law}}}", text)
+    text = text.replace("links:\n", f"links:\n{MOTOR}", 1)
+    return text.replace("joints:\n", WHEELS, 1)

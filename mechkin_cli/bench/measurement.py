@@ -21,7 +21,8 @@ Key = TypeVar("Key", bound=Hashable)
 
 ROUNDS = 41
 SHORTEST = 2e-3
-"""A call that takes less (s) is repeated within a round until it takes as long."""
+"""A call that takes less (s) is repeated within a round until it takes as long, unless another
+limit is asked for."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,11 @@ def in_turns(
     calls: Mapping[Key, Callable[[], object]],
     rounds: int = ROUNDS,
     clock: Callable[[], float] = thread_time,
+    shortest: float = SHORTEST,
 ) -> dict[Key, Timing]:
-    """Times the calls one after the other, `rounds` times over, after one round to warm up."""
-    repeats = {key: _repeats(call, clock) for key, call in calls.items()}
+    """Times the calls one after the other, `rounds` times over, after one round to warm up; a call
+    that takes less than `shortest` (s) is repeated within a round."""
+    repeats = {key: _repeats(call, clock, shortest) for key, call in calls.items()}
     seconds: dict[Key, list[float]] = {key: [] for key in calls}
     enabled = gc.isenabled()
     gc.disable()
@@ -74,9 +77,9 @@ def _once(call: Callable[[], object], repeats: int, clock: Callable[[], float]) 
     return (clock() - start) / repeats
 
 
-def _repeats(call: Callable[[], object], clock: Callable[[], float]) -> int:
+def _repeats(call: Callable[[], object], clock: Callable[[], float], shortest: float) -> int:
     call()
-    return max(1, round(SHORTEST / max(_once(call, 1, clock), 1e-9)))
+    return max(1, round(shortest / max(_once(call, 1, clock), 1e-9)))
 
 
 ZERO = 1e-18

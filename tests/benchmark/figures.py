@@ -2,8 +2,9 @@
 
     python tests/benchmark/figures.py [NAME ...] [--rounds N] [--rows N] [--json]
 
-NAMEs: platform, million, verdicts, closing, threads, chains; without any, all of them. Times are by
-the clock on the wall, as threads and files count; run it on an otherwise idle machine.
+NAMEs: platform, million, verdicts, closing, wheels, threads, chains; without any, all of
+them. Times are by the clock on the wall, as threads and files count, those of `wheels` by the
+thread's; run it on an otherwise idle machine.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import argparse
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +26,7 @@ sys.path.append(str(HERE.parents[1]))
 from benchmark.chains import chain_text
 from benchmark.kernel_case import (
     BATCH,
+    SWEEP_ROWS,
     KernelCase,
     PlannedRun,
     degree_rows,
@@ -34,9 +36,13 @@ from benchmark.process import command
 from benchmark.specimens import sevenr_specimen
 
 import mechkin_cli as mk
+from benchmarks import rcsr
 from mechkin_cli.bench.measurement import Timing, in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
+from mechkin_cli.bench.scene import ALONE
 from mechkin_cli.plan.records import Demand
+from mechkin_cli.session import Ask
+from mechkin_cli.sweep import analyze, at_once, follow_rows
 from mechkin_cli.tables.json import json_text
 
 MECHANISMS = HERE.parents[1] / "mechanisms"
@@ -204,6 +210,49 @@ def closing(_: int, __: int) -> ReportTable:
     return ReportTable("closing", "general 7R, columns of its closing joint", COLUMNS, rows, ())
 
 
+def wheels(rounds: int, _: int) -> ReportTable:
+    """RCSR whose crank a motor turns through wheels over RCSR: the sweep, its kernel alone (it
+    follows and runs), and its run alone."""
+    texts = (
+        rcsr.dimensions().text(f"from: 150 deg, to: 202 deg, count: {SWEEP_ROWS}"),
+        rcsr.behind_wheels(f"from: -300 deg, to: -404 deg, count: {SWEEP_ROWS}"),
+    )
+    rows = []
+    motion = [f"{name}{order}" for order in ("", "_dot", "_ddot") for name in rcsr.COORDINATES]
+    asked = {"position": rcsr.COORDINATES, "motion": motion, "all": [*motion, *rcsr.WRENCHES]}
+    for level, names in asked.items():
+        alone, behind = (sweep_calls(mk.loads(text), names) for text in texts)
+        for part in alone:
+            # single calls in turns, so that what else the machine does meets both
+            pair = {"alone": alone[part], "behind": behind[part]}
+            times = in_turns(pair, 100 * rounds, shortest=0.0)
+            ratio = times["behind"].ratio(times["alone"])
+            spread = times["behind"].spread
+            rows.append(row(f"{level}: {part}", ratio, "times RCSR", spread, 1.15))
+    return ReportTable("wheels", f"RCSR behind wheels, {SWEEP_ROWS} rows", COLUMNS, rows, ())
+
+
+def sweep_calls(model: mk.Model, names: Sequence[str]) -> dict[str, Callable[[], object]]:
+    """A sweep on one thread, what it lets the kernel follow and run, and the run alone."""
+    result = analyze(model.session.packed(ALONE), names)
+    session, known = result.session, model.problem.quantities()
+    wanted, demand = at_once(session, [known[name] for name in names], verdicts=True)
+    ask = Ask(demand, session.readout(wanted))
+    follow = partial(follow_rows, session, result.start, every_row=False)
+    followed = follow()
+    inputs = session.row_inputs(followed.states, followed.turns)
+
+    def kernel() -> None:
+        follow()
+        session.run(inputs, ask)
+
+    return {
+        "sweep": partial(model.analyze, names, tables=[], threads=1),
+        "kernel": kernel,
+        "run": partial(session.run, inputs, ask),
+    }
+
+
 def threads(rounds: int, count: int) -> ReportTable:
     """One thread against two, for everything that RCSR and the 7R can be asked."""
     sources = {
@@ -250,7 +299,7 @@ def chains(rounds: int, _: int) -> ReportTable:
     return ReportTable("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
 
 
-FIGURES = {f.__name__: f for f in (platform, million, verdicts, closing, threads, chains)}
+FIGURES = {f.__name__: f for f in (platform, million, verdicts, closing, wheels, threads, chains)}
 
 
 def tables(names: list[str], rounds: int, count: int) -> Iterator[ReportTable]:

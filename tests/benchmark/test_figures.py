@@ -38,7 +38,7 @@ def test_the_platform_moves_along_a_curved_path():
     assert np.abs(odd - even).max() > 0.05
 
 
-@pytest.mark.parametrize("name", ["platform", "chains", "closing", "threads"])
+@pytest.mark.parametrize("name", ["platform", "chains", "closing", "wheels", "threads"])
 def test_a_figure_has_a_line_per_case(name, monkeypatch):
     monkeypatch.setattr(figures, "LOOPS", (2, 3))
     table = figures.FIGURES[name](1, 30)

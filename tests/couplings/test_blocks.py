@@ -11,22 +11,6 @@ import mechkin_cli as mk
 from benchmarks import rcsr
 
 MOTION = "from: 150 deg, to: 202 deg, step: 2 deg"
-MOTOR = """  motor: {mass: 1, center_of_mass: [-s1, 0.9 m, 0], inertia: {xx: .01, yy: .01, zz: .01}}
-"""
-GEAR = """couplings: {G: {type: gear, joints: [M, O1], teeth: [20, 40], pressure_angle: 20 deg}}
-joints:
-  M: {type: R, links: [ground, motor], point: [-s1, 0.9, 0], axis: [-1, 0, 0]}
-"""
-
-
-def geared() -> str:
-    """RCSR whose crank is driven through a pair of wheels."""
-    text = rcsr.dimensions().text(MOTION)
-    law = "rate: 0.1 rad/s, acceleration: 0.2 rad/s^2"
-    text = text.replace(MOTION, "from: -300 deg, to: -404 deg, step: -4 deg")
-    text = text.replace(law, "rate: -0.2 rad/s, acceleration: -0.4 rad/s^2")
-    text = text.replace("  O1.theta: {from", "  M.theta: {from")
-    return text.replace("links:\n", f"links:\n{MOTOR}", 1).replace("joints:\n", GEAR, 1)
 
 
 def sizes(model: mk.Model) -> list[int]:
@@ -35,7 +19,8 @@ def sizes(model: mk.Model) -> list[int]:
 
 
 def test_wheels_in_front_of_a_loop_leave_its_block_as_it_is() -> None:
-    alone, driven = mk.loads(rcsr.dimensions().text(MOTION)), mk.loads(geared())
+    alone = mk.loads(rcsr.dimensions().text(MOTION))
+    driven = mk.loads(rcsr.behind_wheels("from: -300 deg, to: -404 deg, step: -4 deg"))
     assert sizes(driven) == [1, *sizes(alone)]
     one, other = alone.analyze(), driven.analyze()
     for name in ("O4.theta", "O4.theta_dot", "O2.s_ddot"):
@@ -45,9 +30,9 @@ def test_wheels_in_front_of_a_loop_leave_its_block_as_it_is() -> None:
 
 
 def test_a_wheel_that_nothing_else_goes_by_comes_behind_its_loop() -> None:
-    text = rcsr.dimensions().text(MOTION).replace("links:\n", f"links:\n{MOTOR}", 1)
-    behind = GEAR.replace("[M, O1]", "[M, O4]").replace("pressure_angle: 20 deg", "ideal: true")
-    behind = behind.replace(
+    text = rcsr.dimensions().text(MOTION).replace("links:\n", f"links:\n{rcsr.MOTOR}", 1)
+    behind = rcsr.WHEELS.replace("[M, O1]", "[M, O4]")
+    behind = behind.replace("pressure_angle: 20 deg", "ideal: true").replace(
         "point: [-s1, 0.9, 0], axis: [-1, 0, 0]",
         "point: [s4*cos(alpha4), P4 + 0.9 m, -s4*sin(alpha4)], "
         "axis: [cos(alpha4), 0, -sin(alpha4)]",
@@ -56,6 +41,44 @@ def test_a_wheel_that_nothing_else_goes_by_comes_behind_its_loop() -> None:
     assert sizes(model) == [3, 1]
     result = model.analyze()
     np.testing.assert_allclose(result["M.theta"], -2.0 * result["O4.theta"], rtol=1e-14)
+
+
+TRAIN = """format: 1
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{a: {{}}, b: {{}}, c: {{}}, d: {{}}}}
+couplings:
+  G: {{type: gear, joints: [A, B], teeth: [{0}, {1}]}}
+  H: {{type: gear, joints: [B, C], teeth: [{1}, {2}]}}
+  F: {{type: function, of: A.theta, gives: D.s, value: "1 m*sin(theta)"}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0, 0], axis: [0, 0, 1]}}
+  B: {{type: R, links: [ground, b], point: [1, 0, 0], axis: [0, 0, 1]}}
+  C: {{type: R, links: [ground, c], point: [2, 0, 0], axis: [0, 0, 1]}}
+  D: {{type: P, links: [ground, d], point: [0, 1, 0], axis: [0, 0, 1]}}
+motion: {{inputs: {{A.theta: {{from: -40, to: 40, count: 19, rate: 3, acceleration: 2}}}}}}
+"""
+
+
+@pytest.mark.parametrize("teeth", [(17, 53, 31), (53, 17, 4999), (1, 999, 7)])
+def test_a_train_is_the_product_of_its_ratios_whatever_the_guess(
+    teeth: tuple[int, int, int],
+) -> None:
+    model = mk.loads(TRAIN.format(*teeth))
+    assert sizes(model) == [1, 1, 1]
+    session = model.session
+    inputs = session.inputs.reduced
+    near, far = (np.full((session.plan.states, inputs.shape[1]), at) for at in (0.0, -2345.678))
+    one, other = session.close(inputs, near), session.close(inputs, far)
+    assert one.good.all()
+    assert one.states.tobytes() == other.states.tobytes()
+    run = model.analyze(["C.theta", "C.theta_dot", "C.theta_ddot", "D.s", "D.s_ddot"])
+    ratio, angle = teeth[0] / teeth[2], run["A.theta"]
+    np.testing.assert_allclose(run["C.theta"], ratio * angle, rtol=1e-15)
+    np.testing.assert_allclose(run["C.theta_dot"], 3 * ratio, rtol=1e-15)
+    np.testing.assert_allclose(run["C.theta_ddot"], 2 * ratio, rtol=1e-15)
+    np.testing.assert_allclose(run["D.s"], np.sin(angle), atol=1e-15)
+    second = 2 * np.cos(angle) - 9 * np.sin(angle)
+    np.testing.assert_allclose(run["D.s_ddot"], second, atol=1e-14)
 
 
 @pytest.mark.parametrize("seed", [1, 3, 8, 27])

@@ -56,6 +56,7 @@ MECHKIN_INLINE Pack sum_by_slopes(const Plan& p, const TermCurve* curve, const C
 
 // The curves of those terms of a relation that are functions, up to an order, at states q.
 inline void find_curves(const Plan& p, const ClosingJoint& j, const Pack* q, int order, Pack* registers, TermCurve* curve) {
+  if (!p.functions.functions) return;
   for (int l = j.loop_begin; l < j.loop_end; ++l) {
     const LoopEntry& e = p.loop[l];
     const Term& t = p.term[e.term];

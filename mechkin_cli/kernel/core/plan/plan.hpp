@@ -103,6 +103,8 @@ struct Block {
   int column_begin, column_end;  // into Plan::unknown
   int rows, size;                // rows > size: overconstrained
   int charts;                    // the last of its rows are those of a chart (chart.hpp)
+  bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
+  bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
 };
 
 template <class Number>

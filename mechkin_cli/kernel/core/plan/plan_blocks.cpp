@@ -39,7 +39,7 @@ Refusal PlanBuilder::add_block(int closing_joints, const std::vector<int>& joint
   REQUIRE(closing_joints + charts > 0 && closing_joints >= 0 &&
               closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
   REQUIRE(!rest_set_, "blocks come before the rest");
-  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts};
+  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts, false, false};
   long rows = charts;
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     rows += equations(closing_[c]);
@@ -167,6 +167,23 @@ void PlanBuilder::find_turns() {
   }
 }
 
+// Blocks of relations alone, and those that are explicit.
+void PlanBuilder::find_relations() {
+  for (int index = 0; index < (int)block_.size(); ++index) {
+    Block& b = block_[index];
+    b.placeless = !b.charts && b.rows == b.size;
+    for (int c = b.closing_begin; c < b.closing_end; ++c) b.placeless = b.placeless && is_relation(closing_[c].type);
+    b.is_explicit = b.placeless && b.size == 1;
+    if (!b.is_explicit) continue;
+    const ClosingJoint& j = closing_[b.closing_begin];
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
+      const Term& term = term_[loop_[l].term];
+      if (term.freedom >= 0 && joints_[loop_[l].joint].column + term.freedom == unknown_[b.column_begin])
+        b.is_explicit = b.is_explicit && term.function < 0;
+    }
+  }
+}
+
 Result<FrozenPlan> PlanBuilder::finish() {
   CHECK(open());
   // a tree whose states are given whole: only its poses are asked for
@@ -180,6 +197,7 @@ Result<FrozenPlan> PlanBuilder::finish() {
   CHECK(check_actuators());
   sort_drives();
   find_turns();
+  find_relations();
   REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);

@@ -114,6 +114,7 @@ class PlanBuilder {
   Refusal check_actuators() const;
   void sort_drives();
   void find_turns();
+  void find_relations();
   Plan arrays() const;
 
   Plan plan_{};

@@ -20,15 +20,16 @@ inline void block_velocities(const Plan& p, Workspace& w, int index) {
 }
 
 // First with the block's unknown second derivatives at zero, which leaves the convective part of the
-// closing equations, then with the ones that cancel it.
+// closing equations, then with the ones that cancel it. Relations alone do not wait for their links' motion.
 inline void block_accelerations(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   const BlockMatrices at = matrices_of(p, w, index);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = 0.0;
-  accelerate_block(p, w, b, false);
+  if (!b.placeless) accelerate_block(p, w, b, false);
   second_of_equations(p, w, b);
   at.solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.acceleration[p.unknown[b.column_begin + u]] = w.right[u];
+  if (b.placeless) return accelerate_block(p, w, b, false);
   // what no unknown moves is accelerated as it was
   for (int o = b.joint_begin; o < b.joint_end; ++o)
     if (w.moves[p.order[o]]) accelerate_link(p, w, p.order[o], true);
@@ -38,7 +39,8 @@ inline void block_accelerations(const Plan& p, Workspace& w, int index) {
 inline void block_jerks(const Plan& p, Workspace& w, int index) {
   const Block& b = p.block[index];
   for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = 0.0;
-  for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
+  if (!b.placeless)
+    for (int o = b.joint_begin; o < b.joint_end; ++o) jerk_link(p, w, p.order[o]);
   third_of_equations(p, w, b);
   matrices_of(p, w, index).solve_equations(w.right);
   for (int u = 0; u < b.size; ++u) w.jerk[p.unknown[b.column_begin + u]] = w.right[u];

@@ -91,13 +91,14 @@ inline void find_moving(const Plan& p, Workspace& w) {
     for (int o = p.block[b].joint_begin; o < p.block[b].joint_end; ++o) {
       const int k = p.order[o];
       const TreeJoint& j = p.joints[k];
-      bool moves = j.type == TREE_L;
-      for (int e = p.block[b].joint_begin; e < o; ++e) moves = moves || (p.order[e] == j.parent && w.moves[j.parent]);
+      bool carried = false;  // by a joint that moves with it
+      for (int e = p.block[b].joint_begin; e < o; ++e) carried = carried || (p.order[e] == j.parent && w.moves[j.parent]);
+      bool moves = carried || j.type == TREE_L;
       with_tree_joint(j.type, [&](auto entry) {
         for (int f = 0; f < entry.freedoms; ++f) moves = moves || unknown_index(p, b, j.column + f) >= 0;
       });
       w.moves[k] = moves;
-      w.stands[k] = moves && j.type != TREE_L && j.parent >= 0 && !w.moves[j.parent];
+      w.stands[k] = moves && j.type != TREE_L && j.parent >= 0 && !carried;
     }
 }
 inline void place_moving(const Plan& p, Workspace& w, const Block& b) {
@@ -244,14 +245,7 @@ inline void take_step(const Plan& p, Closing& c, int index, const Request& r, in
   advance_block(p, w, index, w.right, ~c.done);
 }
 
-// Whether a block is relations between coordinates alone, which do not go by places.
-inline bool is_placeless(const Plan& p, const Block& b) {
-  for (int c = b.closing_begin; c < b.closing_end; ++c)
-    if (!is_relation(p.closing[c].type)) return false;
-  return !b.charts && b.rows == b.size;
-}
-
-// Newton's first step on relations alone, before anything is placed: it closes them where they are linear.
+// Newton's first step on relations alone, before anything is placed.
 inline void step_unplaced(const Plan& p, Closing& c, int index, const Request& r) {
   Workspace& w = c.w;
   const BlockMatrices at = matrices_of(p, w, index);
@@ -262,6 +256,25 @@ inline void step_unplaced(const Plan& p, Closing& c, int index, const Request& r
   c.residual.test = __builtin_inf();
   take_step<false>(p, c, index, r, 0);
 }
+// The unknown of an explicit block, whatever its guess, before anything is placed; its factor is that of every place.
+inline void solve_explicitly(const Plan& p, Closing& c, int index) {
+  Workspace& w = c.w;
+  const ClosingJoint& j = p.closing[p.block[index].closing_begin];
+  const int column = p.unknown[p.block[index].column_begin];
+  Pack& unknown = w.q[p.column_state[column]];
+  const Pack guess = unknown;
+  unknown = 0.0;
+  Pack rest;
+  find_curves(p, j, w.q, 1, w.function, w.curve);
+  closing_residual(p, w.q, w.curve, j, w.closure[0], Relation<0>{}, &rest);
+  const Pack slope = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) { return Pack(t.column + f == column ? 1.0 : 0.0); });
+  const Pack inverse = Pack(1.0) / slope, found = -rest * inverse;
+  *matrices_of(p, w, index).jacobian = inverse;
+  c.polished = all_lanes(true);
+  c.done = ~(abs(found) < Pack(1e100));  // as in take_step
+  unknown = select(c.done, guess, found);
+  c.correction = abs(unknown - guess);
+}
 
 // Closes one block from the guesses in the packs' w.q, all of them through each stage of a step: they meet its
 // instructions in the cache, and one is begun while another waits for its results. With `AGAIN` factors serve two steps
@@ -270,13 +283,14 @@ template <bool AGAIN>
 inline void close_packs(const Plan& p, Closing* pack, int count, int index, const Request& r) {
   const Block& b = p.block[index];
   const bool square = b.rows == b.size;
-  // a lane's factors must not depend on how long its neighbours go on
-  const bool keeps_factors = square && r.demand == DEMAND_CONDITION;
+  // a lane's factors must not depend on how long its neighbours go on; that of an explicit block depends on nothing
+  const bool keeps_factors = square && !b.is_explicit && r.demand == DEMAND_CONDITION;
   const auto each = [&](auto&& stage) __attribute__((always_inline)) {
     for (Closing* c = pack; c < pack + count; ++c)
       if (!c->over) stage(*c);
   };
-  if (r.iterations > 0 && is_placeless(p, b)) each([&](Closing& c) { step_unplaced(p, c, index, r); });
+  if (r.iterations > 0 && b.placeless)
+    each([&](Closing& c) { b.is_explicit ? solve_explicitly(p, c, index) : step_unplaced(p, c, index, r); });
   for (int iteration = 0;; ++iteration) {
     each([&](Closing& c) { iteration ? place_moving(p, c.w, b) : place_block(p, c.w, b); });
     bool over = true;
@@ -304,6 +318,9 @@ inline void close_packs(const Plan& p, Closing* pack, int count, int index, cons
     each([&](Closing& c) { take_step<AGAIN>(p, c, index, r, iteration); });
   }
 }
+
+// Whether closing a block left its factors at the closed place, whatever is demanded.
+inline bool has_factors(const Block& b, const Request& r) { return b.is_explicit && r.iterations > 0 && !r.jacobian; }
 
 // What became of a pack of rows.
 inline Closed closed_block(const Plan& p, Closing& c, int index, const Request& r) {
