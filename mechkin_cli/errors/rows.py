@@ -62,7 +62,7 @@ VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
 FRICTION = "friction"
-TABLE_LOADS = "a load that is read from a table"
+TABLE_LOADS = "the effort of a table alone, whose curve is known in doubles"
 IMPACTS = "the motion rebounds from a limit"
 CROSSED = "the motion passes a branch point"
 OTHER_RATES = "the start gives rates of other coordinates"
@@ -89,9 +89,6 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
     if problem.mechanism.frictions and forces:
         # whether a joint sticks or slips is decided by doubles
         return FRICTION
-    if forces and any(law.curve is not None for law in problem.load_laws):
-        # the curve through the table is known in doubles
-        return TABLE_LOADS
     if quantity.kind in FINITE_KINDS - {"finite_angle"}:
         return DRAWING
     return ""

@@ -191,8 +191,6 @@ def reason_unknown(problem: Problem) -> str:
     """Why forces of a mechanism have no enclosure in any row that is proven; "" where they have."""
     if problem.mechanism.frictions:
         return "friction, whose sticking and slipping is decided in doubles"
-    if any(law.curve is not None for law in problem.load_laws):
-        return "a load that is read from a table, whose curve is known in doubles"
     drives = problem.mechanism.drives
     if drives is not None and drives.actuators:
         return "efforts at actuators other than the inputs, which are solved for in doubles"
