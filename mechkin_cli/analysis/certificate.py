@@ -292,7 +292,7 @@ class Certificate(Listed):
 
         Raises:
             UsageError: no such quantity, or one that is not enclosed, with the reason: verdicts,
-                what is derived, and forces that go by friction, actuators or tables of loads.
+                what is derived, and forces that go by friction or actuators.
         """
         return self.enclosures([name])[name]
 

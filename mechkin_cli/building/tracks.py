@@ -40,7 +40,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import replace
 from mechkin_cli.schema import Curve, MechanismFile, Surface
-from mechkin_cli.tape import Recorded, as_recorded, cos, is_traced, sin
+from mechkin_cli.tape import Recorded, as_recorded, cos, is_traced, of_numbers, sin
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
 
@@ -86,7 +86,8 @@ def _drawn_at(track: Track, point: Vector) -> tuple[float, ...]:
     """The parameters as drawn; of recorded numbers, from which nothing starts, some between the
     ends."""
     middle = tuple(0.5 * (low + high) for low, high in track.ends)
-    numbers: list[Any] = [*track.orders(middle)[0], *point]
+    numbers: list[Any] = [*middle, *point]
+    numbers += [] if track.knots else track.orders(middle)[0]
     if any(isinstance(number, Recorded) for number in numbers):
         return middle
     return track.nearest(point)
@@ -261,23 +262,19 @@ def _spline(fields: Fields, path: Path, section: Curve) -> Track | None:
     places = [
         place_at(fields, (*path, "points", k), place) for k, place in enumerate(section.points)
     ]
-    numbers: list[Vector] = []
-    for place in places:
-        x, y, z = map(as_recorded, place)
-        numbers.append((x, y, z))
-    if section.closed and numbers[0] != numbers[-1]:
-        numbers.append(numbers[0])
-    chords = [norm(subtract(b, a)) for a, b in pairwise(numbers)]
+    if section.closed and places[0] != places[-1]:
+        places.append(places[0])
+    chords = [norm(subtract(b, a)) for a, b in pairwise(places)]
     for k, chord in enumerate(chords):
         if not chord > 0.0:
-            at = (*path, "points", min(k + 1, len(places) - 1))
+            at = (*path, "points", min(k + 1, len(section.points) - 1))
             fields.error("same-point", at, "this point is the one before it", "leave one out")
             return None
     u = [0.0]
     for chord in chords:
         u.append(u[-1] + chord)
     ends: SplineEnds = "periodic" if section.closed else "not-a-knot"
-    knots = tuple(smooth_curve(u, list(values), ends) for values in zip(*numbers, strict=True))
+    knots = tuple(smooth_curve(u, list(values), ends) for values in zip(*places, strict=True))
     if not section.closed:
         knots = tuple(_prolonged(curve, u[-1]) for curve in knots)
     return Track(((0.0, u[-1]),), (section.closed,), knots=knots)
@@ -287,12 +284,12 @@ def _prolonged(curve: Spline, by: float) -> Spline:
     """A curve that goes straight on beyond its ends, so that what is solved for beyond them is
     found there and said to be."""
     (y, b, *_), (y_end, b_end, *_) = curve.coefficients[:, 0], curve.coefficients[:, -1]
-    first, last = curve.x[0], curve.x[-1]
+    first, last = curve.first, curve.last
     before = [y - b * by, b, 0.0, 0.0]
     behind, end = [y_end, b_end, 0.0, 0.0], [y_end + b_end * by, b_end, 0.0, 0.0]
     pieces = [before, *curve.coefficients[:, :-1].T.tolist(), behind, end]
-    x = np.array([first - by, *curve.x.tolist(), last + by])
-    return Spline(x, np.array(pieces).T.copy())
+    x = [first - by, *curve.x.tolist(), last + by]
+    return Spline(of_numbers(x), np.array(pieces).T.copy())
 
 
 def _range(

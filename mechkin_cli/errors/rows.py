@@ -63,7 +63,7 @@ def as_parts(numbers: Any) -> Floats:
 VERDICT = "a verdict"
 WORDS = "words"
 INTEGRAL = "an integral over the rows"
-TABLE_LOADS = "a load that is read from a table"
+TABLE_LOADS = "the effort of a table alone, whose curve is known in doubles"
 IMPACTS = "the motion rebounds from a limit"
 CROSSED = "the motion passes a branch point"
 OTHER_RATES = "the start gives rates of other coordinates"
@@ -93,10 +93,6 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
         return INTEGRAL
     if problem.response is not None and quantity.kind in COEFFICIENT_KINDS:
         return AS_DRIVEN
-    forces = demand_of(problem.mechanism, [quantity]) & Demand.FORCES
-    if forces and any(law.curve is not None for law in problem.load_laws):
-        # the curve through the table is known in doubles
-        return TABLE_LOADS
     if quantity.kind in FINITE_KINDS - {"finite_angle"}:
         return DRAWING
     return ""

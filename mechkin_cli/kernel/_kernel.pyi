@@ -242,7 +242,8 @@ class PlanBuilder:
     def add_function(
         self,
         arguments: int,
-        curves: Sequence[tuple[int, float, Sequence[tuple[float, float, float, float, float]]]],
+        curves: Sequence[tuple[int, bool, int]],
+        knots: Sequence[float],
         constants: Sequence[float],
         operations: Sequence[int],
         operands: Sequence[tuple[int, int, int]],
@@ -305,9 +306,8 @@ class PlanBuilder:
         self,
         reads: Sequence[tuple[int, int, int, int, int]],
         numbers: Sequence[float],
-        curves: Sequence[
-            tuple[int, float, float, Sequence[tuple[float, float, float, float, float]]]
-        ],
+        curves: Sequence[tuple[int, float, float, int]],
+        knots: Sequence[float],
         constants: Sequence[float],
         operations: Sequence[int],
         operands: Sequence[tuple[int, int, int]],

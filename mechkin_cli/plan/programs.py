@@ -17,7 +17,14 @@ from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import Amount, JointLoad, LinkLoad, Load, Varying, dot, is_angle
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.records import Output, OutputCode, PlanRecord, Program, ReadCode, record
-from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of, register
+from mechkin_cli.tape import (
+    JetNumber,
+    Operation,
+    RowRecorder,
+    as_recorded,
+    orders_of,
+    register,
+)
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
 
 if TYPE_CHECKING:
@@ -81,11 +88,9 @@ class _Recording:
             read = _read(layout, wanted)
             self._reads.append(read)
             width += _width(*read)
-        self._curves = [
-            _curve(law.curve, self._first[law.reads[0]][1])
-            for law in self.laws
-            if law.curve is not None
-        ]
+        tables = [(law.curve, law.reads[0]) for law in self.laws if law.curve is not None]
+        self._curves = [_ranged(curve, self._first[name][1]) for curve, name in tables]
+        self._knots = [number for curve, _ in tables for number in _knots(curve)]
         recorder = self.recorder = RowRecorder(width + len(self._curves))
         self.ends: list[int] = []
         values = self._values(width)
@@ -99,7 +104,7 @@ class _Recording:
         program = self.recorder.listed(self.outputs, self.kinks)
         reads = [(int(kind), o.type, o.number, o.freedom, o.order) for kind, o in self._reads]
         numbers = [n for _, o in self._reads for n in (*o.data, o.factor)]
-        return Program(reads, numbers, self._curves, *program)
+        return Program(reads, numbers, self._curves, self._knots, *program)
 
     def _values(self, first_curve: int) -> list[Any]:
         """The laws' values in SI."""
@@ -140,10 +145,7 @@ def _turns(wanted: Wanted) -> bool:
 
 def function_record(law: CoordinateLaw) -> PlanRecord:
     """The record of a function of a coordinate, with its derivatives (`plan/functions.hpp`)."""
-    curves = []
-    if law.curve is not None:
-        *_, knots = _curve(law.curve, 0)
-        curves.append((0, law.period, knots))
+    curves = [] if law.curve is None else [law.curve]
     recorder = RowRecorder(1 + len(ORDERS) * len(curves))
     number = recorder.number
     if law.curve is not None:
@@ -151,7 +153,7 @@ def function_record(law: CoordinateLaw) -> PlanRecord:
     else:
         assert law.value is not None
         orders = orders_of(law.value(JetNumber([number(0), 1.0, 0.0, 0.0])))
-    return _of_orders(1, curves, recorder, [[order] for order in orders])
+    return _of_orders(1, curves, recorder, [[order] for order in orders], repeats=law.period != 0.0)
 
 
 def track_record(track: Track, origin: Vector) -> PlanRecord:
@@ -169,25 +171,24 @@ def track_record(track: Track, origin: Vector) -> PlanRecord:
 
 def _knots_record(track: Track, origin: Vector) -> PlanRecord:
     recorder = RowRecorder(1 + len(ORDERS) * len(track.knots))
-    (low, high), period = track.ends[0], 0.0
-    curves = []
-    for curve in track.knots:
-        *_, knots = _curve(curve, 0)
-        if track.closed[0]:
-            period = high - low
-        curves.append((0, period, knots))
     values = [
         [recorder.number(1 + len(ORDERS) * k + order) for k in range(len(track.knots))]
         for order in ORDERS
     ]
     moved: list[Any] = [a - b for a, b in zip(values[0], origin, strict=True)]
-    return _of_orders(1, curves, recorder, [moved, *values[1:]])
+    return _of_orders(1, track.knots, recorder, [moved, *values[1:]], repeats=track.closed[0])
 
 
 def _of_orders(
-    arguments: int, curves: list[Any], recorder: RowRecorder, orders: Sequence[Sequence[Any]]
+    arguments: int,
+    curves: Sequence[Curve],
+    recorder: RowRecorder,
+    orders: Sequence[Sequence[Any]],
+    *,
+    repeats: bool = False,
 ) -> PlanRecord:
-    """The record of a function by the outputs of each order."""
+    """The record of a function by the outputs of each order; its curves go over its first argument,
+    with their spans as periods or without any."""
     outputs: list[int] = []
     parts: list[list[int]] = []
     for order in orders:
@@ -198,7 +199,8 @@ def _of_orders(
     return record(
         "add_function",
         arguments,
-        curves,
+        [(0, repeats, curve.x.size) for curve in curves],
+        [number for curve in curves for number in _knots(curve)],
         constants,
         operations,
         operands,
@@ -224,10 +226,17 @@ def _width(kind: int, output: Output) -> int:
     return 2 if kind == ReadCode.ANGLE else 1
 
 
-def _curve(curve: Curve, over: int) -> tuple[int, float, float, list[tuple[float, ...]]]:
-    slack = TABLE_END * (curve.last - curve.first)
-    knots = zip(curve.x.tolist(), *curve.coefficients.tolist(), strict=True)
-    return over, curve.first - slack, curve.last + slack, list(knots)
+def _ranged(curve: Curve, over: int) -> tuple[int, float, float, int]:
+    """A curve over a register; where it ends is decided in doubles."""
+    first, last = as_recorded(curve.first), as_recorded(curve.last)
+    slack = TABLE_END * (last - first)
+    return over, first - slack, last + slack, curve.x.size
+
+
+def _knots(curve: Curve) -> list[Any]:
+    """x, y, b, c, d of each piece."""
+    rows = zip(curve.x.tolist(), *curve.coefficients.tolist(), strict=True)
+    return [number for row in rows for number in row]
 
 
 def kernel_columns(layout: Layout, values: Mapping[int, Any]) -> list[Any]:

@@ -55,7 +55,7 @@ _CONSTANTS = {
     "add_tree_joint": (2, 3),
     "add_closing_joint": (3, 4, 5),
     "add_hung_links": (4, 5, 6, 7),
-    "add_function": (2,),
+    "add_function": (2, 3),
     "add_relation": (2, 3, 4),
     "add_mesh": (1, 2, 3),
     "add_force": (0, 1, 2),
@@ -66,7 +66,7 @@ _CONSTANTS = {
     "set_inertia": (1, 2, 3),
     "set_gravity": (0,),
     "add_load": (4, 5, 6),
-    "set_load_program": (1, 3),
+    "set_load_program": (1, 3, 4),
     "add_friction": (5, 6, 7, 8, 9, 10),
     "add_contact": (1, 2, 3, 4, 5),
     "add_size_point": (1,),
@@ -88,13 +88,15 @@ class Program(NamedTuple):
     """Arithmetic over quantities, see the kernel's `ProgramOf`: the values of loads that vary.
 
     `reads` are kind, then type, number, freedom and order of an `Output`; `numbers` data and factor
-    of each. A curve is (over, low, high, knots): over a register, nan outside [low, high], with x
-    and y, b, c, d of each piece. `outputs` are registers, `kinks` numbers of operations.
+    of each. A curve is (over, low, high, count): over a register, nan outside [low, high], of so
+    many of the `knots`, each x and y, b, c, d of its piece. `outputs` are registers, `kinks`
+    numbers of operations.
     """
 
     reads: Sequence[tuple[int, int, int, int, int]]
     numbers: Sequence[Number]
-    curves: Sequence[tuple[int, float, float, Sequence[tuple[float, ...]]]]
+    curves: Sequence[tuple[int, float, float, int]]
+    knots: Sequence[Number]
     constants: Sequence[Number]
     operations: Sequence[int]
     operands: Sequence[tuple[int, int, int]]

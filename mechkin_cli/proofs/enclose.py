@@ -116,8 +116,8 @@ def enclose(
 ) -> Mapping[str, Enclosure]:
     """Enclosures of quantities in SI (width, rows) by name.
 
-    Nothing is known of what goes by friction, by efforts at actuators other than the inputs, or by
-    tables of loads. Reactions are those that the closing equations give which are solved for: of
+    Nothing is known of what goes by friction, or by efforts at actuators other than the inputs.
+    Reactions are those that the closing equations give which are solved for: of
     unique ones, the reactions. Angles are those next to the kernel's, up to whole turns.
 
     Args:

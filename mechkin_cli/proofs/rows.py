@@ -199,8 +199,6 @@ def reason_unknown(problem: Problem) -> str:
     if problem.mechanism.frictions:
         named = rubbing_words(problem.mechanism.frictions)
         return f"{named}, which is solved for in doubles"
-    if any(law.curve is not None for law in problem.load_laws):
-        return "a load that is read from a table, whose curve is known in doubles"
     drives = problem.mechanism.drives
     if drives is not None and drives.actuators:
         return "efforts at actuators other than the inputs, which are solved for in doubles"

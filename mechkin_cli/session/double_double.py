@@ -28,7 +28,6 @@ from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import (
     ExactRows,
     NotEnclosed,
-    TraceLost,
     compiled,
     double_doubles,
     enclosures,
@@ -232,18 +231,9 @@ class Precise:
         """The same enclosed (constants, 3): high and low parts, and radii about their sums.
 
         Raises:
-            TraceLost: loads are read from tables (`rounds_tables`).
             NotEnclosed: a constant is not defined.
         """
-        if self.rounds_tables(session):
-            raise TraceLost("the curve through a table of a load is known in doubles alone")
         return enclosures(self.tape(self._constants(session)))
-
-    def rounds_tables(self, session: InDoubles) -> bool:
-        """Whether loads of the session are read from tables. The curves through these are structure
-        of a plan, not constants: they stay doubles."""
-        laws = self.layout(session).laws
-        return laws is not None and any(law.curve is not None for law in laws.laws)
 
     def outputs(
         self, session: InDoubles, wanted: Iterable[Wanted], points: Iterable[Attached] = ()

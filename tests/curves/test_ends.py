@@ -178,10 +178,10 @@ def test_rows_on_curves_with_zeros_in_them_are_proven(curve: str) -> None:
     assert errors.digits >= 12
 
 
-def test_nothing_is_claimed_of_rows_on_a_spline() -> None:
-    """Its coefficients are rounded, and by how much is not known."""
+def test_rows_on_a_spline_are_proven() -> None:
+    """Against the exact curve in tests/proofs/test_knots.py."""
     model = cam("20", f"{{points: {POINTS}}}", -6, 6, 5)
-    assert set(model.certify().status) == {"not proven"}
+    assert set(model.certify().status) == {"proven"}
 
 
 def test_loads_and_drives_work_on_the_parameter() -> None:

@@ -59,6 +59,9 @@ class Hostile:
             return self.random.choice([*WRONG, [1.0] * (count - 1), [1.0] * (count + 1)])
         return [self.number() for _ in range(count)]
 
+    def knots(self, count: int) -> list[Any]:
+        return [x for k in range(count) for x in (float(k), *(self.number() for _ in range(4)))]
+
     def frame(self) -> Any:
         if self.bad():
             return self.numbers(12)
@@ -115,14 +118,15 @@ class Hostile:
         return closings
 
     def function(self, builder: Any) -> None:
-        knots = [[float(k), *(self.number() for _ in range(4))] for k in range(2)]
-        curves = [(self.index(0, 1), self.number(), knots)] * self.random.randint(0, 1)
+        count = self.random.randint(0, 1)
+        curves = [(self.index(0, 1), self.random.random() < 0.5, 2)] * count
+        knots = self.knots(2 * count)
         size = self.random.randint(0, 4)
         operations = [self.index(0, 27) for _ in range(size)]
         operands = [(self.index(0, 4), self.index(0, 4), self.index(0, 4)) for _ in range(size)]
         ends = [*sorted(self.random.randint(0, size) for _ in range(3)), size]
         outputs = [self.index(0, 4) for _ in range(4)]
-        parts = curves, self.numbers(2), operations, operands, ends, outputs
+        parts = curves, knots, self.numbers(2), operations, operands, ends, outputs
         self.attempt(builder.add_function, self.index(1, 2), *parts, [1, 2, 3, 4])
 
     def relation(self, builder: Any, links: int, loop: list[tuple[int, float]]) -> None:
@@ -238,11 +242,11 @@ class Hostile:
             reads.append((kind, code, self.index(0, links), 0, order))
             wide = str(kind) == "0" and str(code) in ("4", "5", "6", "7")
             registers += 3 if wide else 2 if str(kind) == "1" else 1
-        curves = []
+        curves, knots = [], []
         for _number in range(self.random.randint(0, 2)):
             count = self.random.randint(0, 4)
-            knots = [(float(x), *(self.number() for _ in range(4))) for x in range(count)]
-            curves.append((self.index(0, registers), self.number(), 9.0, knots))
+            knots += self.knots(count)
+            curves.append((self.index(0, registers), self.number(), 9.0, count))
         constants = [self.number() for _ in range(self.random.randint(0, 3))]
         registers += len(curves) + len(constants)
         operations, operands = [], []
@@ -253,7 +257,7 @@ class Hostile:
         outputs = [self.index(0, registers) for _ in range(values)]
         kinks = [k for k, code in enumerate(operations) if str(code) in ("5", "7", "8", "14")]
         numbers = [self.number() for _ in range(4 * len(reads))]
-        record = (reads, numbers, curves, constants, operations, operands, outputs, kinks)
+        record = (reads, numbers, curves, knots, constants, operations, operands, outputs, kinks)
         self.attempt(builder.set_load_program, *record)
 
     def outputs(self, plan: Any) -> Any:

@@ -133,7 +133,7 @@ void bind_builder(nb::module_& m) {
            "on_second"_a, "parameter"_a, "loop"_a)
       .def("add_hung_links", raising(&PlanBuilder::add_hung_links), "body"_a, "rod"_a, "first"_a, "second"_a, "on_first"_a, "on_second"_a,
            "length"_a, "line"_a, "slide_sign"_a, "loop"_a)
-      .def("add_function", raising(&PlanBuilder::add_function), "arguments"_a, "curves"_a, "constants"_a, "operations"_a,
+      .def("add_function", raising(&PlanBuilder::add_function), "arguments"_a, "curves"_a, "knots"_a, "constants"_a, "operations"_a,
            "operands"_a, "instructions"_a, "outputs"_a, "output_ends"_a)
       .def("add_relation", raising(&PlanBuilder::add_relation), "length"_a, "terms"_a, "factors"_a, "arguments"_a, "sum"_a)
       .def("add_mesh", raising(&PlanBuilder::add_mesh), "carrier"_a, "point"_a, "along"_a, "apart"_a, "path"_a)
@@ -152,7 +152,7 @@ void bind_builder(nb::module_& m) {
       .def("set_gravity", raising(&PlanBuilder::set_gravity), "g"_a)
       .def("add_load", raising(&PlanBuilder::add_load), "type"_a, "link"_a, "other"_a, "freedom"_a, "point"_a,
            "other_point"_a, "vector"_a, "varying"_a = false)
-      .def("set_load_program", raising(&PlanBuilder::set_load_program), "reads"_a, "numbers"_a, "curves"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
+      .def("set_load_program", raising(&PlanBuilder::set_load_program), "reads"_a, "numbers"_a, "curves"_a, "knots"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "kinks"_a)
       .def("set_driven", raising(&PlanBuilder::set_driven), "inputs"_a)
       .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)
       .def("add_input_constraint", raising(&PlanBuilder::add_input_constraint), "input"_a, "leader"_a)

@@ -1,10 +1,23 @@
-// Curves of programs where numbers are enclosed: their knots are rounded and say not by how much, so nothing is known of them.
+// The value of a program's curve where numbers are enclosed.
 #pragma once
 
+#include "joints/enclosed_knots.hpp"
 #include "rows/outputs.hpp"
 
 namespace {
 
-inline Pack curve_value(const ProgramCurve&, const Knot*, Pack) { return Pack(__builtin_nan("")); }
+// Beyond the first and last knot, within the range, the value is the end's; unknown where the argument may lie outside.
+template <class Number>
+inline Pack curve_value(const ProgramCurve& c, const KnotOf<Number>* knot, const Pack& at) {
+  PiecesMet<Number> met(knot + c.begin, c.end - c.begin);
+  Pack value[FUNCTION_ORDERS] = {met.begin().y, Pack(0.0), Pack(0.0), Pack(0.0)};
+  met.lose((least_of(at) < Real(c.low)) | (most_of(at) > Real(c.high)));
+  met.take(value, least_of(at) < most_of(Pack(met.begin().x)));
+  value[0] = met.end().y;
+  met.take(value, most_of(at) > least_of(Pack(met.end().x)));
+  met.take_pieces(at);
+  met.write(value);
+  return value[0];
+}
 
 }  // namespace

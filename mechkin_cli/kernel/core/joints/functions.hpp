@@ -24,7 +24,7 @@ inline void run_function(const Plan& p, const Function& f, int order, Pack* r) {
   const FunctionTable& table = p.functions;
   for (int c = f.curve_begin; c < f.curve_end; ++c) {
     const FunctionCurve& curve = table.curve[c];
-    knots_at(curve, table.knot, r[curve.over], r + f.arguments + FUNCTION_ORDERS * (c - f.curve_begin));
+    knots_at(curve, p.function_knot, r[curve.over], r + f.arguments + FUNCTION_ORDERS * (c - f.curve_begin));
   }
   Tape t = {};
   t.inputs = f.constants_at(), t.constants = f.constant_end - f.constant_begin;

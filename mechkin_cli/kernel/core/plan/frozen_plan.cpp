@@ -55,7 +55,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_KINK, p.law.kink, p.law.kinks);
   visit(ARRAY_FUNCTION, p.functions.function, p.functions.functions);
   visit(ARRAY_FUNCTION_CURVE, p.functions.curve, p.functions.curves);
-  visit(ARRAY_FUNCTION_KNOT, p.functions.knot, p.functions.knots);
+  visit(ARRAY_FUNCTION_KNOT, p.function_knot, p.functions.knots);
   visit(ARRAY_FUNCTION_CONSTANT, p.function_constant, p.functions.constants);
   visit(ARRAY_FUNCTION_OPERATION, p.functions.operation, p.functions.instructions);
   visit(ARRAY_FUNCTION_OPERAND, p.functions.operand, 3 * p.functions.instructions);

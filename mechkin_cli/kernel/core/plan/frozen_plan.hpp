@@ -6,7 +6,7 @@
 //   add_tree_joint     pitch, at (12: axes x, y, z, origin)
 //   add_closing_joint  on_first (12), on_second (12), parameter
 //   add_hung_links     on_first (12), on_second (12), length, line (3)
-//   add_function       constants
+//   add_function       knots (x, y, b, c, d of each), constants
 //   add_relation       factors, arguments, sum
 //   add_mesh           point (3), along (3), apart (3)
 //   add_force          point (3), along (3), apart (3)
@@ -16,7 +16,7 @@
 //   set_inertia        mass, centre (3), tensor (6: xx yy zz xy xz yz)
 //   set_gravity        g (3)
 //   add_load           point (3), other_point (3), vector (3)
-//   set_load_program   of each read data (3) and factor, then its own constants
+//   set_load_program   of each read data (3) and factor, then knots (x, y, b, c, d of each), then its own constants
 //   add_friction       axis (3), radius, pitch, at_rest, sliding, speed
 //   add_contact        weight, share, tilt, roll, direction (3)
 //   add_size_point     point (3)

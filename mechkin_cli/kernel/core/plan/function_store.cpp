@@ -1,7 +1,5 @@
 #include "plan/function_store.hpp"
 
-#include <cmath>
-
 #include "plan/frozen_plan.hpp"
 #include "tape/tape.hpp"
 
@@ -20,7 +18,7 @@ bool are_ends(const std::vector<int>& ends, std::size_t whole) {
 Refusal check_curve(const FunctionCurveRecord& c, int arguments) {
   REQUIRE(c.over >= 0 && c.over < arguments, "a curve runs over an argument");
   REQUIRE(!c.knots.empty() && c.knots.size() < LONGEST, "a curve has points, and not too many");
-  REQUIRE(std::isfinite(c.period) && c.period >= 0.0, "a curve's period is finite");
+  REQUIRE(!c.repeats || c.knots.size() > 1, "a curve that repeats itself has a span");
   for (std::size_t k = 0; k < c.knots.size(); ++k) {
     const Knot& at = c.knots[k];
     const double numbers[] = {at.x, at.y, at.b, at.c, at.d};
@@ -66,7 +64,7 @@ Result<int> FunctionStore::add(const FunctionRecord& r) {
   for (const FunctionCurveRecord& c : r.curves) {
     const int begin = (int)knot_.size();
     knot_.insert(knot_.end(), c.knots.begin(), c.knots.end());
-    curve_.push_back({c.over, begin, (int)knot_.size(), c.period});
+    curve_.push_back({c.over, begin, (int)knot_.size(), c.repeats});
   }
   constant_.insert(constant_.end(), r.constants.begin(), r.constants.end());
   operation_.insert(operation_.end(), r.operations.begin(), r.operations.end());
@@ -95,7 +93,7 @@ FunctionTable FunctionStore::view() const {
   t.functions = (int)function_.size(), t.curves = (int)curve_.size(), t.knots = (int)knot_.size();
   t.constants = (int)constant_.size(), t.instructions = (int)operation_.size(), t.outputs = (int)output_.size();
   t.registers = registers_;
-  t.function = function_.data(), t.curve = curve_.data(), t.knot = knot_.data();
+  t.function = function_.data(), t.curve = curve_.data();
   t.operation = operation_.data(), t.operand = operand_.data(), t.output = output_.data();
   return t;
 }

@@ -9,7 +9,7 @@
 
 struct FunctionCurveRecord {
   int over;
-  double period;
+  bool repeats;
   std::vector<Knot> knots;  // x rising
 };
 struct FunctionRecord {
@@ -31,6 +31,7 @@ class FunctionStore {
   // Whether a function has so many arguments and components, with all derivatives.
   bool has_shape(int number, int arguments, int components) const;
   const std::vector<double>& constants() const { return constant_; }
+  const std::vector<Knot>& knots() const { return knot_; }
 
  private:
   Refusal check(const FunctionRecord& record) const;

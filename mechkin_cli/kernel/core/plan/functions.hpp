@@ -9,12 +9,12 @@
 
 constexpr int FUNCTION_ORDERS = 4;  // value, and three derivatives
 
-// A curve of knots over an argument: four registers, its value and derivatives; straight beyond its ends. With a period, which
-// is its knots' span, arguments are taken into it first.
+// A curve of knots over an argument: four registers, its value and derivatives; straight beyond its ends. One that repeats
+// itself has its knots' span as its period, into which arguments are taken first.
 struct FunctionCurve {
   int over;        // argument
-  int begin, end;  // into FunctionTable::knot
-  double period;   // 0: none
+  int begin, end;  // into Plan::function_knot
+  bool repeats;
 };
 
 // Registers: arguments, four of each curve, constants, results.
@@ -31,13 +31,12 @@ struct Function {
   int registers() const { return results_at() + instructions[FUNCTION_ORDERS - 1]; }
 };
 
-// The functions of a plan, one after the other, but for their constants.
+// The functions of a plan, one after the other, but for their constants and knots.
 struct FunctionTable {
   int functions, curves, knots, constants, instructions, outputs;
   int registers;  // of the largest
   const Function* function;
   const FunctionCurve* curve;
-  const Knot* knot;
   const std::uint8_t* operation;
   const std::int32_t* operand;  // instructions x 3: registers
   const std::int32_t* output;   // registers

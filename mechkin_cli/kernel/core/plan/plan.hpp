@@ -246,6 +246,7 @@ struct PlanOf : PlanShape {
   const ClosingJointOf<Number>* closing;
   const HungBodyOf<Number>* hung;
   const TermOf<Number>* term;
+  const KnotOf<Number>* function_knot;
   const Number* function_constant;
   const JointPlaceOf<Number>* place;
   const CoordinateAxisOf<Number>* axis;

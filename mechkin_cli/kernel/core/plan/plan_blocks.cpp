@@ -241,7 +241,8 @@ Plan PlanBuilder::arrays() const {
   p.inertia = inertia_.data(), p.load = load_.data(), p.size_point = size_point_.data();
   p.actuator = actuator_.data(), p.input_constraint = input_constraint_.data();
   p.law = program_.view();
-  p.functions = functions_.view(), p.function_constant = functions_.constants().data();
+  p.functions = functions_.view(), p.function_knot = functions_.knots().data();
+  p.function_constant = functions_.constants().data();
   p.friction = friction_.data(), p.contact = contact_.data();
   return p;
 }

@@ -36,6 +36,17 @@ bool along_coordinate(int type) {
   return type == LOAD_COORDINATE || type == LOAD_COORDINATE_SPRING || type == LOAD_COORDINATE_DAMPER;
 }
 
+// The next knots of a list of five numbers each; fewer where it ends.
+std::vector<Knot> take_knots(const std::vector<double>& numbers, int count, std::size_t* used) {
+  std::vector<Knot> knots;
+  for (; count > 0 && *used + 5 <= numbers.size(); --count, *used += 5) {
+    const double* const n = &numbers[*used];
+    knots.push_back({n[0], n[1], n[2], n[3], n[4]});
+  }
+  return knots;
+}
+constexpr char NO_KNOTS[] = "five numbers a knot, as many knots as the curves have";
+
 bool is_carriage(int type) { return type == TREE_G || type == TREE_A; }
 
 }  // namespace
@@ -135,24 +146,28 @@ std::pair<int, int> PlanBuilder::add_loop(const Loop& loop) {
 }
 
 Result<int> PlanBuilder::add_function(int arguments, const std::vector<FunctionCurveTuple>& curves,
-                                      const std::vector<double>& constants, const std::vector<int>& operations,
+                                      const std::vector<double>& knots, const std::vector<double>& constants,
+                                      const std::vector<int>& operations,
                                       const std::vector<std::array<int, 3>>& operands,
                                       const std::vector<int>& instructions, const std::vector<int>& outputs,
                                       const std::vector<int>& output_ends) {
   CHECK(open());
   FunctionRecord record = {arguments, {}, constants, {}, {}, instructions, {outputs.begin(), outputs.end()}, output_ends};
-  for (const auto& [over, period, knots] : curves) {
-    record.curves.push_back({over, period, {}});
-    for (const auto& [x, y, b, c, d] : knots) record.curves.back().knots.push_back({x, y, b, c, d});
+  std::size_t used = 0;
+  for (const auto& [over, repeats, count] : curves) {
+    record.curves.push_back({over, repeats, take_knots(knots, count, &used)});
+    REQUIRE((int)record.curves.back().knots.size() == count, NO_KNOTS);
   }
+  REQUIRE(used == knots.size(), NO_KNOTS);
   for (int o : operations) {
     REQUIRE(o >= 0 && o <= 255, "unknown operation");
     record.operations.push_back((std::uint8_t)o);
   }
   for (const auto& [a, b, c] : operands) record.operands.insert(record.operands.end(), {a, b, c});
-  const int first = functions_.view().constants;
+  const int first = functions_.view().constants, first_knot = functions_.view().knots;
   Result<int> added = functions_.add(record);
   CHECK(added.refusal());
+  number(ARRAY_FUNCTION_KNOT, first_knot * sizeof(Knot), (int)knots.size());
   number(ARRAY_FUNCTION_CONSTANT, first * sizeof(double), (int)constants.size());
   return added;
 }
@@ -433,8 +448,8 @@ Refusal PlanBuilder::add_input_constraint(int input, int leader) {
 }
 
 Refusal PlanBuilder::set_load_program(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
-                                      const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
-                                      const std::vector<int>& operations,
+                                      const std::vector<CurveTuple>& curves, const std::vector<double>& knots,
+                                      const std::vector<double>& constants, const std::vector<int>& operations,
                                       const std::vector<std::array<int, 3>>& operands,
                                       const std::vector<int>& outputs, const std::vector<int>& kinks) {
   CHECK(open());
@@ -446,10 +461,12 @@ Refusal PlanBuilder::set_load_program(const std::vector<std::array<int, 5>>& rea
     const double* const n = &numbers[4 * k];
     program.reads.push_back({kind, {type, index, freedom, order, {n[0], n[1], n[2]}, n[3]}});
   }
-  for (const auto& [over, low, high, knots] : curves) {
-    program.curves.push_back({over, low, high, {}});
-    for (const auto& [x, y, b, c, d] : knots) program.curves.back().knots.push_back({x, y, b, c, d});
+  std::size_t used = 0;
+  for (const auto& [over, low, high, count] : curves) {
+    program.curves.push_back({over, low, high, take_knots(knots, count, &used)});
+    REQUIRE((int)program.curves.back().knots.size() == count, NO_KNOTS);
   }
+  REQUIRE(used == knots.size(), NO_KNOTS);
   program.constants = constants;
   for (int o : operations) {
     REQUIRE(o >= 0 && o <= 255, "unknown operation");
@@ -466,6 +483,7 @@ Refusal PlanBuilder::set_load_program(const std::vector<std::array<int, 5>>& rea
     number(ARRAY_READ, at + offsetof(Output, data), 3);
     number(ARRAY_READ, at + offsetof(Output, factor), 1);
   }
+  number(ARRAY_KNOT, 0, (int)knots.size());
   number(ARRAY_PROGRAM_CONSTANT, 0, (int)program.constants.size());
   return {};
 }

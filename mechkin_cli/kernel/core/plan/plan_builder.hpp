@@ -19,11 +19,10 @@ using Triple = std::array<double, 3>;
 using FrameData = std::array<double, 12>;  // x, y, z axes, origin
 using Loop = std::vector<std::pair<int, double>>;  // tree joint and sign
 using TermTuple = std::tuple<int, double, int, int, int>;  // tree joint and sign, freedom, axis and function of a Term
-// Register, range, and knots x, y, b, c, d.
-using CurveTuple = std::tuple<int, double, double, std::vector<std::array<double, 5>>>;
-
-// Argument, period (0: none), and knots x, y, b, c, d.
-using FunctionCurveTuple = std::tuple<int, double, std::vector<std::array<double, 5>>>;
+// Register, range, and number of knots.
+using CurveTuple = std::tuple<int, double, double, int>;
+// Argument, whether it repeats itself, and number of knots.
+using FunctionCurveTuple = std::tuple<int, bool, int>;
 
 class PlanBuilder {
  public:
@@ -36,9 +35,9 @@ class PlanBuilder {
   // The next closing equation: a hung body of the tree's bodies `body` and `rod` (-1: none) from `first` to `second`.
   Refusal add_hung_links(int body, int rod, int first, int second, const FrameData& on_first, const FrameData& on_second,
                double length, const Triple& line, double slide_sign, const Loop& loop);
-  // The next function, see Function; returns its number.
+  // The next function, see Function; returns its number. Knots, those of one curve behind those of another, are x, y, b, c, d.
   Result<int> add_function(int arguments, const std::vector<FunctionCurveTuple>& curves,
-                           const std::vector<double>& constants, const std::vector<int>& operations,
+                           const std::vector<double>& knots, const std::vector<double>& constants, const std::vector<int>& operations,
                            const std::vector<std::array<int, 3>>& operands, const std::vector<int>& instructions,
                            const std::vector<int>& outputs, const std::vector<int>& output_ends);
   // The next closing equation: the sum of terms, each with its factor and what its coordinate is in a function's argument, is
@@ -71,11 +70,12 @@ class PlanBuilder {
   Refusal add_load(int type, int link, int other, int freedom, const Triple& point, const Triple& other_point,
                 const Triple& vector, bool varying);
   // The values of the loads that vary: kind, then type, index, freedom and order of what is read, and its data (3) and
-  // factor; curves; then the instructions, as in ProgramRecord.
+  // factor; curves, and knots as of functions; then the instructions, as in ProgramRecord.
   Refusal set_load_program(const std::vector<std::array<int, 5>>& reads, const std::vector<double>& numbers,
-                           const std::vector<CurveTuple>& curves, const std::vector<double>& constants,
-                           const std::vector<int>& operations, const std::vector<std::array<int, 3>>& operands,
-                           const std::vector<int>& outputs, const std::vector<int>& kinks);
+                           const std::vector<CurveTuple>& curves, const std::vector<double>& knots,
+                           const std::vector<double>& constants, const std::vector<int>& operations,
+                           const std::vector<std::array<int, 3>>& operands, const std::vector<int>& outputs,
+                           const std::vector<int>& kinks);
   // The first `inputs` inputs are driven by motors; the others are held.
   Refusal set_driven(int inputs);
   // The next actuator: a coordinate as that of a load along it.

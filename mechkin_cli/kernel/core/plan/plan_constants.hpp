@@ -42,6 +42,16 @@ inline void gather_frame(const Constants& from, Frame* to, At&& at) {
   from.numbers(to->o, 3, [&](const LanePlan& p) { return at(p).o; });
 }
 
+template <class Constants, class At>
+inline void gather_knots(const Constants& from, KnotOf<PlanNumber>* to, int count, At&& at) {
+  for (int k = 0; k < count; ++k) {
+    const auto field = [&](double Knot::*of) {
+      return from.number([&](const LanePlan& p) { return at(p)[k].*of; });
+    };
+    to[k] = {field(&Knot::x), field(&Knot::y), field(&Knot::b), field(&Knot::c), field(&Knot::d)};
+  }
+}
+
 // Hands out memory, aligned for packs; without memory it only counts.
 struct Room {
   char* memory;
@@ -60,6 +70,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
   ClosingJoint* const closing = room.take<ClosingJoint>(first.closings);
   HungBody* const hung = room.take<HungBody>(first.hung_bodies);
   Term* const term = room.take<Term>(first.terms);
+  KnotOf<PlanNumber>* const knot = room.take<KnotOf<PlanNumber>>(first.functions.knots);
   PlanNumber* const constant = room.take<PlanNumber>(first.functions.constants);
   if (!room.memory) return;
   for (int k = 0; k < first.links; ++k) {
@@ -87,8 +98,10 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
     term[t] = {first.term[t].freedom, first.term[t].axis,
                lanes.number([&](const LanePlan& p) { return p.term[t].factor; }), first.term[t].function,
                lanes.number([&](const LanePlan& p) { return p.term[t].argument; })};
+  gather_knots(lanes, knot, first.functions.knots, [](const LanePlan& p) { return p.function_knot; });
   lanes.numbers(constant, first.functions.constants, [&](const LanePlan& p) { return p.function_constant; });
-  w->joints = joint, w->closing = closing, w->hung = hung, w->term = term, w->function_constant = constant;
+  w->joints = joint, w->closing = closing, w->hung = hung, w->term = term;
+  w->function_knot = knot, w->function_constant = constant;
 }
 
 template <class Constants>
@@ -148,6 +161,7 @@ template <class Constants>
 inline void widen_program(const LanePlan& first, const Constants& lanes, Plan* w, Room& room) {
   const ProgramOf<double>& from = first.law;
   ReadOf<PlanNumber>* const read = room.take<ReadOf<PlanNumber>>(from.reads);
+  KnotOf<PlanNumber>* const knot = room.take<KnotOf<PlanNumber>>(from.knots);
   PlanNumber* const constant = room.take<PlanNumber>(from.constants);
   if (!room.memory) return;
   for (int k = 0; k < from.reads; ++k) {
@@ -156,9 +170,10 @@ inline void widen_program(const LanePlan& first, const Constants& lanes, Plan* w
     lanes.numbers(read[k].output.data, 3, [&](const LanePlan& p) { return p.law.read[k].output.data; });
     read[k].output.factor = lanes.number([&](const LanePlan& p) { return p.law.read[k].output.factor; });
   }
+  gather_knots(lanes, knot, from.knots, [](const LanePlan& p) { return p.law.knot; });
   lanes.numbers(constant, from.constants, [&](const LanePlan& p) { return p.law.constant; });
   w->law = {from.reads, from.curves, from.knots, from.constants, from.instructions, from.outputs, from.kinks,
-            from.inputs, read, from.curve, from.knot, constant, from.operation, from.operand, from.output, from.kink};
+            from.inputs, read, from.curve, knot, constant, from.operation, from.operand, from.output, from.kink};
 }
 
 template <class Constants>

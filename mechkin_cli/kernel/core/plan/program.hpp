@@ -78,9 +78,11 @@ struct ProgramCurve {
   double low, high;
 };
 // From x on: y + b u + c u^2 + d u^3 with u from x.
-struct Knot {
-  double x, y, b, c, d;
+template <class Number>
+struct KnotOf {
+  Number x, y, b, c, d;
 };
+using Knot = KnotOf<double>;
 
 // Arithmetic over quantities as data: registers of what is read, then one of each curve, then constants, then results of
 // instructions, which are those of a tape (tape.hpp).
@@ -90,7 +92,7 @@ struct ProgramOf {
   int inputs;  // registers of reads and curves
   const ReadOf<Number>* read;
   const ProgramCurve* curve;
-  const Knot* knot;
+  const KnotOf<Number>* knot;
   const Number* constant;
   const std::uint8_t* operation;
   const std::int32_t* operand;  // instructions x 3

@@ -16,6 +16,52 @@ constexpr double ON_BRANCH_POINT = 1e-11;
 // How near steps as short as they may be come to a place that ends a branch: the root of the square of a pivot.
 constexpr double NEAR_LIMIT = 1e-10;
 
+// A step (rad, length units of the inputs) across a jump of a function's slope: beside it rounding and curvature are as small.
+constexpr double KINK_STEP = 1e-7;
+// What a step across it may differ from the two tangents, in parts of these.
+constexpr double KINK_MISS = 1e-4;
+// Halvings down to it, and steps between them, are fewer.
+constexpr int KINK_TRIES = 200;
+
+// Whether functions of a plan choose: their slopes may jump.
+bool has_kinks(const FunctionTable& functions) {
+  const std::uint8_t* const end = functions.operation + functions.instructions;
+  return std::any_of(functions.operation, end, [](std::uint8_t operation) {
+    switch (operation) {
+      case TAPE_MAGNITUDE:
+      case TAPE_SIGN:
+      case TAPE_LARGER:
+      case TAPE_SMALLER:
+      case TAPE_WHOLE:
+      case TAPE_CHOOSE: return true;
+      default: return false;
+    }
+  });
+}
+
+// Where between two near nodes the branch turns from the tangent of the first into that of the second, in parts of the step
+// h; -1 where it does not, or where a determinant changes its sign: there the two tangents lead away from one another.
+double turning_place(const Node& a, const Node& b, double h) {
+  if (a.side != b.side) return -1.0;
+  double along = 0.0, square = 0.0, size = 0.0;
+  for (std::size_t s = 0; s < a.state.size(); ++s) {
+    const double turn = a.state_first[s] - b.state_first[s], way = (b.state[s] - a.state[s]) / h - b.state_first[s];
+    along += turn * way, square += turn * turn;
+    size += a.state_first[s] * a.state_first[s] + b.state_first[s] * b.state_first[s];
+  }
+  const double least = KINK_MISS * std::sqrt(size);
+  if (!(std::sqrt(square) > least)) return -1.0;
+  const double part = along / square;
+  double off = 0.0;
+  for (std::size_t s = 0; s < a.state.size(); ++s) {
+    const double slope = part * a.state_first[s] + (1.0 - part) * b.state_first[s];
+    const double miss = (b.state[s] - a.state[s]) / h - slope;
+    off += miss * miss;
+  }
+  const bool between = part >= -KINK_MISS && part <= 1.0 + KINK_MISS && std::sqrt(off) <= least;
+  return between ? std::fmin(std::fmax(part, 0.0), 1.0) : -1.0;
+}
+
 // Whether the inputs between two nodes are where the nodes' derivatives say: what the path does between them is seen.
 bool sees_between(const Path& path, const Stepper& stepper, const Node& a, const Node& b) {
   if (path.is_straight()) return true;
@@ -38,7 +84,7 @@ class Tracker {
   Tracker(const Path& path, const KernelUnit& unit, long rows, const double* sigma, const StepLimits& limits,
           const RowGuesses& out, long first, std::vector<Segment>* kept)
       : path_(path), unit_(unit), rows_(rows), sigma_(sigma), limits_(limits), out_(out), first_(first),
-        kept_(kept), stepper_(path, unit, limits), progress_(limits), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
+        kept_(kept), stepper_(path, unit, limits), progress_(limits), has_kinks_(has_kinks(stepper_.plan().functions)), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
 
   Track follow(double begin, double end, const double* start, const std::vector<double>& turn) {
     if (!stepper_.close(begin, start, &node_)) {
@@ -79,25 +125,77 @@ class Tracker {
     if (!last && h < least) return stop(TrackEnd::stalled, h);
     if (h * speed() < limits_.narrow && !last && looks()) return look();
     Node& next = next_;
-    next.least = HUGE_VAL;
-    if (stepper_.step(node_, h, last ? end_ : node_.sigma + h, &next) &&
-        (continue_turns(stepper_, node_, &next) || h <= limits_.angle_step) &&
-        sees_between(path_, stepper_, node_, next)) {
-      ++track_.steps;
-      const long from = row_;
-      while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
-      infill(stepper_, node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
-      if (kept_) keep(next);
-      reduce(&next);
-      step_ = std::fmin(stepper_.wanted_step(next), 4.0 * h);
-      std::swap(node_, next);
+    if (steps_to(node_, h, last ? end_ : node_.sigma + h, &next)) {
+      advance(next);
+      step_ = std::fmin(stepper_.wanted_step(node_), 4.0 * h);
       looks_ = looks_ || step_ * speed() >= limits_.narrow;
       return true;
     }
     ++track_.rejected;
     step_ = 0.5 * h;
+    if (has_kinks_ && looks_ && step_ * speed() < limits_.narrow && over_kink(h)) return true;
     if (looks() && step_ * speed() < limits_.narrow) return look();
     return step_ >= least || stop(TrackEnd::stalled, h);
+  }
+
+  bool steps_to(const Node& from, double h, double sigma, Node* next) {
+    next->least = HUGE_VAL;
+    return stepper_.step(from, h, sigma, next) && (continue_turns(stepper_, from, next) || h <= limits_.angle_step) &&
+           sees_between(path_, stepper_, from, *next);
+  }
+  // Goes on to a node, with the rows before it.
+  void advance(Node& next) {
+    ++track_.steps;
+    const long from = row_;
+    while (row_ < rows_ && sigma_[row_] <= next.sigma) ++row_;
+    infill(stepper_, node_, next, sigma_ + from, first_ + from, first_ + row_, out_);
+    go_to(next);
+  }
+  void go_to(Node& next) {
+    if (kept_) keep(next);
+    reduce(&next);
+    std::swap(node_, next);
+  }
+
+  // Over a place within a refused step at which the slope of a function jumps, if that is what refuses it: steps up to it, and
+  // one across. Rows within that one are closed from the tangent of their side. Without such a place nothing is changed.
+  bool over_kink(double h) {
+    std::vector<Node> way;
+    for (int tries = 0; h * speed() > KINK_STEP; ++tries) {
+      const Node& from = way.empty() ? node_ : way.back();
+      Node next;
+      if (tries >= KINK_TRIES || !(from.sigma + 0.5 * h < end_)) return false;
+      if (steps_to(from, 0.5 * h, from.sigma + 0.5 * h, &next))
+        way.push_back(std::move(next));
+      else
+        h *= 0.5;
+    }
+    const Node before = way.empty() ? node_ : way.back();
+    const double sigma = std::fmin(before.sigma + 2.0 * h, end_), step = sigma - before.sigma;
+    Node behind;
+    std::vector<double> guess;
+    stepper_.predict(before, step, &guess);
+    if (!(step > 0.0) || !stepper_.close_after(step, sigma, guess.data(), &behind)) return false;
+    const double part = turning_place(before, behind, step);
+    if (part < 0.0 || !(continue_turns(stepper_, before, &behind) || step <= limits_.angle_step)) return false;
+    std::vector<Node> row;
+    for (long k = row_; k < rows_ && sigma_[k] <= sigma; ++k) {
+      if (sigma_[k] <= before.sigma) continue;
+      const bool first = sigma_[k] - before.sigma < part * step;
+      stepper_.predict(first ? before : behind, sigma_[k] - (first ? before : behind).sigma, &guess);
+      row.emplace_back();
+      if (!stepper_.close_after(step, sigma_[k], guess.data(), &row.back())) return false;
+      adopt_turns(stepper_, behind.turn, &row.back());
+    }
+    for (Node& next : way) advance(next);
+    ++track_.steps;
+    for (Node& at : row) {
+      reduce(&at);
+      put_row(at, limits_.jump, first_ + row_++, out_);
+    }
+    go_to(behind);
+    step_ = stepper_.wanted_step(node_);
+    return true;
   }
 
   // What is left of the way is a rounding, as it is of a whole turn: no step is that short.
@@ -231,6 +329,7 @@ class Tracker {
   long row_ = 0;
   double end_ = 0.0, step_ = 0.0;
   std::vector<Limit> seen_;  // ends that were seen ahead
+  bool has_kinks_;
   bool looks_ = true;  // whether a refusal is looked into: not again where that led nowhere
 };
 
