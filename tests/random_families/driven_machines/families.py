@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from random_families.driven_machines import (
     cables,
+    cam_profiles,
     each_way,
     rebounds,
     rises,
@@ -22,6 +23,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "rebounds": rebounds.judge,
     "tracks": tracks.judge,
     "cables": cables.judge,
+    "cam_profiles": cam_profiles.judge,
 }
 
 

@@ -13,6 +13,7 @@ SEEDS = {
     "rebounds": 30,
     "tracks": 24,
     "cables": 24,
+    "cam_profiles": 24,
 }
 
 
