@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from random_families.driven_machines import each_way, rebounds, rises, tracks, wheels_in_space
+from random_families.driven_machines import (
+    cables,
+    cam_profiles,
+    each_way,
+    rebounds,
+    rises,
+    tracks,
+    wheels_in_space,
+)
 from random_families.driven_machines.judged import Judged
 
 FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
@@ -14,6 +22,8 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "rises": rises.judge,
     "rebounds": rebounds.judge,
     "tracks": tracks.judge,
+    "cables": cables.judge,
+    "cam_profiles": cam_profiles.judge,
 }
 
 

@@ -6,7 +6,15 @@ from __future__ import annotations
 import pytest
 from random_families.driven_machines.families import FAMILIES, judge
 
-SEEDS = {"wheels_in_space": 40, "each_way": 40, "rises": 20, "rebounds": 30, "tracks": 40}
+SEEDS = {
+    "wheels_in_space": 40,
+    "each_way": 40,
+    "rises": 20,
+    "rebounds": 30,
+    "tracks": 24,
+    "cables": 24,
+    "cam_profiles": 24,
+}
 
 
 @pytest.mark.parametrize("family", FAMILIES)
