@@ -1,8 +1,9 @@
 """The files of `mechanisms/couplings` against closed forms: ratios, torques by power, forces of
-teeth and strands, and loops by circles at 40 digits."""
+teeth and strands, loops by circles at 40 digits, and slots, arcs and rolling wheels."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import mpmath as mp
@@ -204,6 +205,146 @@ def test_cylinder_boom() -> None:
     near(rows["norm(A.force)"], np.hypot(across, upwards), 1e-10)
 
 
+Law = Callable[[Any], Any]
+
+
+def follows(rows: Any, crank: str, name: str, law: Law, rate: float, turns: bool = False) -> None:
+    """A coordinate and its rates are those of a law of a crank's turn (rad) of a constant rate; it
+    `turns`: by that many radians, not lengths."""
+    expected: list[list[float]] = [[], [], []]
+    with mp.workdps(40):
+        for turn in rows[crank]:
+            at = mp.radians(mp.mpf(float(turn)))
+            one, two = (mp.diff(law, at, order) for order in (1, 2))
+            value = mp.degrees(law(at)) if turns else law(at)
+            for known, each in zip(expected, (value, rate * one, rate**2 * two), strict=True):
+                known.append(float(each))
+    for order, known in zip(("", "_dot", "_ddot"), expected, strict=True):
+        size = np.max(np.abs(known))
+        np.testing.assert_allclose(rows[name + order], known, rtol=1e-11, atol=1e-12 * size)
+
+
+def slopes(rows: Any, crank: str, work: Law) -> list[float]:
+    """The slope of a work (N mm) by a crank's turn (rad), in each row."""
+    with mp.workdps(40):
+        turns = [mp.radians(mp.mpf(float(turn))) for turn in rows[crank]]
+        return [float(mp.diff(work, at)) for at in turns]
+
+
+def test_geneva_drive() -> None:
+    """tan(wheel) = -r sin/(d - r cos) with d = r sqrt(2): a quarter, at rest where it begins and
+    ends. The crank moves the wheel's inertia, whose pin pushes square to the slot."""
+    rows = rows_of("geneva_drive")
+
+    def law(x: Any) -> Any:
+        return -mp.atan(mp.sin(x) / (mp.sqrt(2) - mp.cos(x)))
+
+    follows(rows, "A.theta", "B.theta", law, 6.0, turns=True)
+    turned, rate = rows["B.theta"], rows["B.theta_dot"]
+    near(turned[0] - turned[-1], 90.0)
+    near(rate[[0, -1]], 0.0)
+    energy = slopes(rows, "A.theta", lambda x: (6 * mp.diff(law, x)) ** 2 / 2)
+    near(rows["A.effort"], energy, 1e-10)
+    # on the slot at the pin's distance from the wheel's axis
+    crank = np.radians(rows["A.theta"])
+    arm = 50.0 * np.sqrt(3.0 - 2.0 * np.sqrt(2.0) * np.cos(crank))
+    near(rows["norm(D.force)"], np.abs(rows["B.theta_ddot"]) / arm, 1e-10)
+
+
+def test_geneva_lock() -> None:
+    """An arc about the shaft: the wheel stands still, its load of 2 N m bears on the disc at an
+    angle of 30 deg to the line of centres, and through the shaft."""
+    rows = rows_of("geneva_lock")
+    near(rows["B.theta"], 0.0)
+    near(rows["B.theta_dot"], 0.0)
+    # from the arc's beginning at -135 deg to the corner
+    near(rows["D.s"], 40.0 * np.radians(30.0 - rows["A.theta"] + 135.0))
+    near(rows["norm(D.force)"], 2000.0 / (50.0 * np.sqrt(2.0) * 0.5))
+    near(rows["A.effort"], 0.0, 1e-9)
+
+
+def test_scotch_yoke() -> None:
+    """r cos: a yoke of 2 kg in pure harmonic motion, pushed along its guide alone."""
+    rows = rows_of("scotch_yoke")
+    follows(rows, "A.theta", "S.s", lambda x: 30 * mp.cos(x) - 30, 20.0)
+    theta = np.radians(rows["A.theta"])
+    near(rows["A.effort"], 2e-3 * (30.0 * 20.0) ** 2 * np.sin(theta) * np.cos(theta), 1e-10)
+    near(rows["norm(D.force)"], 2e-3 * 30.0 * 400.0 * np.abs(np.cos(theta)), 1e-10)
+
+
+def test_the_quick_return_of_whitworth() -> None:
+    """The arm's end at 40 mm turns as the crank's pin is seen from the arm's axis; both dead
+    centres of the ram lie 180 deg + 2 asin(d/r) apart."""
+    rows = rows_of("whitworth")
+
+    def arm(x: Any) -> Any:
+        """From the drawing, where the pin is level with the arm's axis, left of it."""
+        at = x - mp.pi + mp.asin(mp.mpf(2) / 5)
+        aside = mp.atan2(2 * mp.cos(at), 5 + 2 * mp.sin(at))
+        return at + aside + mp.pi
+
+    def ram(x: Any) -> Any:
+        turn = arm(x)
+        return 40 * mp.cos(turn) + mp.sqrt(150**2 - (40 * mp.sin(turn)) ** 2) - 190
+
+    follows(rows, "A.theta", "B.theta", arm, 5.0, turns=True)
+    follows(rows, "A.theta", "S.s", ram, 5.0)
+    near(rows["A.effort"], slopes(rows, "A.theta", lambda x: 200 * ram(x)), 1e-9)
+    back = 180.0 - 2.0 * np.degrees(np.arcsin(20.0 / 50.0))
+    text = FILE_OF["whitworth"].read_text(encoding="utf-8")
+    text = text.replace("step: 15", f"step: {back:.15g}").replace("to: 360", f"to: {back:.15g}")
+    ends = mk.loads(text).analyze()
+    near(ends["S.s"], [0.0, -80.0], 1e-9)
+    near(ends["S.s_dot"], 0.0, 1e-9)
+
+
+def test_cardan_gears() -> None:
+    """The planet turns as much as the carrier, the other way: a point of its pitch circle has
+    y = 0, one at 10 mm the half axes 30 + 10 and 30 - 10. 100 N along the straight way."""
+    rows = rows_of("cardan_gears")
+    theta = np.radians(rows["C.theta"])
+    near(rows["P.theta"], -2.0 * rows["C.theta"])
+    near(rows["straight.position.x"], 60.0 * np.cos(theta))
+    near(rows["straight.position.y"], 0.0)
+    near(rows["straight.velocity.x"], -600.0 * np.sin(theta), 1e-10)
+    near(rows["ellipse.position.x"], 40.0 * np.cos(theta))
+    near(rows["ellipse.position.y"], 20.0 * np.sin(theta))
+    near(rows["C.effort"], -6000.0 * np.sin(theta), 1e-9)
+
+
+def test_cardioid_gears() -> None:
+    """x = 2 a cos - a cos 2, y = 2 a sin - a sin 2, with a cusp where the pen stands still."""
+    rows = rows_of("cardioid_gears")
+    theta = np.radians(rows["C.theta"])
+    near(rows["P.theta"], rows["C.theta"])
+    near(rows["pen.position.x"], 48.0 * np.cos(theta) - 24.0 * np.cos(2.0 * theta))
+    near(rows["pen.position.y"], 48.0 * np.sin(theta) - 24.0 * np.sin(2.0 * theta))
+    near(rows["norm(pen.velocity)"], 2.0 * 2.0 * 48.0 * np.abs(np.sin(theta / 2.0)), 1e-10)
+
+
+def test_curved_swash_plate() -> None:
+    """A sphere of 90 whose centre goes round at 12 mm, seen from a nose at 32 mm: the pressure and
+    the plunger's inertia along the bore are the axial part of the force square to the sphere."""
+    rows = rows_of("curved_swash_plate")
+    height = mp.sqrt(90**2 - 20**2)
+
+    def below(x: Any) -> Any:
+        return mp.sqrt(90**2 - 32**2 - 12**2 + 2 * 32 * 12 * mp.cos(x))
+
+    follows(rows, "shaft_bearing.theta", "bore.s", lambda x: height - below(x), 150.0)
+    axial = 2262.0 + 0.06e-3 * rows["bore.s_ddot"]
+    with mp.workdps(40):
+        turns = [mp.radians(mp.mpf(float(turn))) for turn in rows["shaft_bearing.theta"]]
+        steep = np.array([float(below(at)) for at in turns]) / 90.0
+    near(rows["norm(nose.force)"], axial / steep, 1e-10)
+    work = slopes(
+        rows,
+        "shaft_bearing.theta",
+        lambda x: (150 * mp.diff(below, x)) ** 2 * mp.mpf("0.06e-3") / 2 - 2262 * below(x),
+    )
+    near(rows["shaft_bearing.effort"], work, 1e-9)
+
+
 NAMES = (
     "tackle",
     "cylinder_boom",
@@ -214,17 +355,31 @@ NAMES = (
     "bevel_differential",
     "worm_gear",
     "open_belt",
+    "geneva_drive",
+    "geneva_lock",
+    "scotch_yoke",
+    "whitworth",
+    "cardan_gears",
+    "cardioid_gears",
+    "curved_swash_plate",
 )
+
+NOT_REPEATED = {"geneva_lock": {"wheel", "rate", "torque", "way"}, "cardan_gears": {"straight_y"}}
+"""Columns that are zero but for rounding, and a length along a curve."""
+
+POWERLESS = {"geneva_lock", "cardioid_gears"}
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_table_is_repeated_in_double_double(name: str) -> None:
     """Ratios, places and pretension are recorded, whether they are written or computed."""
     errors = rows_of(name).errors
-    assert {column.why for column in errors.columns} == {""}
+    assert {column.label for column in errors.columns if column.why} == NOT_REPEATED.get(
+        name, set()
+    )
     assert errors.digits >= 13
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in POWERLESS])
 def test_power_of_every_row_balances(name: str) -> None:
     assert np.nanmax(np.abs(rows_of(name)["row.power_error"])) < 1e-12
