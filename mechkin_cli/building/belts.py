@@ -243,7 +243,7 @@ def screw_relation(
     lead = fields.number((*path, "lead"), section.lead, LENGTH)
     if fields.error_count > errors:
         return None
-    if lead**2 <= tolerances.SMALLEST_DIVISOR**2:
+    if abs(lead) <= tolerances.SMALLEST_DIVISOR:
         text = "a thread has a lead"
         hint = "give the length per turn, negative for a left-hand thread"
         fields.error("no-lead", (*path, "lead"), text, hint, limit="not 0")

@@ -15,7 +15,15 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
-from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, number_of, scalar
+from mechkin_cli.expressions import (
+    Expression,
+    ExpressionError,
+    Quantity,
+    UnknownName,
+    Vector as VectorValue,
+    number_of,
+    scalar,
+)
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import (
     ELEMENTARY,
@@ -38,11 +46,11 @@ from mechkin_cli.mechanism import (
     unit,
     upright,
 )
-from mechkin_cli.record import replace
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.schema import Curve, MechanismFile, Surface
-from mechkin_cli.tape import Recorded, as_recorded, cos, is_traced, of_numbers, sin
+from mechkin_cli.tape import JetNumber, Recorded, as_recorded, cos, is_traced, of_numbers, sin
 from mechkin_cli.tolerances import PARALLEL
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension, UnitSystem
 
 FULL_TURN = (0.0, 2.0 * pi)
 """Ends of an angle that comes back to its begin."""
@@ -328,6 +336,38 @@ def _range(
     return (first, last), dimension
 
 
+@dataclass(frozen=True)
+class _Formula:
+    """The coordinates x, y, z of a place (m) from an `origin`: numbers, or expressions of those
+    along a curve or surface, which have `dimensions` by name, and of the file's `parameters`."""
+
+    coordinates: tuple[Expression | float, ...]
+    dimensions: Mapping[str, Dimension]
+    parameters: Mapping[str, Quantity]
+    origin: Vector
+    units: UnitSystem
+
+    def __call__(self, *at: Any) -> list[Any]:
+        """The coordinates at numbers of any kind, in SI."""
+        named = dict(zip(self.dimensions, at, strict=True))
+
+        def resolve(name: str) -> Quantity:
+            if name in named:
+                return Quantity(named[name], self.dimensions[name])
+            parameter = self.parameters[name]
+            if not isinstance(at[0], JetNumber) or isinstance(parameter.value, VectorValue):
+                return parameter
+            return replace(parameter, value=at[0].beside(parameter.value))
+
+        values: list[Any] = [
+            one.evaluate(resolve, self.units).value if isinstance(one, Expression) else one
+            for one in self.coordinates
+        ]
+        if self.origin == ZERO:
+            return values
+        return [value - off for value, off in zip(values, self.origin, strict=True)]
+
+
 def _formula(
     fields: Fields,
     path: Path,
@@ -338,7 +378,7 @@ def _formula(
 ) -> Track | None:
     """A track by expressions of its parameters."""
     parameters = dict(fields.parameters)
-    expressions = []
+    expressions: list[Expression | float] = []
     for k, text in enumerate(texts):
         try:
             expression = fields.definitions.parse(text)
@@ -353,25 +393,11 @@ def _formula(
         except ExpressionError as error:
             fields.expression_error((*path, "at", k), error)
             return None
-        expressions.append((expression, bare))
+        expressions.append(expression if bare is None else fields.units.to_si(bare, LENGTH))
 
-    def places(*at: Any) -> list[Any]:
-        moving = {
-            name: Quantity(value, dimension)
-            for (name, dimension), value in zip(dimensions.items(), at, strict=True)
-        }
-        resolve = _resolver(fields, {**parameters, **moving})
-        values: list[Any] = [
-            fields.units.to_si(bare, LENGTH)
-            if bare is not None
-            else expression.evaluate(resolve, fields.units).value
-            for expression, bare in expressions
-        ]
-        if fields.origin == ZERO:
-            return values
-        return [value - off for value, off in zip(values, fields.origin, strict=True)]
-
-    return Track(ends, closed, places)
+    coordinates = tuple(expressions)
+    formula = _Formula(coordinates, dimensions, fields.parameters, fields.origin, fields.units)
+    return Track(ends, closed, formula)
 
 
 def _sampled(quantity: Quantity) -> Quantity:

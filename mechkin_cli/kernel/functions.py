@@ -11,7 +11,7 @@ arguments; special values (signed zeros, infinities, nan, values outside the dom
 from __future__ import annotations
 
 from math import ldexp, pi
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,10 +154,14 @@ def power(base: Value, exponent: Value) -> Value:
     return _apply(_Operation.POWER, base, exponent)
 
 
-def _apply(operation: _Operation, first: Value, second: Value) -> Value:
+def _apply(operation: _Operation, first: Value, second: Any) -> Value:
     x, y = _rows(first), _rows(second)
+    if x.size != y.size:  # rows with one number
+        x, y = map(_rows, np.broadcast_arrays(x, y))
     result: FloatArray = _kernel.elementwise(operation, x, y, width())
-    return result if isinstance(first, np.ndarray) else float(result[0])
+    if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
+        return result  # type: ignore[return-value]
+    return float(result[0])
 
 
 def _rows(value: float | FloatArray) -> FloatArray:

@@ -29,6 +29,12 @@ class RowNumber(Traced):
     __slots__ = ()
     is_row = True
 
+    @property
+    def constant(self) -> Any:
+        """What the register of a constant holds; None of one that differs from row to row."""
+        recorder: Any = self.recorder
+        return recorder.constants.get(self.register)
+
     __truediv__ = Recorded.__truediv__
     __rtruediv__ = Recorded.__rtruediv__
 
@@ -349,17 +355,20 @@ def _rate(jet: JetNumber) -> JetNumber:
 
 def _power(base: JetNumber, exponent: JetNumber) -> JetNumber:
     n = exponent.orders[0]
-    if any(not _is_zero(order) for order in exponent.orders[1:]) or getattr(n, "is_row", False):
+    # a parameter is a constant of the recording
+    fixed = n.constant if isinstance(n, RowNumber) else n
+    if fixed is None or any(not _is_zero(order) for order in exponent.orders[1:]):
         return _ONE["EXP"](exponent * _ONE["LOG"](base))
-    count = n.recorded if isinstance(n, Recorded) else n
-    if count == int(count) and abs(count) <= _LARGEST_POWER:
+    count = fixed.recorded if isinstance(fixed, Recorded) else fixed
+    # any other exponent is recorded in another way
+    if abs(count) <= _LARGEST_POWER and count == int(count) and fixed == count:
         return _whole_power(base, int(count))
 
     def slopes(x: Any) -> Sequence[Any]:
-        value = of_two("POWER", x, n)
-        first = n * value / x
-        second = (n - 1.0) * first / x
-        return value, first, second, (n - 2.0) * second / x
+        # n x^(n-1), not n x^n / x, which is none at x = 0
+        value, first, second, third = (of_two("POWER", x, n - float(k)) for k in range(4))
+        falling = n * (n - 1.0)
+        return value, n * first, falling * second, falling * (n - 2.0) * third
 
     return _through(slopes)(base)
 

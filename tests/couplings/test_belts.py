@@ -282,6 +282,14 @@ def test_a_screw_moves_its_nut_and_bears_its_thrust(sense: int, lead: float) -> 
         )
 
 
+def test_slopes_by_the_lead_of_a_screw() -> None:
+    """s = -h theta/(2 pi), and the torque is that of the load at its nut."""
+    text = SCREW.replace("SENSE", "1").replace("LEAD mm", "h") + "parameters: {h: 5 mm}\n"
+    slopes = mk.loads(text).sensitivities(["S.s", "A.effort"], ["h"])
+    np.testing.assert_allclose(slopes["S.s", "h"], [0.0, -1.0, -2.0], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(slopes["A.effort", "h"], 80.0 / (2 * np.pi), rtol=1e-9)
+
+
 def test_a_screw_agrees_with_a_helical_pair() -> None:
     """The same nut on H, which its guide keeps from turning: motion and torque."""
     text = SCREW.replace("SENSE", "1").replace("LEAD", "5")
