@@ -13,6 +13,8 @@ import yaml
 from couplings.dense import Dense, State
 
 import mechkin_cli as mk
+from mechkin_cli.balances.newton_euler import dense_system
+from mechkin_cli.building.tables import unknown_names
 from mechkin_cli.response import Impact, ResponseResult
 
 R1, R2, I1, I2, BACKLASH = 0.1, 0.2, 0.02, 0.03, 0.002
@@ -522,3 +524,57 @@ def test_a_smaller_and_smaller_play_comes_to_the_gear() -> None:
     assert all(
         one <= 0.5 * b / R1 * (1.0 + 1e-9) for one, b in zip(off, (1e-3, 1e-4, 1e-5), strict=True)
     )
+
+
+FLANK = (
+    "motion: {inputs: {A.theta: {from: 0, to: 1, step: 0.25, rate: 1, acceleration: 2}, "
+    "K.play: {at: 1 mm}}}\n"
+)
+
+
+def test_the_dense_system_of_a_row_on_a_flank_has_what_pushes_the_play() -> None:
+    model = mk.loads(f"{OFF_CENTRE}couplings: {{K: {GEAR}}}}}\n{FLANK}")
+    result = model.analyze()
+    system = dense_system(result.result, 1)
+    assert {u.group for u in system.unknowns} == set(unknown_names(model.problem))
+    matrix, right = np.array(system.coefficients), np.array(system.right)
+    values = np.linalg.solve(matrix, right)
+    asked = ["A.theta.effort", "K.play.effort", "K.torque"]
+    found = {u.name: v for u, v in zip(system.unknowns, values, strict=True)}
+    for name in asked:
+        assert found[name] == pytest.approx(result[name][1], rel=1e-11)
+    turns = result["A.theta"], result["B.theta"]
+    np.testing.assert_allclose(R1 * turns[0] + R2 * turns[1], 0.001, atol=1e-15)
+
+
+def test_rows_on_a_flank_are_proven_bounded_and_ranged_by_the_play() -> None:
+    text = f"{OFF_CENTRE}couplings: {{K: {GEAR}}}}}\n{FLANK}"
+    columns = "tables: [{name: t, columns: [B.theta, K.torque, A.effort, K.tooth_force.x]}]\n"
+    model = mk.loads(text + columns)
+    result = model.analyze()
+    assert set(result.result.proof) == {2}
+    assert result.errors.digits >= 13
+    (ends,) = model.ranges("K.play").ranges
+    assert (ends.lower.value, ends.upper.value) == pytest.approx((-0.001, 0.001), rel=1e-12)
+    assert model.mobility().mobility == 2
+
+
+def test_play_is_the_same_in_any_lanes_and_in_variants() -> None:
+    run = (
+        "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
+        "time: {from: 0, to: 0.05, step: 0.005}}"
+    )
+    coupling = f"{GEAR.replace('2 mm', 'b')}, restitution: 0.4}}"
+    text = f"{PAIR}couplings: {{K: {coupling}}}\nresponses: {{run: {run}}}\n"
+    names = ["A.theta", "K.play", "K.tooth_force"]
+    model = mk.loads(f"{text}parameters: {{b: 2 mm}}\n")
+    one = model.respond("run", names, lanes=2, threads=1)
+    for lanes, threads in ((4, 1), (8, 2)):
+        other = model.respond("run", names, lanes=lanes, threads=threads)
+        for name in names:
+            assert one[name].tobytes() == other[name].tobytes()
+    widths = [0.001, 0.002, 0.004]
+    found = model.vary({"b": widths}, ["A.theta"], run="run")
+    for number, width in enumerate(widths):
+        alone = mk.loads(f"{text}parameters: {{b: {width} m}}\n").respond("run", names)
+        np.testing.assert_array_equal(found["A.theta"][number], alone["A.theta"])
