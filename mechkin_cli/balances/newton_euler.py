@@ -148,13 +148,12 @@ def transmitted(
     first = relation.terms[0]
     word, dimension = ("force", FORCE) if relation.length else ("torque", MOMENT)
     others: list[tuple[str, Wrench]] = []
-    if relation.mesh is None:
-        for term in relation.terms:
-            joint = joints[term.joint.name]
-            unit = coordinate_wrench(joint, term.coordinate, motion)
-            wrench = unit.times(term.factor / first.factor)
-            others += [(joint.second, wrench), (joint.first, wrench.times(-1.0))]
-    else:
+    for term in relation.along_coordinates:
+        joint = joints[term.joint.name]
+        unit = coordinate_wrench(joint, term.coordinate, motion)
+        wrench = unit.times(term.factor / first.factor)
+        others += [(joint.second, wrench), (joint.first, wrench.times(-1.0))]
+    if relation.mesh is not None:
         mesh = relation.mesh
         one, other = (_reached(mesh, joints, last) for last in (False, True))
         carrier = motion[mesh.carrier].frame
@@ -162,7 +161,7 @@ def transmitted(
         force = force_at(
             motion.point(Attached(mesh.carrier, mesh.point)), carrier.vector(push)
         ).times(1.0 / first.factor)
-        others = [(other, force), (one, force.times(-1.0))]
+        others += [(other, force), (one, force.times(-1.0))]
     return PairTerm(f"{name}.{word}", name, dimension, Wrench(), 4, tuple(others))
 
 
@@ -265,8 +264,8 @@ def dense_system(
     terms = [*(unknown for of_pair, _ in pairs for unknown in of_pair), *inputs, *related]
     unknowns = tuple(sorted(terms, key=lambda unknown: unknown.rank))
     conditions = [condition for _, of_pair in pairs for condition in of_pair]
-    ends = {joint.name: (joint.first, joint.second) for joint in mechanism.joints.values()}
-    ends |= dict.fromkeys(mechanism.couplings, ("", ""))
+    ends = dict.fromkeys(mechanism.couplings, ("", ""))
+    ends |= {joint.name: (joint.first, joint.second) for joint in mechanism.joints.values()}
     borne = borne_wrenches(result, motion, row)
     equations: list[tuple[str, Dimension]] = []
     coefficients: Matrix = []

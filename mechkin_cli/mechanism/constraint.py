@@ -144,6 +144,12 @@ class Relation(NamedTuple):
         return self.terms[-1].joint.is_play
 
     @property
+    def along_coordinates(self) -> tuple[Term, ...]:
+        """The terms that it acts on along their coordinates: those that its mesh does not pass."""
+        passed = () if self.mesh is None else [name for name, _ in self.mesh.way]
+        return tuple(term for term in self.terms if term.joint.name not in passed)
+
+    @property
     def has_teeth(self) -> bool:
         """Whether the force of its mesh is one."""
         return self.mesh is not None and self.mesh.other is None

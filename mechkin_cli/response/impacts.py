@@ -418,8 +418,11 @@ def joined(before: MotionRows, later: MotionRows, work: tuple[float, float]) -> 
     )
 
 
-def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diagnostic]:
-    """How often each coordinate rebounds and with what impulse, and which comes to rest."""
+def impact_notes(
+    result: ResponseResult, impacts: Sequence[Impact], at_last: Sequence[Limit]
+) -> list[Diagnostic]:
+    """How often each coordinate rebounds and with what impulse, and which comes to rest, those
+    `at_last` for good."""
     units, notes = result.units, []
     for limit in dict.fromkeys(limit for impact in impacts for limit in impact.limits):
         own = [impact for impact in impacts if limit in impact.limits]
@@ -428,11 +431,13 @@ def impact_notes(result: ResponseResult, impacts: Sequence[Impact]) -> list[Diag
         dimension = (MOMENT if is_angle(limit.coordinate) else FORCE) * TIME
         times = "once" if len(own) == 1 else f"{len(own)} times, first"
         text = f"{limit.name} comes to its limit {times} at {at[0]}"
-        rests = limit in own[-1].held
+        rests = any(limit in impact.held for impact in own)
         if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
             text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
-        if rests:
+        if limit in at_last:
             text += f", and rests at it from {at[-1]} on"
+        elif rests:
+            text += ", rests at it, and leaves it again"
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)

@@ -74,7 +74,7 @@ from mechkin_cli.verdict import Status
 if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.kernel._kernel import DrivenLaws
-    from mechkin_cli.mechanism import Problem, ResponseProblem, Wanted
+    from mechkin_cli.mechanism import Limit, Problem, ResponseProblem, Wanted
     from mechkin_cli.show import Floats
 
 
@@ -395,6 +395,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         result = rows_of(one, moved)
     rebounds: list[Rebound] = []
     contacts: list[Contact] = []
+    at_last: tuple[Limit, ...] = ()
     left: list[int] = []
     met = 0
     while (number := touched_limit(one.response, moved)) is not None:
@@ -426,7 +427,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         if struck is not None:
             impact = struck.impact._replace(held=touch.limits(resting.held))
             rebounds.append(struck._replace(impact=impact))
-        before, was, left = moved, left, []
+        before, was, left, at_last = moved, left, [], touch.limits(resting.held)
         if resting.held:
             motion = RestingMotion(one.free, one.response, resting.held, begun, packing)
             later, own = motion.onward(begin, times)
@@ -459,7 +460,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         result = rows_of(replace(one, response=response, free=held), moved)
     if rebounds:
         result.rebounds = tuple(rebounds)
-        result.row_states.diagnostics += impact_notes(result, result.impacts)
+        result.row_states.diagnostics += impact_notes(result, result.impacts, at_last)
     return result
 
 

@@ -38,6 +38,11 @@ CAM = (
     'function, of: A.theta, gives: S.s, value: "10 mm*(1 - cos(A.theta))"}}, or {type: table, '
     "table: lift.csv, over: A.theta, gives: S.s}"
 )
+PLAY = (
+    "play between flanks is a key of a coupling: couplings: {K: {type: gear, joints: [A, B], "
+    "teeth: [20, 40], backlash: 0.1 mm, restitution: 0.4}}; where flanks part and meet is computed "
+    "in responses"
+)
 TIE = (
     "coordinates that move in a ratio are a coupling: couplings: {K: {type: linear, terms: "
     "{A.theta: 1, B.theta: -2}}}; between two inputs of a sweep write {B.theta: {with: A.theta/2, "
@@ -56,6 +61,7 @@ ELSEWHERE: Final = {
     **dict.fromkeys(("belt", "belts", "pulley", "pulleys", "timing_belt", "belt_drive"), BELT),
     **dict.fromkeys(("sprocket", "sprockets", "roller_chain", "chains", "chain_drive"), BELT),
     **dict.fromkeys(("cam", "cams", "follower", "followers"), CAM),
+    **dict.fromkeys(("backlash", "play", "lash", "slop", "lost_motion", "gear_play"), PLAY),
     **dict.fromkeys(("tie", "ties", "ratio", "ratios", "coupled", "link_ratio"), TIE),
     **dict.fromkeys(("coupling", "coupler_ratio", "synchronize", "sync"), TIE),
 }

@@ -282,9 +282,10 @@ def advice_for_type(section: str, word: str, in_plane: bool = False) -> str | No
 
 FRICTION = "friction is a load: loads: [{type: friction, joint: A, coefficient: 0.1, ...}]"
 CONTACT = (
-    "mechkin has no contact: bodies that stay in touch are a joint (in a plane Ps, a pin in a "
-    "slot; in space Sp, a sphere on a plane, and Sg, one in a groove), and a response may end "
-    "where they would meet (stop:)"
+    "mechkin has no contact of bodies: those that stay in touch are a joint (in a plane Ps, a pin "
+    "in a slot; in space Sp, a sphere on a plane, and Sg, one in a groove); a coordinate strikes "
+    "its limit with limits: {S.s: {max: 200 mm, restitution: 0.6}}, flanks of a gear with "
+    "backlash: 0.1 mm"
 )
 RIGID = "links are rigid; put a spring between two of them: {type: spring, joint: A, ...}"
 CONTROL = (

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import sqrt, tan
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ import yaml
 from couplings.dense import Dense, State
 
 import mechkin_cli as mk
+from mechkin_cli.balances.newton_euler import dense_system
+from mechkin_cli.building.tables import unknown_names
 from mechkin_cli.response import Impact, ResponseResult
 
 R1, R2, I1, I2, BACKLASH = 0.1, 0.2, 0.02, 0.03, 0.002
@@ -418,8 +421,9 @@ LASHED = {"K": {**TOOTHED["K"], "backlash": 0.002, "restitution": 0}}
 UNITS = {"length": "m", "angle": "rad", "mass": "kg", "force": "N"}
 
 
-def struck(whole: Dense, state: State, e: float) -> tuple[State, np.ndarray, np.ndarray]:
-    """The state behind an impact of the flanks; what teeth give, and what the joint A."""
+def struck(whole: Dense, state: State, e: float) -> tuple[State, dict[str, np.ndarray]]:
+    """The state behind an impact of the flanks; what teeth give, as K, and what joints do, forces
+    and moments about the origin."""
     conditions, owners = whole.conditions(state)
     keep = whole.kept
     jacobian = np.array([c.by for c in conditions])[:, keep]
@@ -429,8 +433,13 @@ def struck(whole: Dense, state: State, e: float) -> tuple[State, np.ndarray, np.
     one, other, at, along, away = mesh
     act = np.array([c.by for c in conditions]).T
     row = owners.index("K")
+    # flanks part by what the force along them works on
+    flank = whole.pushed(other, along, at, state) + whole.pushed(one, -along, at, state)
+    jacobian[row] = flank[keep]
+    rate = float(flank @ state.rates)
+    assert rate == pytest.approx(float(conditions[row].rate), rel=1e-12)
     # the flank of the impact: the multiplier is the moment on the first wheel, against its turn
-    side = -np.sign(conditions[row].rate)
+    side = -np.sign(rate)
     force = along + side * away
     act[:, row] = whole.pushed(other, force, at, state) + whole.pushed(one, -force, at, state)
     count, size = len(conditions), len(keep)
@@ -439,16 +448,16 @@ def struck(whole: Dense, state: State, e: float) -> tuple[State, np.ndarray, np.
     matrix[:size, size:] = -act[keep]
     matrix[size:, :size] = jacobian
     right = np.concatenate([mass[np.ix_(keep, keep)] @ state.rates[keep], np.zeros(count)])
-    right[size + row] = -e * conditions[row].rate
+    right[size + row] = -e * rate
     solved = np.linalg.solve(matrix, right)
     rates = np.zeros(whole.width)
     rates[keep] = solved[:size]
-    bearing = np.zeros(2)
+    given = {"K": solved[size + row] * force}
     for number, owner in enumerate(owners):
-        if owner == "A":
-            bearing += solved[size + number] * whole.wrench("A", act[:, number], state)[:2]
-    after = State(state.centres, state.turns, rates, state.angles)
-    return after, solved[size + row] * force, bearing
+        if owner != "K":
+            wrench = solved[size + number] * whole.wrench(owner, act[:, number], state)
+            given[owner] = given.get(owner, np.zeros(6)) + wrench
+    return State(state.centres, state.turns, rates, state.angles), given
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5])
@@ -459,7 +468,7 @@ def test_a_gear_with_play_in_a_linkage_is_that_of_all_its_bodies(e: float) -> No
     efforts = {"M.theta": 3.0}
 
     def play(state: State) -> float:
-        return 0.1 * (state.angles["M"] + 2.0 * state.angles["A"])
+        return float(0.1 * (state.angles["M"] + 2.0 * state.angles["A"]))
 
     def beyond(state: State) -> float:
         return abs(play(state)) - 0.001
@@ -469,7 +478,7 @@ def test_a_gear_with_play_in_a_linkage_is_that_of_all_its_bodies(e: float) -> No
     *flown, met = loose.followed(start, efforts, times, beyond)
     at = loose.ended
     assert at is not None
-    after, teeth, bearing = struck(whole, met, e)
+    after, given = struck(whole, met, e)
     written = yaml.safe_dump({"format": 1, "units": UNITS, **LINKAGE, "couplings": LASHED})
     written = written.replace("restitution: 0", f"restitution: {e}")
     later = np.linspace(at, at + 0.05, 11).tolist()
@@ -481,10 +490,9 @@ def test_a_gear_with_play_in_a_linkage_is_that_of_all_its_bodies(e: float) -> No
     impact = impacts_of(rows)[0]
     assert impact.time == pytest.approx(at, rel=1e-9)
     cells = cells_of(rows)
-    np.testing.assert_allclose(
-        [cells[f"K.tooth_impulse.{axis}"][0] for axis in "xy"], teeth[:2], rtol=1e-8
-    )
-    np.testing.assert_allclose([cells[f"A.impulse.{axis}"][0] for axis in "xy"], bearing, rtol=1e-8)
+    for name in ("K.tooth_impulse", "A.impulse", "C.impulse"):
+        told = [cells[f"{name}.{axis}"][0] for axis in "xy"]
+        np.testing.assert_allclose(told, given[name[0]][:2], rtol=1e-8)
     names = ["M.theta", "A.theta", "B.theta", "D.theta"]
     solver = loose if e > 0.0 else whole
     going = solver.followed(after, efforts, later, beyond if e > 0.0 else None)
@@ -506,6 +514,60 @@ def test_a_gear_with_play_in_a_linkage_is_that_of_all_its_bodies(e: float) -> No
     assert np.nanmax(rows["row.energy_error"]) < 1e-10
 
 
+HELICAL = {
+    "links": {
+        "one": {
+            "mass": 1.0,
+            "center_of_mass": [0.02, -0.03, 0.01],
+            "inertia": {"xx": 0.01, "yy": 0.015, "zz": 0.02},
+        },
+        "two": {
+            "mass": 2.0,
+            "center_of_mass": [0.33, 0.05, -0.02],
+            "inertia": {"xx": 0.02, "yy": 0.025, "zz": 0.03},
+        },
+    },
+    "joints": {
+        "A": {"type": "R", "links": ["ground", "one"], "point": [0, 0, 0], "axis": [0, 0, 1]},
+        "B": {"type": "C", "links": ["ground", "two"], "point": [0.3, 0, 0], "axis": [0, 0, -1]},
+    },
+}
+
+
+@pytest.mark.parametrize("rate", [2.0, -2.0])
+def test_helical_teeth_strike_along_their_flank(rate: float) -> None:
+    """A wheel that may slide along its axis is thrown along it, too."""
+    gear: dict[str, Any] = {"type": "gear", "joints": ["A", "B"], "teeth": [20, 40]}
+    gear |= {"pressure_angle": 0.35, "helix": 0.3}
+    loose, whole = Dense(HELICAL), Dense({**HELICAL, "couplings": {"K": gear}})
+    # the flanks of a pinion with r = 0.1 meet after half of 2 mm
+    turn = np.sign(rate) * 0.001 / R1
+    place = loose.closed(loose.at_home(), {"A.theta": turn, "B.theta": 0.0, "B.s": 0.0})
+    met = loose.with_rates(place, {"A.theta": rate, "B.theta": 0.0, "B.s": 0.0})
+    after, given = struck(whole, met, 0.4)
+    lashed = {**gear, "backlash": 0.002, "restitution": 0.4}
+    text = yaml.safe_dump({"format": 1, "units": UNITS, **HELICAL, "couplings": {"K": lashed}})
+    run = (
+        f"responses: {{run: {{start: {{A.theta: 0, B.theta: 0, B.s: 0, A.theta_dot: {rate}}}, "
+        "time: {from: 0, to: 0.006, step: 0.001}}}\n"
+    )
+    rows = mk.loads(text + run).respond("run")
+    (impact,) = impacts_of(rows)
+    assert impact.time == pytest.approx(0.005, rel=1e-12)
+    cells = cells_of(rows)
+    teeth = [cells[f"K.tooth_impulse.{axis}"][0] for axis in "xyz"]
+    np.testing.assert_allclose(teeth, given["K"], rtol=1e-9)
+    for joint in "AB":
+        impulse = np.array([cells[f"{joint}.impulse.{axis}"][0] for axis in "xyz"])
+        np.testing.assert_allclose(impulse, given[joint][:3], rtol=1e-9, atol=1e-12)
+        angular = [cells[f"{joint}.angular_impulse.{axis}"][0] for axis in "xyz"]
+        moment = angular + np.cross(rows[f"{joint}.point"][5], impulse)
+        np.testing.assert_allclose(moment, given[joint][3:], rtol=1e-8, atol=1e-10)
+    for name in ("A.theta", "B.theta", "B.s"):
+        rate_after = whole.coordinate(name, after).rate
+        assert rows[f"{name}_dot"][-1] == pytest.approx(float(rate_after), rel=1e-9)
+
+
 def test_a_smaller_and_smaller_play_comes_to_the_gear() -> None:
     run = (
         "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
@@ -522,3 +584,57 @@ def test_a_smaller_and_smaller_play_comes_to_the_gear() -> None:
     assert all(
         one <= 0.5 * b / R1 * (1.0 + 1e-9) for one, b in zip(off, (1e-3, 1e-4, 1e-5), strict=True)
     )
+
+
+FLANK = (
+    "motion: {inputs: {A.theta: {from: 0, to: 1, step: 0.25, rate: 1, acceleration: 2}, "
+    "K.play: {at: 1 mm}}}\n"
+)
+
+
+def test_the_dense_system_of_a_row_on_a_flank_has_what_pushes_the_play() -> None:
+    model = mk.loads(f"{OFF_CENTRE}couplings: {{K: {GEAR}}}}}\n{FLANK}")
+    result = model.analyze()
+    system = dense_system(result.result, 1)
+    assert {u.group for u in system.unknowns} == set(unknown_names(model.problem))
+    matrix, right = np.array(system.coefficients), np.array(system.right)
+    values = np.linalg.solve(matrix, right)
+    asked = ["A.theta.effort", "K.play.effort", "K.torque"]
+    found = {u.name: v for u, v in zip(system.unknowns, values, strict=True)}
+    for name in asked:
+        assert found[name] == pytest.approx(result[name][1], rel=1e-11)
+    turns = result["A.theta"], result["B.theta"]
+    np.testing.assert_allclose(R1 * turns[0] + R2 * turns[1], 0.001, atol=1e-15)
+
+
+def test_rows_on_a_flank_are_proven_bounded_and_ranged_by_the_play() -> None:
+    text = f"{OFF_CENTRE}couplings: {{K: {GEAR}}}}}\n{FLANK}"
+    columns = "tables: [{name: t, columns: [B.theta, K.torque, A.effort, K.tooth_force.x]}]\n"
+    model = mk.loads(text + columns)
+    result = model.analyze()
+    assert set(result.result.proof) == {2}
+    assert (result.errors.digits or 0) >= 13
+    (ends,) = model.ranges("K.play").ranges
+    assert (ends.lower.value, ends.upper.value) == pytest.approx((-0.001, 0.001), rel=1e-12)
+    assert model.mobility().mobility == 2
+
+
+def test_play_is_the_same_in_any_lanes_and_in_variants() -> None:
+    run = (
+        "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
+        "time: {from: 0, to: 0.05, step: 0.005}}"
+    )
+    coupling = f"{GEAR.replace('2 mm', 'b')}, restitution: 0.4}}"
+    text = f"{PAIR}couplings: {{K: {coupling}}}\nresponses: {{run: {run}}}\n"
+    names = ["A.theta", "K.play", "K.tooth_force"]
+    model = mk.loads(f"{text}parameters: {{b: 2 mm}}\n")
+    one = model.respond("run", names, lanes=2, threads=1)
+    for lanes, threads in ((4, 1), (8, 2)):
+        other = model.respond("run", names, lanes=lanes, threads=threads)
+        for name in names:
+            assert one[name].tobytes() == other[name].tobytes()
+    widths = [0.001, 0.002, 0.004]
+    found = model.vary({"b": widths}, ["A.theta"], run="run")
+    for number, width in enumerate(widths):
+        alone = mk.loads(f"{text}parameters: {{b: {width} m}}\n").respond("run", names)
+        np.testing.assert_array_equal(found["A.theta"][number], alone["A.theta"])

@@ -56,6 +56,7 @@ HOME = {
     "rack": (drawn(PARALLEL), "S.s", 3.141592653589793 * 20.0 / 6.0),
     "belt": (drawn(PARALLEL), "B.theta", 18.0),
     "cam": (drawn(PARALLEL), "S.s", 10.0 * (1.0 - 0.75**0.5)),
+    "backlash": (drawn(PARALLEL), "B.theta", 15.0),
     "tie": (drawn(PARALLEL), "B.theta", 15.0),
 }
 """A word, a drawing with the joints of its advice, and where a coordinate is at the last row."""

@@ -76,7 +76,9 @@ def test_a_slide_rests_in_finite_time(e: float) -> None:
     assert result["time"][-1] == 7.0
     np.testing.assert_allclose(result["S.s"][result["time"] > at], -2.0, atol=1e-11)
     np.testing.assert_allclose(result["S.effort"][result["time"] > at], 20.0, rtol=1e-12)
-    assert "rests" in {d.code for d in result.diagnostics}
+    (note,) = [d for d in result.diagnostics if d.code == "rests"]
+    last = impacts_of(result)[-1].time
+    assert note.message.endswith(f"and rests at it from {last:.12g} s on")
 
 
 @pytest.mark.parametrize("e", [0.0, 0.5])
@@ -361,6 +363,8 @@ def test_a_slide_rests_by_the_limits_force_and_leaves_where_it_would_pull(e: flo
     np.testing.assert_allclose(result["S.effort"][free], 10.0 * time[free], rtol=1e-12)
     assert len(time) == 27
     assert set(result["row.status"]) == {"ok"}
+    (note,) = [d for d in result.diagnostics if d.code == "rests"]
+    assert note.message.endswith("rests at it, and leaves it again")
     assert np.nanmax(result["row.energy_error"]) < 1e-9
 
 

@@ -345,6 +345,38 @@ def test_curved_swash_plate() -> None:
     near(rows["shaft_bearing.effort"], work, 1e-9)
 
 
+def test_gear_with_play() -> None:
+    """Both wheels have 100 + 1600/4 kg mm^2 at the pinion, which the moment 1 - 20 t drives as one
+    gear, up to 0.05 s and behind the last impact; between the flanks the pinion goes by itself."""
+    rows = mk.load(FILE_OF["gear_play"]).respond("reversal")
+    assert set(rows["row.status"]) == {"ok"}
+    time = rows["time"]
+    met = rows.result.impacts
+    assert len(met) == 9
+    as_gear = (time < 0.05) | (time > met[-1].time)
+    gained = 2000.0 * time - 20000.0 * time**2
+    near(rows["A.theta_dot"][as_gear], gained[as_gear], 1e-9)
+    near(rows["B.theta_dot"][as_gear], -0.5 * gained[as_gear], 1e-9)
+    # 400 of the 500 kg mm^2 are behind the teeth, at 20 mm
+    tangential = 40.0 * (1.0 - 20.0 * time)
+    near(rows["G.tooth_force"][as_gear, 1], tangential[as_gear], 1e-9)
+    near(rows["G.tooth_force"][as_gear, 0], np.abs(tangential[as_gear]) * SLANT, 1e-9)
+    near(rows["G.play"][time < 0.05], 0.1)
+    near(rows["G.play"][time > met[-1].time], -0.1, 1e-7)
+    across = 0.05 + (0.2 * 3.0 / 2e6) ** (1.0 / 3.0)
+    assert met[1].time == pytest.approx(across, rel=1e-7)
+    free = (time > 0.05) & (time < across)
+    since = time[free] - 0.05
+    near(rows["A.theta_dot"][free], 50.0 - 1e5 * since**2)
+    near(rows["B.theta_dot"][free], -25.0)
+    near(rows["G.play"][free], 0.1 - 2e6 * since**3 / 3.0, 1e-10)
+    near(rows["norm(A.force)"][free], 0.0)
+    # masses of 0.25 and 1 kg at the pitch circle, with 0.4 of the rate of the play
+    rate = 2.0 * (across - 0.05) ** 2 * 1e6 * 1e-3
+    assert met[1].rates[0] == pytest.approx(rate, rel=1e-6)
+    assert met[1].impulses[0] == pytest.approx(1.4 * rate * 0.25 / 1.25, rel=1e-6)
+
+
 NAMES = (
     "tackle",
     "cylinder_boom",
