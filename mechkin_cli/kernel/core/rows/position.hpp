@@ -77,7 +77,11 @@ struct BlockMatrices {
     m == n ? solve(lu(), b) : solve(qr(), b);
   }
   // The equations' multipliers from the unknowns' generalised forces, in place.
-  void solve_multipliers(Pack* b, int shift, Pack level) const {
+  MECHKIN_INLINE void solve_multipliers(Pack* b, int shift, Pack level) const {
+    if (m == 1 && n == 1) {
+      *b *= *jacobian;
+      return;
+    }
     m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift, level);
   }
 };
