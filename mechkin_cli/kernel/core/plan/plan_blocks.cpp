@@ -173,13 +173,12 @@ void PlanBuilder::find_relations() {
     Block& b = block_[index];
     b.placeless = !b.charts && b.rows == b.size;
     for (int c = b.closing_begin; c < b.closing_end; ++c) b.placeless = b.placeless && is_relation(closing_[c].type);
-    b.is_explicit = b.placeless && b.size == 1;
-    if (!b.is_explicit) continue;
+    if (!b.placeless || b.size != 1) continue;
     const ClosingJoint& j = closing_[b.closing_begin];
     for (int l = j.loop_begin; l < j.loop_end; ++l) {
       const Term& term = term_[loop_[l].term];
       if (term.freedom >= 0 && joints_[loop_[l].joint].column + term.freedom == unknown_[b.column_begin])
-        b.is_explicit = b.is_explicit && term.function < 0;
+        b.is_explicit = term.function < 0;
     }
   }
 }

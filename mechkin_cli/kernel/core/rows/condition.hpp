@@ -28,17 +28,9 @@ inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) 
   for (int i = b.rows - b.charts; i < b.rows; ++i) weight[i] = 1.0;
 }
 
-// To 1 % from the factors of the packs that go together; of an explicit block to rounding.
+// To 1 % from the factors of the packs that go together.
 inline void estimate_conditions(const Plan& p, int index, Judged* pack, int count) {
   const Block& b = p.block[index];
-  if (b.is_explicit) {
-    for (Judged* j = pack; j < pack + count; ++j) {
-      per_row(p, b, 1.0 / p.row_weight, j->w.right);
-      const Pack weight = p.column_weight[p.unknown[b.column_begin]];
-      j->condition = abs(matrices_of(p, j->w, index).jacobian[0] * j->w.right[0] / weight);
-    }
-    return;
-  }
   InverseNorm norm[PACKS_OF_ESTIMATE];
   for (int k = 0; k < count; ++k) {
     Workspace& w = pack[k].w;
@@ -72,20 +64,17 @@ inline void factor_closed(const Plan& p, Workspace& w, int index, F&& keep_jacob
   at.factor_jacobian();
 }
 
-// Of the packs that go together. Each is factored at its closed place, unless Newton's last factors serve: of explicit
-// blocks always, else where only the verdict is wanted; `keep_jacobian` sees its matrix before.
+// Of the packs that go together. Each is factored at its closed place, unless only its verdict is wanted and Newton's last
+// factors serve; `keep_jacobian` sees its matrix before.
 template <class F>
 inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pack, int count, F&& keep_jacobian) {
-  const bool square = p.block[index].rows == p.block[index].size, has = has_factors(p.block[index], r);
-  const bool by_newton = !has && square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
+  const bool square = p.block[index].rows == p.block[index].size;
+  const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
   const auto side_of = [&](const Judged& j) {
     return square ? determinant_sign(matrices_of(p, j.w, index).lu()) : Pack(1.0);
   };
   for (int k = 0; k < count; ++k) {
-    if (has)
-      block_screws(p, pack[k].w, p.block[index]);
-    else if (!by_newton)
-      factor_closed(p, pack[k].w, index, [&](const BlockMatrices& at) { keep_jacobian(k, at); });
+    if (!by_newton) factor_closed(p, pack[k].w, index, [&](const BlockMatrices& at) { keep_jacobian(k, at); });
     pack[k].side = side_of(pack[k]), pack[k].condition = Pack(0.0);
   }
   if (!(r.demand & DEMAND_CONDITION)) return;

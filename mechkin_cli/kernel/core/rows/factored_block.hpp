@@ -7,16 +7,14 @@ namespace {
 
 // Of the packs that go together; `keep_jacobian` sees each one's matrix before it is factored.
 template <class F>
-inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pack, int count, F&& keep_jacobian) {
+inline void judge_blocks(const Plan& p, int index, const Request&, Judged* pack, int count, F&& keep_jacobian) {
   for (int k = 0; k < count; ++k) {
     Workspace& w = pack[k].w;
     const BlockMatrices at = matrices_of(p, w, index);
     block_screws(p, w, p.block[index]);
-    if (!has_factors(p.block[index], r)) {
-      block_jacobian(p, w, index, at.jacobian);
-      keep_jacobian(k, at);
-      at.factor_jacobian();
-    }
+    block_jacobian(p, w, index, at.jacobian);
+    keep_jacobian(k, at);
+    at.factor_jacobian();
     pack[k].side = at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0);
     pack[k].condition = Pack(__builtin_nan(""));
   }

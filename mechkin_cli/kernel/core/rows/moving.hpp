@@ -81,9 +81,15 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
   const Block& b = p.block[index];
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
+    if (is_relation(j.type)) {
+      right[j.row] = -sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) {
+        return unknown_index(p, index, t.column + f) < 0 ? w.rate[t.column + f] : Pack(0.0);
+      });
+      continue;
+    }
     const Closure& k = w.closure[c];
     Twist a = zero_twist();
-    for (int l = is_relation(j.type) ? j.loop_end : j.loop_begin; l < j.loop_end; ++l) {
+    for (int l = j.loop_begin; l < j.loop_end; ++l) {
       const TreeJoint& t = p.joints[p.loop[l].joint];
       const Pack sign = p.loop[l].sign;
       with_tree_joint(t.type, [&](auto entry) __attribute__((always_inline)) {
@@ -93,14 +99,11 @@ inline void known_rates(const Plan& p, const Workspace& w, int index, Pack* righ
       });
     }
     with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
-      Pack r[MAX_CLOSING_ROWS];
-      if constexpr (entry.is_relation)
-        r[0] = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) {
-          return unknown_index(p, index, t.column + f) < 0 ? w.rate[t.column + f] : Pack(0.0);
-        });
-      else
+      if constexpr (!entry.is_relation) {
+        Pack r[MAX_CLOSING_ROWS];
         entry.column(k, a, r);
-      for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
+        for (int i = 0; i < entry.equations; ++i) right[j.row + i] = -r[i];
+      }
     });
   }
   for (int i = 0; i < b.charts; ++i) right[b.rows - b.charts + i] = w.place_rate[i];

@@ -69,9 +69,19 @@ struct BlockMatrices {
   void factor_jacobian() const { m == n ? factor(lu()) : reflect(qr()); }
   Pack least() const { return m == n ? least_pivot(lu()) : least_pivot(qr()); }
   // The unknowns from the equations' right-hand sides, in place.
-  void solve_equations(Pack* b) const { m == n ? solve(lu(), b) : solve(qr(), b); }
+  MECHKIN_INLINE void solve_equations(Pack* b) const {
+    if (m == 1 && n == 1) {
+      *b *= *jacobian;
+      return;
+    }
+    m == n ? solve(lu(), b) : solve(qr(), b);
+  }
   // The equations' multipliers from the unknowns' generalised forces, in place.
-  void solve_multipliers(Pack* b, int shift, Pack level) const {
+  MECHKIN_INLINE void solve_multipliers(Pack* b, int shift, Pack level) const {
+    if (m == 1 && n == 1) {
+      *b *= *jacobian;
+      return;
+    }
     m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift, level);
   }
 };
@@ -256,25 +266,6 @@ inline void step_unplaced(const Plan& p, Closing& c, int index, const Request& r
   c.residual.test = __builtin_inf();
   take_step<false>(p, c, index, r, 0);
 }
-// The unknown of an explicit block, whatever its guess, before anything is placed; its factor is that of every place.
-inline void solve_explicitly(const Plan& p, Closing& c, int index) {
-  Workspace& w = c.w;
-  const ClosingJoint& j = p.closing[p.block[index].closing_begin];
-  const int column = p.unknown[p.block[index].column_begin];
-  Pack& unknown = w.q[p.column_state[column]];
-  const Pack guess = unknown;
-  unknown = 0.0;
-  Pack rest;
-  find_curves(p, j, w.q, 1, w.function, w.curve);
-  closing_residual(p, w.q, w.curve, j, w.closure[0], Relation<0>{}, &rest);
-  const Pack slope = sum_by_slopes(p, w.curve, j, [&](const TreeJoint& t, int f) { return Pack(t.column + f == column ? 1.0 : 0.0); });
-  const Pack inverse = Pack(1.0) / slope, found = -rest * inverse;
-  *matrices_of(p, w, index).jacobian = inverse;
-  c.polished = all_lanes(true);
-  c.done = ~(abs(found) < Pack(1e100));  // as in take_step
-  unknown = select(c.done, guess, found);
-  c.correction = abs(unknown - guess);
-}
 
 // Closes one block from the guesses in the packs' w.q, all of them through each stage of a step: they meet its
 // instructions in the cache, and one is begun while another waits for its results. With `AGAIN` factors serve two steps
@@ -283,14 +274,13 @@ template <bool AGAIN>
 inline void close_packs(const Plan& p, Closing* pack, int count, int index, const Request& r) {
   const Block& b = p.block[index];
   const bool square = b.rows == b.size;
-  // a lane's factors must not depend on how long its neighbours go on; that of an explicit block depends on nothing
-  const bool keeps_factors = square && !b.is_explicit && r.demand == DEMAND_CONDITION;
+  // a lane's factors must not depend on how long its neighbours go on
+  const bool keeps_factors = square && r.demand == DEMAND_CONDITION;
   const auto each = [&](auto&& stage) __attribute__((always_inline)) {
     for (Closing* c = pack; c < pack + count; ++c)
       if (!c->over) stage(*c);
   };
-  if (r.iterations > 0 && b.placeless)
-    each([&](Closing& c) { b.is_explicit ? solve_explicitly(p, c, index) : step_unplaced(p, c, index, r); });
+  if (r.iterations > 0 && b.placeless) each([&](Closing& c) { step_unplaced(p, c, index, r); });
   for (int iteration = 0;; ++iteration) {
     each([&](Closing& c) { iteration ? place_moving(p, c.w, b) : place_block(p, c.w, b); });
     bool over = true;
@@ -319,9 +309,6 @@ inline void close_packs(const Plan& p, Closing* pack, int count, int index, cons
   }
 }
 
-// Whether closing a block left its factors at the closed place, whatever is demanded.
-inline bool has_factors(const Block& b, const Request& r) { return b.is_explicit && r.iterations > 0 && !r.jacobian; }
-
 // What became of a pack of rows.
 inline Closed closed_block(const Plan& p, Closing& c, int index, const Request& r) {
   const Block& b = p.block[index];
@@ -332,9 +319,55 @@ inline Closed closed_block(const Plan& p, Closing& c, int index, const Request& 
   return {residual.test, c.correction, c.last_step, residual.test <= Pack(r.accept), block_side_conditions(p, c.w, b)};
 }
 
+// The coefficient of an explicit block's unknown, which is the same at all places.
+inline Pack explicit_slope(const Plan& p, const Workspace& w, int index) {
+  const ClosingJoint& j = p.closing[p.block[index].closing_begin];
+  for (int l = j.loop_begin;; ++l) {
+    const int freedom = p.term[p.loop[l].term].freedom;
+    if (freedom >= 0 && p.joints[p.loop[l].joint].column + freedom == p.unknown[p.block[index].column_begin])
+      return slope_by_freedom(p, w.curve, p.loop[l], freedom);
+  }
+}
+// Closes an explicit block: its relation gives the unknown, whatever the guess, before anything is placed. It leaves the
+// factor of its place, which is that of all.
+inline Closed close_explicitly(const Plan& p, Workspace& w, int index, const Request& r) {
+  const Block& b = p.block[index];
+  const ClosingJoint& j = p.closing[b.closing_begin];
+  Pack& unknown = w.q[p.column_state[p.unknown[b.column_begin]]];
+  const Pack slope = explicit_slope(p, w, index), guess = unknown;
+  *matrices_of(p, w, index).jacobian = Pack(1.0) / slope;
+  Mask there = all_lanes(true);
+  find_curves(p, j, w.q, 1, w.function, w.curve);
+  // the curves are those of its other terms
+  const auto equation = [&] {
+    closing_residual(p, w.q, w.curve, j, w.closure[b.closing_begin], Relation<0>{}, w.right);
+    return w.right[0];
+  };
+  if (r.iterations > 0) {
+    unknown = 0.0;
+    const Pack found = -equation() / slope;
+    there = abs(found) < Pack(1e100);  // else it has no slope: the lane stays where it is, as in take_step
+    unknown = select(there, found, guess);
+  }
+  place_block(p, w, b);
+  Pack residual = 0.0;
+  for (int again = 0;; ++again) {
+    residual = j.type == RELATION_OF_LENGTHS ? block_residual(p, w, b).test : abs(equation());
+    const Mask near = residual <= Pack(r.accept);
+    if (all(near) || !(r.accept > 0.0)) break;
+    residual = select(near, residual, residual_with_rounding(p, w, b, r.accept));
+    const Mask closed = ~there | (residual <= Pack(r.accept));
+    if (all(closed) || again >= r.iterations) break;
+    unknown = select(closed, unknown, unknown - w.right[0] / slope);
+    place_block(p, w, b);
+  }
+  return {residual, abs(unknown - guess), 0.0, residual <= Pack(r.accept), all_lanes(true)};
+}
+
 // Closes one block of one pack.
 template <bool AGAIN>
 inline Closed close_block(const Plan& p, Workspace& w, int index, const Request& r) {
+  if (p.block[index].is_explicit) return close_explicitly(p, w, index, r);
   Closing c = {w};
   close_packs<AGAIN>(p, &c, 1, index, r);
   return closed_block(p, c, index, r);

@@ -164,6 +164,21 @@ struct RowPack {
     if (r.side) writer(r.side).put(b, verdict.side);
     if (r.pivot) writer(r.pivot).put(b, matrices_of(p, w, b).least());
   }
+  void close_explicitly(int b) {
+    take_closed(::close_explicitly(p, w, b, r));
+    if (!r.demand) return;
+    const Block& block = p.block[b];
+    const BlockMatrices at = matrices_of(p, w, b);
+    const Pack inverse = *at.jacobian;
+    block_screws(p, w, block);
+    if (r.jacobian) writer(r.jacobian).put(at.jacobian - w.jacobian, explicit_slope(p, w, b));
+    if (r.side) writer(r.side).put(b, copysign(Pack(1.0), inverse));
+    if (r.pivot) writer(r.pivot).put(b, at.least());
+    if (!(r.demand & DEMAND_CONDITION)) return;
+    const bool length = p.closing[block.closing_begin].type == RELATION_OF_LENGTHS;
+    const Pack row = length ? Pack(p.row_weight) : Pack(1.0), column = p.column_weight[p.unknown[block.column_begin]];
+    condition = max(abs(inverse) / (row * column), condition);
+  }
   void find_velocities(int b) {
     if (holds(r, b))
       hold_velocities(p, w, b, given(r.held->rates, b), equations(r.held->first, b));
@@ -259,6 +274,8 @@ void run_packs(const Plan& p, const Request& r, RowPack* pack, int count) {
       each([&](RowPack& k) { leave_block(p, k.w, b); });
     else if (RowPack::holds(r, b))
       each([&](RowPack& k) { k.hold(b); });
+    else if (p.block[b].is_explicit)
+      each([&](RowPack& k) { k.close_explicitly(b); });
     else
       close_rows(p, r, pack, count, b);
   const int rest_count = r.held && !r.held->complete ? 0 : p.rest_count;
