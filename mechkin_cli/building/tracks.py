@@ -15,7 +15,14 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path, place_at
-from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, number_of, scalar
+from mechkin_cli.expressions import (
+    Expression,
+    ExpressionError,
+    Quantity,
+    UnknownName,
+    number_of,
+    scalar,
+)
 from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import (
     ELEMENTARY,
@@ -38,11 +45,11 @@ from mechkin_cli.mechanism import (
     unit,
     upright,
 )
-from mechkin_cli.record import replace
+from mechkin_cli.record import dataclass, replace
 from mechkin_cli.schema import Curve, MechanismFile, Surface
 from mechkin_cli.tape import Recorded, as_recorded, cos, is_traced, of_numbers, sin
 from mechkin_cli.tolerances import PARALLEL
-from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension
+from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension, UnitSystem
 
 FULL_TURN = (0.0, 2.0 * pi)
 """Ends of an angle that comes back to its begin."""
@@ -355,23 +362,46 @@ def _formula(
             return None
         expressions.append((expression, bare))
 
-    def places(*at: Any) -> list[Any]:
+    places = _Formula(
+        tuple(expression for expression, _ in expressions),
+        tuple(
+            None if bare is None else fields.units.to_si(bare, LENGTH) for _, bare in expressions
+        ),
+        dimensions,
+        parameters,
+        fields.units,
+        fields.origin,
+    )
+    return Track(ends, closed, places)
+
+
+@dataclass(frozen=True, eq=False)
+class _Formula:
+    """Places by expressions, or constants (m), of parameters of some dimensions, from an origin of
+    the drawing (m)."""
+
+    expressions: tuple[Expression, ...]
+    constants: tuple[Any, ...]
+    dimensions: Mapping[str, Dimension]
+    parameters: Mapping[str, Quantity]
+    units: UnitSystem
+    origin: Vector
+
+    def __call__(self, *at: Any) -> list[Any]:
         moving = {
             name: Quantity(value, dimension)
-            for (name, dimension), value in zip(dimensions.items(), at, strict=True)
+            for (name, dimension), value in zip(self.dimensions.items(), at, strict=True)
         }
-        resolve = _resolver(fields, {**parameters, **moving})
+        known = {**self.parameters, **moving}
         values: list[Any] = [
-            fields.units.to_si(bare, LENGTH)
-            if bare is not None
-            else expression.evaluate(resolve, fields.units).value
-            for expression, bare in expressions
+            expression.evaluate(known.__getitem__, self.units).value
+            if constant is None
+            else constant
+            for expression, constant in zip(self.expressions, self.constants, strict=True)
         ]
-        if fields.origin == ZERO:
+        if self.origin == ZERO:
             return values
-        return [value - off for value, off in zip(values, fields.origin, strict=True)]
-
-    return Track(ends, closed, places)
+        return [value - off for value, off in zip(values, self.origin, strict=True)]
 
 
 def _sampled(quantity: Quantity) -> Quantity:
