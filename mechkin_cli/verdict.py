@@ -90,7 +90,10 @@ class Status(IntEnum):
     step_limit = (
         9,
         "ends",
-        "the response ended before this row: its steps became too short, or too many.",
+        (
+            "the response ended before this row: its steps became too short, or too many, or none "
+            "goes on from there."
+        ),
     )
     dead_centre = (
         10,

@@ -15,7 +15,7 @@ import numpy as np
 from mechkin_cli.building.belts import belt_relation, screw_relation
 from mechkin_cli.building.fields import Fields, Path, is_coordinate
 from mechkin_cli.building.law_reading import Over, note_bends, read_law
-from mechkin_cli.building.law_shapes import PiecewiseLaw
+from mechkin_cli.building.law_shapes import LawOfCoordinate, PiecewiseLaw
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.losses import Lossy, with_losses
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
@@ -290,7 +290,7 @@ def _law(
     assert isinstance(law, PiecewiseLaw)  # no expression
     if not law.is_recorded:  # else noted when the file was read
         note_bends(fields, path, section.law, dimensions[1], over)
-    return CoordinateLaw(law.at)
+    return CoordinateLaw(LawOfCoordinate(law.pieces, law.period))
 
 
 def _by_expression(

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.exact import PI, Exact, nearest
-from mechkin_cli.record import NamedTuple
+from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import JetNumber, Recorded, TraceLost, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME
 
@@ -247,6 +247,18 @@ class PiecewiseLaw:
             found.append(total)
             used += 1 + size
         return found
+
+
+@dataclass(frozen=True, eq=False)
+class LawOfCoordinate:
+    """A `PiecewiseLaw` of a coordinate, as data: those of variants have other numbers."""
+
+    pieces: tuple[Piece, ...]
+    period: Any
+
+    def __call__(self, x: JetNumber) -> Any:
+        """The value at x, a number with its derivatives, in whichever piece it lies."""
+        return PiecewiseLaw(self.pieces, self.period).at(x)
 
 
 def _of_piece(piece: Piece, x: JetNumber) -> Any:

@@ -330,6 +330,7 @@ class PlanBuilder:
         at_rest: float,
         sliding: float,
         speed: float,
+        course: int,
     ) -> None: ...
     def add_contact(
         self,

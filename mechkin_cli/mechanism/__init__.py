@@ -67,7 +67,7 @@ __getattr__, __dir__ = lazy_names(
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities strands_of",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
-        "ResponseProblem StartValue Stop TurnsEnd",
+        "ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
         "track": "Track",
         "vectors": "Frame GROUND Line Vector ZERO add cross dot eliminated frame_about norm "
         "perpendicular scale subtract turned_shortest turned_tensor unit upright",

@@ -253,6 +253,7 @@ _CARRIED = (
         Drawing("ball on track"),
         point_on=FIRST,
         shape="Sg",
+        friction=FrictionLaw(friction.groove, slides="along"),
     ),
     JointType(
         "Sp on a surface",
@@ -261,6 +262,7 @@ _CARRIED = (
         Drawing("ball on track"),
         point_on=FIRST,
         shape="Sp",
+        friction=FrictionLaw(friction.plane, slides="square"),
     ),
     # parts of the others
     JointType("G", (PairStep("G"),), (_parameter("u", 0),), Drawing("ball on track")),
@@ -278,6 +280,7 @@ _PIN_ON_CURVE = JointType(
     Drawing("pin on track"),
     point_on=FIRST,
     shape="Sg",
+    friction=FrictionLaw(friction.groove, slides="along"),
     space=3,
 )
 CARRIED_TYPES = {entry.letter: entry for entry in (*_CARRIED, _PIN_ON_CURVE)}

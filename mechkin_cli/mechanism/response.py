@@ -87,7 +87,21 @@ class TurnsEnd:
     count: int
 
 
-Stop = CrossingEnd | DeadCentreEnd | TurnsEnd
+@dataclass(frozen=True)
+class SlopeEnd:
+    """Ends a response where the slope of a function of a coordinate jumps, at `at` (rad, m), `by`
+    some amount: rates jump with it. `owner` is the coupling or joint of the function."""
+
+    words: str
+    place: Place
+    joint: str
+    coordinate: str
+    at: float
+    owner: str
+    by: str
+
+
+Stop = CrossingEnd | DeadCentreEnd | TurnsEnd | SlopeEnd
 
 
 @dataclass(frozen=True, eq=False)

@@ -118,11 +118,11 @@ class Track:
 
     def speeds(self, u: Floats) -> Floats:
         """Lengths along a curve by its parameter, at parameters (rows,)."""
-        (first,) = self._derivatives(u, 1)
+        (first,) = self.derivatives(u, 1)
         found: Floats = np.sqrt(_dot(first, first))
         return found
 
-    def _derivatives(self, u: Floats, count: int) -> list[list[Floats]]:
+    def derivatives(self, u: Floats, count: int) -> list[list[Floats]]:
         """Derivatives of a curve's coordinates x, y, z at parameters (rows,), first to `count`."""
         jets: list[Any]
         if self.knots:
@@ -149,7 +149,7 @@ class Track:
         """
         if not isinstance(at[0], np.ndarray):
             raise TypeError("rates of lengths along a curve")
-        by_u = self._derivatives(at[0], order)
+        by_u = self.derivatives(at[0], order)
         speed: Floats = np.sqrt(_dot(by_u[0], by_u[0]))
         rate = at[1]
         if order == 1:

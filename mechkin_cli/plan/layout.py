@@ -232,6 +232,13 @@ class Layout:
         tracks = ((k, carrier.part.track) for k, carrier in enumerate(self.carriers))
         return tuple((k, track) for k, track in tracks if track is not None)
 
+    def course_of(self, joint: str) -> int:
+        """The kernel joint by which a joint goes along a curve or over a surface; -1: it does
+        not."""
+        edges = self.graph.edges
+        found = (k for k, _ in self.carried if edges[self.carriers[k].edge].joint.name == joint)
+        return next(found, -1)
+
     @cached_property
     def functions(self) -> tuple[CoordinateLaw, ...]:
         """The functions of the plan, in order."""

@@ -59,6 +59,7 @@ def _friction(layout: Layout, rubbing: Rubbing) -> Iterator[PlanRecord]:
         rubbing.at_rest,
         rubbing.sliding,
         1.0 if rubbing.speed is None else rubbing.speed / unit,
+        layout.course_of(joint.name),
     )
     for contact in law.contacts(rubbing, axis.vector, joint.pitch):
         yield record(
@@ -89,6 +90,7 @@ def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
         rubbing.at_rest,
         rubbing.sliding,
         1.0,
+        -1,
     )
     # the mean of the moments on both sides has half the loss in it
     share, own = (loss.load, 0.5) if turns else (loss.load * layout.length, 0.0)

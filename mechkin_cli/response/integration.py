@@ -17,7 +17,13 @@ from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel.functions import threads_for, width
-from mechkin_cli.mechanism import CrossingEnd, DeadCentreEnd, dimension_of, rubbing_words
+from mechkin_cli.mechanism import (
+    CrossingEnd,
+    DeadCentreEnd,
+    SlopeEnd,
+    dimension_of,
+    rubbing_words,
+)
 from mechkin_cli.plan import Demand, Layout, kink_laws
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.session import (
@@ -35,7 +41,7 @@ from mechkin_cli.session import (
     input_unit,
 )
 from mechkin_cli.structure import charted
-from mechkin_cli.sweep import passed_straight_on
+from mechkin_cli.sweep import ROUNDED, passed_straight_on
 from mechkin_cli.tape import compiled
 from mechkin_cli.units import TIME, UnitSystem
 from mechkin_cli.verdict import Status
@@ -305,6 +311,8 @@ def watched_stop(stop: Stop) -> WatchedStop:
     if isinstance(stop, DeadCentreEnd):
         rate = dimension_of(stop.coordinate) / TIME
         return 1, 0, stop.count, 0.0, *_powers(rate)
+    if isinstance(stop, SlopeEnd):
+        return 0, 0, 1, stop.at, *_powers(dimension_of(stop.coordinate))
     return 2, 0, stop.count, 0.0, 0, -1
 
 
@@ -341,6 +349,11 @@ def reason(free: Session, response: ResponseProblem, report: MotionReport) -> Re
         hint = "leave the jump out: what it asks for does not move"
         measured = f"at most {report.value:.1e}"
         return Status.friction_undecided, _error("held-at-jump", text, hint, measured, law.place)
+    met = response.stops[report.stop] if report.stop >= 0 else None
+    if isinstance(met, SlopeEnd):
+        text = f"the slope of {met.owner} jumps at {met.words}, and rates of what it moves with it"
+        hint = f"{ROUNDED}, or end the response before it"
+        return Status.step_limit, _error("slope-jump", text, hint, met.by)
     if report.end is MotionEnd.STEP_LIMIT and not report.singular:
         return _step_limit(free, report)
     if report.end is MotionEnd.HELD:
@@ -554,7 +567,7 @@ def ending(
         notes.append(Diagnostic("stiff", "note", text, response.place, hint=hint))
     for number, stop in enumerate(response.stops):
         times = [time for touched, time in report.touches if touched == number]
-        if times:
+        if times and not isinstance(stop, SlopeEnd):
             notes.append(_touched(stop, [_time(units, time) for time in times]))
     if report.end in (MotionEnd.DONE, MotionEnd.STOPPED):
         return Status.ok, notes

@@ -47,6 +47,7 @@ from mechkin_cli.response.integration import (
     watched_stop,
     with_loads,
 )
+from mechkin_cli.response.jumps import at_jump, before_jump, slope_ends
 from mechkin_cli.response.resting import (
     Contact,
     RestingMotion,
@@ -345,7 +346,8 @@ def integrated(variants: Sequence[Prepared], packing: Packing) -> list[ResponseR
     for numbers in groups.values():
         together = [variants[number] for number in numbers]
         for number, rows in zip(numbers, _integrated(together, packing), strict=True):
-            results[number] = _rebounding(variants[number], rows, packing)
+            one = variants[number]
+            results[number] = _to_jumps(one, _rebounding(one, rows, packing), packing)
     return [results[number] for number in range(len(variants))]
 
 
@@ -385,6 +387,19 @@ def _integrated(together: Sequence[Prepared], packing: Packing) -> list[MotionRo
         straight=first.chosen.problem.assembly.straight,
         packing=packing,
     )
+
+
+def _to_jumps(one: Prepared, result: ResponseResult, packing: Packing) -> ResponseResult:
+    """The rows up to a place at which the slope of a function jumps, where the motion comes to one:
+    no step across it is a motion."""
+    ends = slope_ends(result, one.chosen)
+    if not ends:
+        return result
+    response = replace(one.response, stops=(*one.response.stops, *ends))
+    free = with_loads(one.free, replace(one.free.problem, response=response))
+    again = replace(one, response=response, free=free)
+    (moved,) = _integrated([again], packing)
+    return _rebounding(again, at_jump(again.chosen, response, moved), packing)
 
 
 def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseResult:
@@ -497,6 +512,7 @@ def _onward(
 
 def rows_of(one: Prepared, moved: MotionRows) -> ResponseResult:
     """The rows with their verdicts, before anything is read: all of them, or up to a stop."""
+    moved = before_jump(one.response, moved)
     response, chosen, free, report = one.response, one.chosen, one.free, moved.report
     stopped = report.end is MotionEnd.STOPPED
     count = moved.count if stopped else response.rows

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.messages import *
     from mechkin_cli.sweep.result import *
     from mechkin_cli.sweep.rows import *
+    from mechkin_cli.sweep.slopes import *
     from mechkin_cli.sweep.sweep import *
 
 __getattr__, __dir__ = lazy_names(
@@ -31,6 +32,7 @@ __getattr__, __dir__ = lazy_names(
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
         "rows": "SHIFTS SweepRows has_turns",
+        "slopes": "ROUNDED bends jumps_between place_text size_text",
         "sweep": "analyze at_once closed_rows first_assembly judge_condition rest_on_reactions "
         "row_notes",
     },

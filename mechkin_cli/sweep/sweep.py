@@ -40,6 +40,7 @@ from mechkin_cli.sweep.messages import (
     watched,
 )
 from mechkin_cli.sweep.result import Result
+from mechkin_cli.sweep.slopes import bending, slope_notes
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import Status, by_condition, rates_are_clear
 
@@ -70,6 +71,7 @@ def question(
     everything += held_moments(problem, everything)
     everything += watched(problem, everything)
     everything += limited(problem)
+    everything += bending(problem)
     wanted, demand = at_once(session, everything, verdicts)
     wanted += judged_by(problem, wanted, demand)
     ask = Ask(demand, session.readout(wanted) if wanted else None)
@@ -146,6 +148,7 @@ def analyze(
         result, wanted, rests_on_reactions=rests_on_reactions
     )
     result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
+    result.row_states.diagnostics += slope_notes(result)
     failed = any(d.severity == "error" for d in result.row_states.diagnostics)
     if result.solved.any() and not failed:
         result.row_states.diagnostics += unrated_notes(session.problem, asked, unasked)

@@ -18,6 +18,8 @@ stands beside it with its reason (`kernel/core/`):
 * `orbit.hpp`: states within 1e-12 of the start's are back, sought for 16 turns: rounding leaves
   1e-16 times the condition, and no linkage is known that takes more turns; `tracker.hpp`: 2e7
   steps of one path;
+* `tracker.cpp`: jumps of slopes are crossed by steps of 1e-7, on which the branch may differ by
+  1e-4 from the tangents of both sides: rounding and curvature leave less;
 * `tracker.cpp`, `dimension_path.cpp`: a rest of 1e-6 of a step is taken along, steps grow fourfold
   at most;
 * `hung_bodies.hpp`: `OPPOSITE_COSINE` again;

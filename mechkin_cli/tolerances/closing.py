@@ -333,6 +333,14 @@ COURSE_JUMP: Final = 1e-9
 """Change of an input (rad or m, with its size) at a place above which it jumps there: what is
 continuous differs by roundings."""
 
+SLOPE_JUMP: Final = 1e-6
+"""Change of a function's slope, in parts of its largest, that is a jump: halved sixty times, a
+stretch on which it is smooth changes it by roundings."""
+
+SLOPE_RANGE: Final = 0.01
+"""Beside the way of a motion (rad, m) jumps of slopes are sought so far: it may have come near to
+one between two rows."""
+
 MOST_COURSE_ORDER: Final = 8
 """Order in which inputs leave a rest: the change over a hundredth of a cell and half of it tells
 orders up to it from rounding."""

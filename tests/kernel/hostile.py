@@ -224,6 +224,7 @@ class Hostile:
                 falls,
                 self.numbers(3),
                 *constants,
+                self.index(0, 6) if self.random.random() < 0.1 else -1,
             )
         for _number in range(self.random.choice([0, 1, 3])):
             numbers = [self.number() for _ in range(4)]

@@ -157,7 +157,7 @@ void bind_builder(nb::module_& m) {
       .def("add_actuator", raising(&PlanBuilder::add_actuator), "axis"_a, "reference"_a, "freedom"_a)
       .def("add_input_constraint", raising(&PlanBuilder::add_input_constraint), "input"_a, "leader"_a)
       .def("add_friction", raising(&PlanBuilder::add_friction), "place"_a, "turns"_a, "slides"_a, "link"_a, "falls"_a, "axis"_a,
-           "radius"_a, "pitch"_a, "at_rest"_a, "sliding"_a, "speed"_a)
+           "radius"_a, "pitch"_a, "at_rest"_a, "sliding"_a, "speed"_a, "course"_a)
       .def("add_contact", raising(&PlanBuilder::add_contact), "code"_a, "weight"_a, "share"_a, "tilt"_a, "roll"_a,
            "direction"_a)
       .def("add_size_point", raising(&PlanBuilder::add_size_point), "link"_a, "point"_a)

@@ -54,16 +54,25 @@ inline Pack acceleration_level(const Plan& p, const Workspace& w) {
   return level;
 }
 
+MECHKIN_INLINE Vec3 of_length_one(const Vec3& a) { return (Pack(1.0) / sqrt(dot(a, a))) * a; }
+
+// The tangent of a joint's curve, or the normal of its surface.
+inline Vec3 course_axis(const Plan& p, const Workspace& w, int joint) {
+  const Twist* const screw = w.screw + p.joints[joint].column;
+  return of_length_one(p.joints[joint].type == TREE_A ? cross(screw[0].linear, screw[1].linear) : screw[0].linear);
+}
+
 // Axes, points and directions of everything that rubs.
 inline void place_contacts(const Plan& p, const Workspace& w) {
   const Rubbing& r = w.rubbing;
   for (int k = 0; k < p.frictions; ++k) {
     const Friction& f = p.friction[k];
     const JointPlace& j = p.place[f.place];
-    r.axis[k] = carried_vector(w, f.link, f.axis);
+    r.axis[k] = f.course < 0 ? carried_vector(w, f.link, f.axis) : course_axis(p, w, f.course);
     r.point[k] = carried_point(w, j.point_on, j.point);
     for (int c = f.contact_begin; c < f.contact_end; ++c)
-      if (p.contact[c].code == CONTACT_ALONG) r.direction[c] = carried_vector(w, f.link, p.contact[c].direction);
+      if (p.contact[c].code == CONTACT_ALONG)
+        r.direction[c] = f.course < 0 ? carried_vector(w, f.link, p.contact[c].direction) : r.axis[k];
   }
 }
 

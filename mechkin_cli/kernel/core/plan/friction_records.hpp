@@ -34,6 +34,7 @@ struct FrictionOf {
   int link;          // that carries the axis
   int falls;         // whether the coefficient depends on the speed; else it is `sliding`
   int screws;        // whether turn and slide are one motion, by `pitch`
+  int course;        // tree joint: the axis is the tangent of its curve, or the normal of its surface; -1: as given
   Number axis[3];
   Number radius;     // of the surfaces that turn
   Number pitch;      // of a screw: slide by turn; else 0

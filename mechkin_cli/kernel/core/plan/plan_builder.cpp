@@ -489,16 +489,18 @@ Refusal PlanBuilder::set_load_program(const std::vector<std::array<int, 5>>& rea
 }
 
 Refusal PlanBuilder::add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis,
-                               double radius, double pitch, double at_rest, double sliding, double speed) {
+                               double radius, double pitch, double at_rest, double sliding, double speed, int course) {
   CHECK(open());
   REQUIRE(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
   const auto motion = [](int code) { return code >= -1 && code < FREE_CODES; };
   REQUIRE(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
   CHECK(check_link(link));
   CHECK(check_finite(axis, radius, pitch, at_rest, sliding, speed));
+  REQUIRE(course == -1 || (course >= 0 && course < (int)joints_.size() && is_carriage(joints_[course].type)),
+          "friction along the course of a joint that has none");
   for (const Friction& other : friction_) REQUIRE(other.place != place, "a joint has one friction");
   const int contacts = (int)contact_.size();
-  Friction f = {place, turns, slides, link, falls, pitch != 0.0, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
+  Friction f = {place, turns, slides, link, falls, pitch != 0.0, course, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
   copy(axis, f.axis);
   const std::size_t at = friction_.size() * sizeof(Friction);
   friction_.push_back(f);

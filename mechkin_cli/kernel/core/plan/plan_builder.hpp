@@ -84,7 +84,7 @@ class PlanBuilder {
   Refusal add_input_constraint(int input, int leader);
   // The friction of a joint, see Friction; at most one a joint.
   Refusal add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
-                    double pitch, double at_rest, double sliding, double speed);
+                    double pitch, double at_rest, double sliding, double speed, int course);
   // The next contact of the last friction, see Contact.
   Refusal add_contact(int code, double weight, double share, double tilt, double roll, const Triple& direction);
   // A joint's point, see Plan::size_point: in the link's frame and length units, of ground in m from the origin.

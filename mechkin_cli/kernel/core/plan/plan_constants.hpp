@@ -183,7 +183,7 @@ inline void widen_frictions(const LanePlan& first, const Constants& lanes, Plan*
   if (!room.memory) return;
   for (int f = 0; f < first.frictions; ++f) {
     const auto& from = first.friction[f];
-    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, from.screws, {},
+    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, from.screws, from.course, {},
                    lanes.number([&](const LanePlan& p) { return p.friction[f].radius; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].pitch; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].at_rest; }),

@@ -83,14 +83,20 @@ MECHKIN_INLINE Wrench select(Mask m, const Wrench& a, const Wrench& b) {
 }
 MECHKIN_INLINE Wrench couple(const Vec3& moment) { return {moment, zero3()}; }
 
-// Directions of a kind of motion, `put` each: along the axis, two square to it that its link carries, or ground's axes.
+// Directions of a kind of motion, `put` each: along the axis, two square to it that its link carries, or of which the first goes
+// along a line of the surface, or ground's axes.
 template <class Put>
-MECHKIN_INLINE void each_direction(const Workspace& w, const Friction& f, const Vec3& axis, int code, Put&& put) {
+MECHKIN_INLINE void each_direction(const Plan& p, const Workspace& w, const Friction& f, const Vec3& axis, int code, Put&& put) {
   if (code < 0) return;
   if (code == FREE_ALONG) return put(axis);
   const Pack one = 1.0, none = 0.0;
   if (code == FREE_ALL) {
     put({one, none, none}), put({none, one, none}), put({none, none, one});
+    return;
+  }
+  if (f.course >= 0) {
+    const Vec3 along = of_length_one(w.screw[p.joints[f.course].column].linear);
+    put(along), put(cross(axis, along));
     return;
   }
   // square to the axis and to the ground axis, of the link at its zero, that is the least along it
@@ -140,8 +146,8 @@ inline void find_frame(const Plan& p, const Workspace& w, const ReducedMotion& m
     s.frame[c] = single_direction(p, m, r, k);
     return;
   }
-  each_direction(w, f, axis, f.slides, [&](Vec3 e) { s.frame[c++] = force_at(point, e); });
-  each_direction(w, f, axis, f.turns, [&](Vec3 e) { s.frame[c++] = couple(radius * e); });
+  each_direction(p, w, f, axis, f.slides, [&](Vec3 e) { s.frame[c++] = force_at(point, e); });
+  each_direction(p, w, f, axis, f.turns, [&](Vec3 e) { s.frame[c++] = couple(radius * e); });
 }
 
 // The independent directions in which the mechanism lets a joint slip, in its components: Gram-Schmidt, the fastest first.
