@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -211,10 +212,12 @@ class Track:
     def nearest(self, point: Vector) -> tuple[float, ...]:
         """The parameters between the ends of the place that is nearest to a point."""
         grids = [np.linspace(low, high, _SAMPLES[len(self.ends)]) for low, high in self.ends]
-        starts = np.stack(np.meshgrid(*grids, indexing="ij")).reshape(len(grids), -1).T
-        off = [_square(subtract(self.place(start.tolist()), point)) for start in starts]
-        at = tuple(starts[int(np.argmin(off))].tolist())
-        least = min(off)
+        starts = np.stack(np.meshgrid(*grids, indexing="ij")).reshape(len(grids), -1)
+        x, y, z = (found - x for found, x in zip(self.places_at(starts), point, strict=True))
+        off = x * x + y * y + z * z
+        first = int(np.argmin(np.where(np.isnan(off), inf, off)))
+        at = tuple(starts[:, first].tolist())
+        least = _square(subtract(self.place(at), point))
         for _ in range(_STEPS):
             step = self._towards(at, point)
             moved = tuple(

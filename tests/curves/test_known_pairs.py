@@ -3,10 +3,13 @@ groove, a helix a thread, a sphere two balls; each against that pair, or its clo
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import mechkin_cli as mk
+from mechkin_cli.mechanism.track import Track
 
 HEAD = "format: 1\nunits: {length: mm}\n"
 PLANE = (
@@ -264,3 +267,38 @@ motion: {{inputs: {{A.theta: {{from: 0, to: 10, step: 2}}}}}}
     far = np.hypot(x, y)
     expected = 50.0 if known == "cylinder" else 40.0 + np.sqrt(100.0 - z * z)
     np.testing.assert_allclose(far, expected, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("surface", "foot"),
+    [
+        ("sphere: [0, 0, 0], radius: 50", (30.0, 0.0, 40.0)),
+        ("cylinder: [0, 0, 0], axis: [0, 1, 0], radius: 50", (30.0, 7.0, 40.0)),
+        ("torus: [0, 0, 0], radius: 60, tube: 50", (90.0, 0.0, 40.0)),
+    ],
+)
+def test_the_place_on_a_surface_nearest_to_the_drawing_is_found_at_once(
+    surface: str, foot: tuple[float, float, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sphere drawn off the surface, which a vertical slide then carries onto it: the search
+    looks at places by rows, and develops few of them into series."""
+    developed = 0
+    orders = Track.orders
+
+    def counted(track: Track, *arguments: Any, **more: Any) -> Any:
+        nonlocal developed
+        developed += 1
+        return orders(track, *arguments, **more)
+
+    monkeypatch.setattr(Track, "orders", counted)
+    x, y, z = (1.2 * a if surface.startswith("sphere") else a for a in foot)
+    text = f"""
+links: {{rod: {{}}}}
+joints:
+  A: {{type: P, links: [ground, rod], point: [0, 0, 0], axis: {list(foot)}}}
+  G: {{type: Sp, links: [rod, ground], point: [{x}, {y}, {z}], surface: {{{surface}}}}}
+assembly: {{near: {{A.s: 0}}}}
+"""
+    result = mk.loads(HEAD + text).analyze()
+    assert developed < 100
+    np.testing.assert_allclose(result["G.point"][0], foot, atol=1e-9)
