@@ -25,7 +25,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "builder": "Built build",
         "cables": "DrawnCable",
-        "drawn_wheels": "DrawnBelt DrawnWheel",
+        "drawn_wheels": "DrawnBelt DrawnScrew DrawnWheel",
         "fields": "is_tiny_length",
         "motion": "by_count by_step",
         "recording": "precise precise_response record shifting",

@@ -1,5 +1,5 @@
-"""What couplings look like: wheels with teeth or smooth, racks and belts, as pages and pictures
-draw them.
+"""What couplings look like: wheels with teeth or smooth, racks, belts and screws, as pages and
+pictures draw them.
 
 A wheel is drawn on its own link, in the home drawing, where it meshes: its teeth stand so that one
 of them fills a gap of its mate at the pitch point. Wheels that several couplings have in common are
@@ -39,6 +39,7 @@ from mechkin_cli.schema import (
     ChainCoupling,
     GearCoupling,
     RackCoupling,
+    ScrewCoupling,
 )
 from mechkin_cli.tape import cos, of_two, sin, square_root
 from mechkin_cli.units import DIMENSIONLESS, LENGTH, Dimension
@@ -98,6 +99,27 @@ class DrawnBelt(NamedTuple):
     width: float
 
 
+class DrawnScrew(NamedTuple):
+    """A spindle and its nut.
+
+    Attributes:
+        link: the spindle's, on whose home drawing `on` stands: z the axis, the origin (m) where the
+            nut is drawn.
+        lead: m per turn, positive for a right-hand thread.
+        bearing: where the spindle's own joint is on z, m.
+        nut_link, nut: the nut's link, and its frame as drawn on that.
+        slide: joint and sense of the nut's slide along z.
+    """
+
+    link: str
+    on: Frame
+    lead: float
+    bearing: float
+    nut_link: str
+    nut: Frame
+    slide: tuple[str, float]
+
+
 class _Side(NamedTuple):
     """A wheel at the pitch point, as drawn on the carrier: its frame there, x towards that point,
     and the way to its link."""
@@ -113,8 +135,8 @@ class _Side(NamedTuple):
 
 def drawn_couplings(
     fields: Fields, couplings: Mapping[str, AnyCoupling], mechanism: Mechanism
-) -> tuple[tuple[DrawnWheel, ...], tuple[DrawnBelt, ...]]:
-    """The wheels, racks and belts of a file without errors."""
+) -> tuple[tuple[DrawnWheel, ...], tuple[DrawnBelt, ...], tuple[DrawnScrew, ...]]:
+    """The wheels and racks, belts and screws of a file without errors."""
     drawing = _Drawing(fields, mechanism)
     for name, section in couplings.items():
         relation = mechanism.couplings.get(name)
@@ -126,7 +148,9 @@ def drawn_couplings(
             drawing.rack(name, section)
         elif isinstance(section, BeltCoupling | ChainCoupling):
             drawing.belt(name, section)
-    return drawing.layered()
+        elif isinstance(section, ScrewCoupling):
+            drawing.screw(name, section)
+    return (*drawing.layered(), tuple(drawing.screws))
 
 
 class _Drawing:
@@ -136,6 +160,7 @@ class _Drawing:
         self.joints: Mapping[str, Joint] = mechanism.joints
         self.wheels: list[DrawnWheel] = []
         self.belts: list[tuple[DrawnBelt, int]] = []
+        self.screws: list[DrawnScrew] = []
         self.groups: list[int] = []
         """Of each wheel: couplings that share wheels are of one group."""
 
@@ -224,6 +249,28 @@ class _Drawing:
             *_arc(end, radii[1], along, aside, facing),
         )
         self.belts.append((DrawnBelt(carrier, arcs, z, width), placed[0]))
+
+    def screw(self, name: str, section: ScrewCoupling) -> None:
+        """The part that turns as a spindle, the other one as its nut."""
+        turning, sliding = (self.joints[each] for each in section.joints)
+        carrier = next(iter({turning.first, turning.second} & {sliding.first, sliding.second}))
+        about, along = frame_on(turning, carrier), frame_on(sliding, carrier)
+        height = dot(subtract(along.o, about.o), about.z)
+        on = frame_about(about.z, about.x, add(about.o, scale(height, about.z)))
+        lead = self.fields.number(("couplings", name, "lead"), section.lead, LENGTH)
+        spindle = against(turning, carrier)
+        sense = 1 if sliding.first == carrier else -1
+        self.screws.append(
+            DrawnScrew(
+                self._end(spindle),
+                self._on_link(on, spindle.back),
+                float(lead),
+                -height,
+                sliding.second if sense > 0 else sliding.first,
+                self._on_link(on, ((sliding.name, -sense),)),
+                (sliding.name, sense * (1.0 if dot(about.z, along.z) > 0.0 else -1.0)),
+            )
+        )
 
     def layered(self) -> tuple[tuple[DrawnWheel, ...], tuple[DrawnBelt, ...]]:
         """All of them; in a plane those of one shaft above one another."""

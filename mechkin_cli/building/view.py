@@ -6,7 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from mechkin_cli.building.cables import DrawnCable, drawn_cables
-from mechkin_cli.building.drawn_wheels import DrawnBelt, DrawnWheel, drawn_couplings
+from mechkin_cli.building.drawn_wheels import (
+    DrawnBelt,
+    DrawnScrew,
+    DrawnWheel,
+    drawn_couplings,
+)
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Mechanism, Vector, is_written
@@ -34,11 +39,13 @@ class ShapeSetting(NamedTuple):
 
 
 class DrawnBetween(NamedTuple):
-    """What is drawn between two points of links: `radius` in m (None: the page's choice)."""
+    """What is drawn between two points of links: `radius` in m (None: the page's choice); of a
+    cylinder the `stroke`, its least and its largest length in m (None: as far as it moves)."""
 
     kind: Literal["spring", "damper", "cylinder"]
     ends: tuple[Attached, Attached]
     radius: float | None = None
+    stroke: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +63,7 @@ class ViewSettings:
         arrow_length: of the longest arrow, m; None: by the size of the mechanism.
         camera: direction from the mechanism to the eye; None: the page's choice.
         speed: seconds for once through a run; None: the page's choice.
-        wheels, belts, cables: what couplings look like.
+        wheels, belts, cables, screws: what couplings look like.
     """
 
     colours: Mapping[str, str] = field(default_factory=dict)
@@ -72,6 +79,7 @@ class ViewSettings:
     wheels: tuple[DrawnWheel, ...] = ()
     belts: tuple[DrawnBelt, ...] = ()
     cables: tuple[DrawnCable, ...] = ()
+    screws: tuple[DrawnScrew, ...] = ()
 
 
 def build_view(
@@ -83,12 +91,12 @@ def build_view(
 ) -> ViewSettings:
     """The settings of the section, and how couplings and cylinders look; errors are noted in
     `fields`."""
-    drawn = ((), ()) if fields.error_count else drawn_couplings(fields, couplings, mechanism)
-    wheels, belts = drawn
+    known = {} if fields.error_count else couplings
+    wheels, belts, screws = drawn_couplings(fields, known, mechanism)
     cables = () if fields.error_count else drawn_cables(fields, couplings, mechanism)
     tubes = () if fields.error_count else tuple(_cylinders(fields, cylinders, mechanism))
     if section is None:
-        return ViewSettings(wheels=wheels, belts=belts, cables=cables, between=tubes)
+        return ViewSettings(wheels=wheels, belts=belts, cables=cables, screws=screws, between=tubes)
     view = _View(fields, mechanism)
     camera = section.camera
     return ViewSettings(
@@ -109,6 +117,7 @@ def build_view(
         wheels=wheels,
         belts=belts,
         cables=cables,
+        screws=screws,
     )
 
 
@@ -121,7 +130,14 @@ def _cylinders(
         radius = None
         if section.bore is not None:
             radius = 0.6 * fields.number(("cylinders", name, "bore"), section.bore, LENGTH)
-        yield DrawnBetween("cylinder", ends, radius)
+        stroke = None
+        if section.stroke is not None:
+            low, high = (
+                float(fields.number(("cylinders", name, "stroke", i), text, LENGTH))
+                for i, text in enumerate(section.stroke)
+            )
+            stroke = low, high
+        yield DrawnBetween("cylinder", ends, radius, stroke)
 
 
 class _View:

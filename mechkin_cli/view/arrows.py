@@ -61,7 +61,9 @@ def tie_records(
     elements = (load for load in mechanism.loads if isinstance(load, Spring | Damper))
     loads = [load for load in elements if load not in mechanism.pretensions]
     kinds = {Spring: "spring", Damper: "damper"}
-    ends = [(kinds[type(load)], load.between, None) for load in loads if load.between is not None]
+    ends = [
+        (kinds[type(load)], load.between, None, None) for load in loads if load.between is not None
+    ]
     found: list[Plain] = [
         {
             "kind": kind,
@@ -70,8 +72,9 @@ def tie_records(
             "links": [links.index(end.link) for end in between],
             "places": [lengths.vector(end.vector) for end in between],
             "radius": None if radius is None else lengths.one(radius),
+            "stroke": None if stroke is None else [lengths.one(end) for end in stroke],
         }
-        for kind, between, radius in (*ends, *drawn)
+        for kind, between, radius, stroke in (*ends, *drawn)
         if all(end.link in links for end in between)
     ]
     joints = drawn_joints(mechanism)
@@ -87,6 +90,7 @@ def tie_records(
                 "links": [links.index(joint.first), links.index(joint.second)],
                 "places": [],
                 "radius": None,
+                "stroke": None,
             }
         )
     return found

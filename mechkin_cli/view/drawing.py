@@ -5,21 +5,19 @@ symbols; a joint on ground stands on a hatched foot. Wheels of couplings have th
 paths and belts are drawn first, then links, then joints, each from far to near, what is as near in
 the order of the file. Numbers have one decimal.
 
-In reading order: the projection, elements of SVG, symbols of joints, the picture. The projection is
-isometric: all three axes are shortened alike, seen from the corner (1, 1, 1). With x', y', z' the
-axes turned so that z' points up, a point stands at (y' - x')/sqrt(2) to the right and
-(2z' - x' - y')/sqrt(6) upwards, and is (x' + y' + z')/sqrt(3) near. A joint's symbol follows from
-its entry in the joint table: a turn about an axis is a pin along it; a slide a block on a rail,
-with a turn a sleeve, on a thread a nut with its grooves; a ball stands in a ring, on a plate, or
-between the walls of a groove; two turns are a cross of their axes. A curved groove or slot has its
-own curve as walls, a curved surface lines of its parameters.
+In reading order: the projection, the picture. The projection is isometric: all three axes are
+shortened alike, seen from the corner (1, 1, 1). With x', y', z' the axes turned so that z' points
+up, a point stands at (y' - x')/sqrt(2) to the right and (2z' - x' - y')/sqrt(6) upwards, and is
+(x' + y' + z')/sqrt(3) near. A curved groove or slot has its own curve as walls, a curved surface
+lines of its parameters. Of threads, and of teeth that lean or run to an apex, that is drawn which
+faces the eye.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from math import sqrt
+from math import copysign, isfinite, sqrt
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
@@ -31,8 +29,8 @@ from mechkin_cli.mechanism import (
     GROUND_NAME,
     SECOND,
     Attached,
+    Frame,
     Joint,
-    JointType,
     Mechanism,
     diagonal,
     is_written,
@@ -44,18 +42,43 @@ from mechkin_cli.view.joints import (
     Shape,
     carried,
     drawn_joints,
+    drawn_points,
     half_axis,
     half_frame,
     link_poses,
     link_shape,
+    stops_of,
 )
 from mechkin_cli.view.page import FLATNESS, POINTS_APART, thinned
+from mechkin_cli.view.symbols import (
+    RAIL,
+    ROD,
+    SHORT,
+    THICK,
+    Disc,
+    Half,
+    Mark,
+    Place,
+    Stroke,
+    bar,
+    ground_mark,
+    line,
+    moved,
+    slide_stops,
+    symbol,
+    turn_stops,
+)
 from mechkin_cli.view.tracks import DrawnTrack, drawn_track
 from mechkin_cli.view.wheels import (
     belt_line,
     cable_line,
     cable_pulleys,
+    facing_teeth,
+    facing_threads,
+    is_solid,
     round_about,
+    runs_of,
+    toothed_faces,
     wheel_outlines,
 )
 
@@ -96,220 +119,21 @@ def isometric(mechanism: Mechanism) -> Isometric:
     return Isometric(1) if flat and all(flat) else Isometric(2)
 
 
-Place = tuple[float, float]
-"""To the right and downwards, in points."""
-
-
-class Stroke(NamedTuple):
-    """A line through places, or the edge of an area where it is closed.
-
-    `ink` names the class of its colour: `k` ink, `p` paper, `l0` to `l7` links; `filled` areas are
-    of that colour with a paler inside.
-    """
-
-    places: tuple[Place, ...]
-    ink: str
-    width: float
-    closed: bool = False
-    filled: bool = False
-    round_ends: bool = False
-
-    @property
-    def svg(self) -> str:
-        """The element."""
-        first, *rest = self.places
-        path = f"M{_place(first)}" + "".join(f"L{_place(place)}" for place in rest)
-        ends = ' stroke-linecap="round"' if self.round_ends else ""
-        inside = f' class="{self.ink} a"' if self.filled else f' class="{self.ink}"'
-        return (
-            f'<path{inside} stroke-width="{self.width:.1f}"{ends} d="{path}{"Z" * self.closed}"/>'
-        )
-
-
-class Disc(NamedTuple):
-    """A disc of paper with an edge of ink, or of ink alone."""
-
-    centre: Place
-    radius: float
-    is_ink: bool = False
-
-    @property
-    def svg(self) -> str:
-        """The element."""
-        x, y = (number(value) for value in self.centre)
-        kind = "i" if self.is_ink else "d"
-        return f'<circle class="{kind}" cx="{x}" cy="{y}" r="{self.radius:.1f}"/>'
-
-
-Mark = Stroke | Disc
-
-
-def line(a: Place, b: Place, ink: str = "k", width: float = 1.2) -> Stroke:
-    """A straight line."""
-    return Stroke((a, b), ink, width)
-
-
-def bar(a: Place, b: Place, width: float, *, round_ends: bool) -> list[Mark]:
-    """A bar of paper with an edge of ink."""
-    edge = 2.4
-    inside = (a, b) if round_ends else _shortened(a, b, edge / 2.0)
-    outer = Stroke((a, b), "k", width, round_ends=round_ends)
-    return [outer, Stroke(inside, "p", width - edge, round_ends=round_ends)]
-
-
-def moved(place: Place, by: Sequence[float], times: float) -> Place:
-    """A place that is shifted."""
-    return place[0] + times * by[0], place[1] + times * by[1]
-
-
-def number(value: float) -> str:
-    """With one decimal; zero has no sign."""
-    return f"{round(value, 1) + 0.0:.1f}"
-
-
-def _place(place: Place) -> str:
-    return f"{number(place[0])} {number(place[1])}"
-
-
-def _shortened(a: Place, b: Place, by: float) -> tuple[Place, Place]:
-    length = ((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2) ** 0.5
-    share = by / length if length > 2.0 * by else 0.0
-    along = (b[0] - a[0], b[1] - a[1])
-    return moved(a, along, share), moved(b, along, -share)
-
-
-PIN, BLOCK, PLATE, GROOVE, CROSS, RAIL = 5.0, 7.0, 11.0, 12.0, 8.0, 9.0
-"""Half lengths in points."""
-
-THICK, BALL, ROD = 8.0, 5.0, 3.2
-SHORT = 0.25
-"""A pin that is seen more nearly end on than this is a disc."""
-
-
-class Half(NamedTuple):
-    """One link's half of a joint: its place, and what the axes of its frame are on the picture,
-    shortened as they are seen."""
-
-    place: Place
-    axis: Place
-    x: Place
-    y: Place
-
-
-def symbol(kind: JointType, first: Half, second: Half) -> list[Mark]:
-    """A joint, from back to front."""
-    slides, turns = sum(kind.slides), len(kind.slides) - sum(kind.slides)
-    if kind.is_carried:
-        turns_about_one = any(known.is_angle for known in kind.named)
-        return _pin(first.place, first.axis) if turns_about_one else _ball(first.place)
-    if kind.is_ball:
-        return _ball(first.place)
-    if kind.is_oriented:
-        seat = _groove if kind.named else _plate
-        return [*seat(second, first.place), *_ball(first.place)]
-    if kind.has_slip:
-        bed = _plate if slides > 1 else _groove
-        return [*bed(second, first.place), *_pin(first.place, first.axis)]
-    if turns > 1:
-        rail = _rail(first, second) if slides else []
-        return [*rail, *_cross(second.place, first.axis, second.axis)]
-    if slides > 1:
-        return [*_plate(first, second.place), Disc(second.place, 2.4, is_ink=True)]
-    if not slides and not kind.is_threaded:
-        return _pin(second.place, second.axis)
-    sides = _block(second, round_ends=turns > 0)
-    grooves = _slashes(second) if kind.is_threaded else []
-    return [*_rail(first, second), *sides, *grooves]
-
-
-def ground_mark(place: Place) -> list[Mark]:
-    """A hatched foot below a joint on ground."""
-    x, y = place
-    foot = y + 10.0
-    starts = (x - 4.0, x, x + 4.0, x + 8.0)
-    hatches = [line((k, foot), (k - 3.0, foot + 4.0), width=0.9) for k in starts]
-    return [line((x, y), (x, foot)), line((x - 8.0, foot), (x + 8.0, foot), width=1.6), *hatches]
-
-
-def _pin(place: Place, axis: Place) -> list[Mark]:
-    if axis[0] ** 2 + axis[1] ** 2 < SHORT**2:
-        return [Disc(place, THICK / 2.0), Disc(place, 1.0, is_ink=True)]
-    ends = moved(place, axis, -PIN), moved(place, axis, PIN)
-    return bar(*ends, THICK, round_ends=True)
-
-
-def _block(half: Half, *, round_ends: bool) -> list[Mark]:
-    length = (half.axis[0] ** 2 + half.axis[1] ** 2) ** 0.5
-    if length < SHORT:
-        return [Disc(half.place, THICK / 2.0)]
-    ends = moved(half.place, half.axis, -BLOCK), moved(half.place, half.axis, BLOCK)
-    return bar(*ends, THICK + 1.0, round_ends=round_ends)
-
-
-def _rail(first: Half, second: Half) -> list[Mark]:
-    """From the first link's half through the second's, a little beyond both."""
-    by = first.axis
-    ends = [moved(half.place, by, k * 2.0 * RAIL) for half in (first, second) for k in (-1, 1)]
-    ends.sort(key=lambda place: (place[0] * by[0] + place[1] * by[1], place))
-    return [line(ends[0], ends[-1], width=1.8)]
-
-
-def _slashes(half: Half) -> list[Mark]:
-    across = (-half.axis[1] + 0.3 * half.axis[0], half.axis[0] + 0.3 * half.axis[1])
-    centres = [moved(half.place, half.axis, k * 4.0) for k in (-1, 0, 1)]
-    return [line(moved(c, across, -3.6), moved(c, across, 3.6), width=0.9) for c in centres]
-
-
-def _ball(place: Place) -> list[Mark]:
-    return [Disc(place, BALL), Disc(place, 2.6, is_ink=True)]
-
-
-def _plate(half: Half, touched: Place) -> list[Mark]:
-    """A plate about its own place and the one that is touched."""
-    to = touched[0] - half.place[0], touched[1] - half.place[1]
-    area, way = _area(half.x, half.y), (0.0, 0.0)
-    if abs(area) > SHORT**2:
-        way = _area(to, half.y) / area, _area(half.x, to) / area
-    left, low = (min(0.0, part) - PLATE for part in way)
-    right, high = (max(0.0, part) + PLATE for part in way)
-    corners = [
-        moved(moved(half.place, half.x, a), half.y, b)
-        for a, b in ((left, low), (right, low), (right, high), (left, high))
-    ]
-    return [Stroke(tuple(corners), "k", 1.2, closed=True, filled=True)]
-
-
-def _groove(half: Half, touched: Place) -> list[Mark]:
-    """The walls beside its own place and the one that is touched."""
-    along = half.axis
-    to = touched[0] - half.place[0], touched[1] - half.place[1]
-    length = max(along[0] ** 2 + along[1] ** 2, SHORT**2)
-    way = (to[0] * along[0] + to[1] * along[1]) / length
-    start, end = min(0.0, way) - GROOVE, max(0.0, way) + GROOVE
-    wall = max((half.x, half.y), key=lambda by: abs(_area(by, along)))
-    sides = [moved(half.place, wall, k * 7.5) for k in (-1.0, 1.0)]
-    return [line(moved(s, along, start), moved(s, along, end), width=1.8) for s in sides]
-
-
-def _cross(place: Place, one: Place, other: Place) -> list[Mark]:
-    arms: list[Mark] = []
-    for by in (one, other):
-        ends = moved(place, by, -CROSS), moved(place, by, CROSS)
-        arms += [line(*ends, width=2.6), *(Disc(end, 2.2) for end in ends)]
-    return arms
-
-
-def _area(a: Sequence[float], b: Sequence[float]) -> float:
-    return a[0] * b[1] - a[1] * b[0]
-
-
 PICTURE_NAME = "picture.svg"
 """Of the file beside a mechanism's tables."""
 
 WIDTH, HEIGHT, MARGIN = 200.0, 150.0, 24.0
 MOST_PATH_POINTS = 120
-TUBE = 0.6
-"""Length of a cylinder's tube in parts of that from eye to eye."""
+TUBE, CUP = 0.6, 0.92
+"""Length of a cylinder's tube in parts of that from eye to eye, or of its least where its stroke is
+known."""
+
+SPINDLE, NUT = 3.2, 5.5
+"""Radius of a spindle, and half the length of a nut, in points."""
+
+LEAST_THREAD, MOST_THREAD, MOST_STARTS = 3.2, 8.0, 4
+"""From thread to thread on the picture: finer ones are drawn coarser; coarser ones of a spindle,
+which may have any number of starts, with some."""
 
 SLOT = 13.0
 """Width of a curved groove, over its walls."""
@@ -383,6 +207,7 @@ class _Scene:
     def marks(self) -> list[Mark]:
         """Everything from back to front."""
         links = sorted([*self._shapes(), *self._wheels(), *self._discs()], key=itemgetter(0))
+        spindles = sorted(self._spindles(), key=itemgetter(0))
         joints = sorted(self._symbols(), key=itemgetter(0))
         return [
             *self._feet(),
@@ -391,7 +216,7 @@ class _Scene:
             *self._belts(),
             *self._cylinders(),
             *self._cables(),
-            *(m for _, marks in [*links, *joints] for m in marks),
+            *(m for _, marks in [*links, *spindles, *joints] for m in marks),
         ]
 
     def _placed(self, link: str, points: Floats, row: int = 0) -> Floats:
@@ -432,6 +257,9 @@ class _Scene:
         x, y = self.scale * (seen[:2] - self.middle)
         # the feet below the joints need some room, too
         return WIDTH / 2.0 + float(x), HEIGHT / 2.0 - 4.0 - float(y)
+
+    def _all_on_picture(self, seen: Sequence[Floats] | Floats) -> tuple[Place, ...]:
+        return tuple(self._on_picture(one) for one in seen)
 
     def _link_shapes(self) -> Iterator[tuple[str, Shape]]:
         shapes = self.settings.shapes
@@ -499,12 +327,94 @@ class _Scene:
             toothed = wheel.pitch * self.scale >= LEAST_PITCH
             ink = self._ink(wheel.link)
             marks: list[Mark] = []
-            for line in wheel_outlines(wheel, toothed):
-                places = [self._on_picture(one) for one in self._placed(wheel.link, line)]
-                outline = _hull(sorted(places)) if wheel.is_worm else tuple(places)
-                marks.append(Stroke(outline, ink, 1.2, closed=True, filled=not wheel.inner))
+            if toothed and is_solid(wheel):
+                marks += self._aslant(wheel)
+            else:
+                for outline in wheel_outlines(wheel, toothed):
+                    places = self._all_on_picture(self._placed(wheel.link, outline))
+                    edge = _hull(sorted(places)) if wheel.is_worm else places
+                    marks.append(Stroke(edge, ink, 1.2, closed=True, filled=not wheel.inner))
+            if wheel.is_worm:
+                lead, half = 2.0 * np.pi * wheel.radius / wheel.lean, 0.5 * wheel.width
+                marks += self._thread(
+                    wheel.link, wheel.on, wheel.radius, lead, wheel.teeth, (-half, half)
+                )
             height = self._placed(wheel.link, np.array([wheel.on.o]))[0, 2]
             yield round(float(height) / self.size, NEAR_DECIMALS), marks
+
+    def _aslant(self, wheel: DrawnWheel) -> Iterator[Mark]:
+        """The tips of teeth that face the eye, from their far ends on, and before them the face
+        that does."""
+        low, high = (self._placed(wheel.link, face) for face in toothed_faces(wheel))
+        _, axes = self._seen_frame(wheel.link, wheel.on)
+        front, back = (high, low) if axes[2, 2] > 0.0 else (low, high)
+        ink = self._ink(wheel.link)
+        facing = facing_teeth(wheel, axes)
+        for run in runs_of(facing):
+            far = back.reshape(-1, 4, 3)[run].reshape(-1, 3)
+            yield Stroke(self._all_on_picture(far), ink, 0.8, closed=bool(facing.all()))
+        for tooth in np.flatnonzero(facing):
+            k = 4 * int(tooth) + 1
+            corners = self._all_on_picture([front[k], front[k + 1], back[k + 1], back[k]])
+            yield Stroke(corners, ink, 0.8, closed=True, filled=True)
+        yield Stroke(self._all_on_picture(front), ink, 1.2, closed=True, filled=True)
+
+    def _seen_frame(self, link: str, frame: Frame) -> tuple[Floats, Floats]:
+        """Origin (3,) and axes (3, 3) of a frame as drawn on a link, as they are seen."""
+        origin = np.array(frame.o)
+        axes = [origin + np.array(axis) for axis in (frame.x, frame.y, frame.z)]
+        seen = self._placed(link, np.array([origin, *axes]))
+        return seen[0], seen[1:] - seen[0]
+
+    def _thread(
+        self,
+        link: str,
+        on: Frame,
+        radius: float,
+        lead: float,
+        starts: int,
+        ends: tuple[float, float],
+    ) -> Iterator[Mark]:
+        """A thread of some `starts`, of 0 of so many as are seen well; of one so fine that its
+        lines would run together a coarser one."""
+        origin, axes = self._seen_frame(link, on)
+        apart = self.scale * float(np.hypot(*axes[2, :2]))
+        starts = starts or int(min(max(abs(lead) * apart / MOST_THREAD, 1.0), MOST_STARTS))
+        if abs(lead) * apart < LEAST_THREAD * starts:
+            lead, starts = copysign(LEAST_THREAD / apart, lead), 1
+        for turn in facing_threads(origin, axes, radius, lead, starts, ends):
+            yield Stroke(self._all_on_picture(turn), self._ink(link), 0.9)
+
+    def _spindles(self) -> Iterator[Item]:
+        """Spindles of screws, from their bearing on, and of H joints, with their thread as far as
+        their nut; and nuts of screws."""
+        hidden = self.settings.hidden
+        screws = [
+            (each.link, each.on, each.lead, each.bearing, (each.nut_link, each.nut))
+            for each in self.settings.screws
+        ]
+        threaded = [joint for joint in self.joints if joint.type.is_threaded]
+        screws += [
+            (one.first, one.on_first, one.lead, 0.0, (one.second, one.on_second))
+            for one in threaded
+        ]
+        for number, (link, on, lead, bearing, nut) in enumerate(screws):
+            origin, axes = self._seen_frame(link, on)
+            if link in hidden or np.hypot(*axes[2, :2]) < SHORT:
+                continue
+            middle, along = self._seen_frame(*nut)
+            ways = bearing, float((middle - origin) @ axes[2])
+            beyond = 2.0 * RAIL / self.scale
+            ends = min(ways) - beyond, max(ways) + beyond
+            a, b = (self._on_picture(origin + end * axes[2]) for end in ends)
+            marks = bar(a, b, 2.0 * SPINDLE + 1.0, ink=self._ink(link), edge=1.0)
+            if lead:
+                marks += self._thread(link, on, SPINDLE / self.scale, lead, 0, ends)
+            if number < len(self.settings.screws) and nut[0] not in hidden:
+                by = NUT / self.scale * along[2]
+                c, d = self._on_picture(middle - by), self._on_picture(middle + by)
+                marks += bar(c, d, 15.0, ink=self._ink(nut[0]))
+            yield round(float(origin[2]) / self.size, NEAR_DECIMALS), marks
 
     def _belts(self) -> Iterator[Mark]:
         for belt in self.settings.belts:
@@ -556,8 +466,8 @@ class _Scene:
         """Walls beside curves, and lines on surfaces, in the colour of their link."""
         for track in self._tracks:
             ink = self._ink(track.link)
-            for line in track.lines(SURFACE_LINES):
-                places = tuple(self._on_picture(one) for one in self._placed(track.link, line))
+            for course in track.lines(SURFACE_LINES):
+                places = self._all_on_picture(self._placed(track.link, course))
                 if track.is_surface:
                     yield Stroke(places, f"{ink} t", 0.8)
                 else:
@@ -575,14 +485,44 @@ class _Scene:
                 )
                 yield line(foot, eye, width=2.0)
                 along = eye[0] - foot[0], eye[1] - foot[1]
-                yield from bar(foot, moved(foot, along, TUBE), THICK, round_ends=False)
+                share = TUBE
+                if part.stroke is not None:
+                    ends = [self._placed(at.link, np.array([at.vector]))[0] for at in part.ends]
+                    length = float(np.linalg.norm(ends[1] - ends[0]))
+                    share = min(CUP * part.stroke[0] / length, 1.0) if length else TUBE
+                yield from bar(foot, moved(foot, along, share), THICK, round_ends=False)
 
     def _symbols(self) -> Iterator[Item]:
         for joint in self.joints:
             first, second = self._half(joint, FIRST), self._half(joint, SECOND)
             place = self._placed(joint.second, np.array([half_frame(joint, SECOND).o]))[0]
             near = round(float(place[2]) / self.size, NEAR_DECIMALS)
-            yield near, symbol(joint.type, first, second)
+            yield near, [*self._stops(joint, first, second), *symbol(joint.type, first, second)]
+
+    def _stops(self, joint: Joint, first: Half, second: Half) -> Iterator[Mark]:
+        """Where `limits:` end the turn of a pin, or a slide on a rail where that is on the
+        picture."""
+        kind = joint.type
+        if kind.is_carried or kind.is_ball or kind.is_oriented or kind.has_slip:
+            return
+        stops = stops_of(self.result.problem, joint)
+        if "slide" in stops and sum(kind.slides) <= 1:
+            low, high = (
+                end if self._is_on(moved(first.place, first.axis, end)) else None
+                for end in (self.scale * each for each in stops["slide"])
+            )
+            yield from slide_stops(first, second, (low, high))
+        if "turn" in stops and not any(kind.slides):
+            frame, place = joint.on_second, np.array(joint.on_second.o)
+            off = np.mean(drawn_points(self.mechanism, joint.second), axis=0) - place
+            hand = float(np.arctan2(off @ np.array(frame.y), off @ np.array(frame.x)))
+            low, high = (end + hand if isfinite(end) else None for end in stops["turn"])
+            yield from turn_stops(first, second, (low, high))
+
+    @staticmethod
+    def _is_on(place: Place) -> bool:
+        edge = MARGIN / 3.0
+        return edge < place[0] < WIDTH - edge and edge < place[1] < HEIGHT - edge
 
     def _half(self, joint: Joint, side: int) -> Half:
         link = joint.first if side == FIRST else joint.second

@@ -35,6 +35,7 @@ from mechkin_cli.view.tracks import drawn_track
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Kind
+    from mechkin_cli.mechanism import Problem
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep import Result
     from mechkin_cli.view.page import Lengths, Plain
@@ -57,8 +58,22 @@ def sliding_coordinate(joint: Joint) -> str | None:
     return f"{joint.name}.{slides[0]}" if len(slides) == 1 else None
 
 
+def turning_coordinate(joint: Joint) -> str | None:
+    """The full name of the angle of a joint that has one alone; None of others."""
+    angles = [known.name for known in joint.type.named if known.is_angle]
+    return f"{joint.name}.{angles[0]}" if len(angles) == 1 else None
+
+
+def stops_of(problem: Problem, joint: Joint) -> dict[str, tuple[float, float]]:
+    """Where `limits:` end the one angle of a joint (`turn`, rad) and its one slide (`slide`, m);
+    infinite on a side without a limit."""
+    ends = {limit.name: (limit.low, limit.high) for limit in problem.limits}
+    names = {"turn": turning_coordinate(joint), "slide": sliding_coordinate(joint)}
+    return {kind: ends[name] for kind, name in names.items() if name in ends}
+
+
 def joint_records(
-    mechanism: Mechanism,
+    problem: Problem,
     links: Sequence[str],
     travels: Mapping[str, tuple[float, float]],
     joint_radius: float | None,
@@ -68,6 +83,7 @@ def joint_records(
 
     The radius is that of the `view:` section, else that at which the joint rubs.
     """
+    mechanism = problem.mechanism
     rubs = {one.joint: one.radius for one in mechanism.frictions}
     found: list[Plain] = []
     for joint in drawn_joints(mechanism):
@@ -83,8 +99,18 @@ def joint_records(
                 "travel": None if travel is None else list(travel),
                 "radius": None if radius is None else lengths.one(radius),
                 "track": _track(joint, lengths),
+                "stops": _stops(problem, joint, lengths),
             }
         )
+    return found
+
+
+def _stops(problem: Problem, joint: Joint, lengths: Lengths) -> Plain:
+    """Ends by `limits:`, of slides in the file's unit; None on a side without one."""
+    found: Plain = {"turn": None, "slide": None}
+    for kind, ends in stops_of(problem, joint).items():
+        unit = lengths.one if kind == "slide" else float
+        found[kind] = [unit(end) if np.isfinite(end) else None for end in ends]
     return found
 
 

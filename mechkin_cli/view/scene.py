@@ -157,11 +157,12 @@ class Scene:
             "planar": self.plane == _Z,
             "links": [self._link(name, size) for name in self.links],
             "joints": joint_records(
-                mechanism, self.links, self._travels(), settings.joint_radius, lengths
+                problem, self.links, self._travels(), settings.joint_radius, lengths
             ),
             "points": self._points(),
             "wheels": self._wheels(),
             "belts": self._belts(),
+            "screws": self._screws(),
             "discs": self._discs(),
             "cables": self._cables(),
             "runs": [
@@ -293,6 +294,31 @@ class Scene:
             }
             for belt in self.settings.belts
         ]
+
+    def _screws(self) -> list[Plain]:
+        """Spindles, from their bearing to beyond where the nut comes, and nuts."""
+        lengths, travels = self._lengths, self._travels()
+        found: list[Plain] = []
+        for screw in self.settings.screws:
+            joint, sense = screw.slide
+            ends = [sense * end for end in travels.get(joint, (0.0, 0.0))]
+            ends += [0.0, lengths.one(screw.bearing)]
+            found.append(
+                {
+                    "link": self.links.index(screw.link),
+                    "centre": lengths.vector(screw.on.o),
+                    "axis": list(screw.on.z),
+                    "x": list(screw.on.x),
+                    "lead": lengths.one(screw.lead),
+                    "reach": [min(ends), max(ends)],
+                    "nut": {
+                        "link": self.links.index(screw.nut_link),
+                        "centre": lengths.vector(screw.nut.o),
+                        "axis": list(screw.nut.z),
+                    },
+                }
+            )
+        return found
 
     def _cables(self) -> list[Plain]:
         """Places of cables as drawn on their links, how far to the left of each they run, and the

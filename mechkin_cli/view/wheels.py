@@ -1,5 +1,5 @@
-"""Outlines of wheels, racks and belts for pictures, with straight flanks in place of involutes, and
-the lines of cables."""
+"""Outlines of wheels, racks and belts for pictures, with straight flanks in place of involutes, the
+lines of cables, and those of threads that face the eye."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ import numpy as np
 from mechkin_cli.building import DrawnBelt, DrawnWheel
 
 if TYPE_CHECKING:
-    from mechkin_cli.show import Floats
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Bools, Floats
 
 ABOVE, BELOW = 1.0, 1.25
 """Height of teeth beyond the pitch line and below it, in modules."""
@@ -21,6 +23,9 @@ FLANK = 0.36
 
 SIDES = 48
 """Of what is drawn round."""
+
+FRONT = 7
+"""Places on half a turn of a thread."""
 
 RIM, RACK = 3.5, 2.5
 """Of a ring beyond its pitch circle, and of a rack below its pitch line, in modules."""
@@ -45,6 +50,71 @@ def wheel_outlines(wheel: DrawnWheel, toothed: bool) -> list[Floats]:
     if wheel.inner:
         lines.append(_circle(wheel, wheel.radius + RIM * (module or 0.03 * wheel.radius)))
     return lines
+
+
+def is_solid(wheel: DrawnWheel) -> bool:
+    """Whether its teeth go on aslant behind its face: they lean, or run to an apex."""
+    aslant = wheel.apex != 0.0 or wheel.lean != 0.0
+    return aslant and wheel.teeth > 0 and not (wheel.inner or wheel.is_worm or wheel.slide)
+
+
+def toothed_faces(wheel: DrawnWheel) -> tuple[Floats, Floats]:
+    """The outlines of both faces of a wheel, the lower one first: four corners a tooth (n, 3), of
+    which the middle two are its tip, on the home drawing of its link, m."""
+    x, y = _teeth(wheel, wheel.pitch / np.pi / np.sqrt(1.0 + wheel.lean**2))
+    found = []
+    for height in (-0.5 * wheel.width, 0.5 * wheel.width):
+        size = 1.0 - height / wheel.apex if wheel.apex else 1.0
+        turn = wheel.lean * height / wheel.radius
+        c, s = size * np.cos(turn), size * np.sin(turn)
+        found.append(_placed(wheel, c * x - s * y, s * x + c * y, height))
+    return found[0], found[1]
+
+
+def facing_teeth(wheel: DrawnWheel, axes: Floats) -> Bools:
+    """Which teeth of a wheel (teeth,) face the eye, where x, y and z of its frame (3, 3) are seen
+    with their last component towards it: by the normal of its cylinder or cone."""
+    turns = 2.0 * np.pi * np.arange(wheel.teeth) / wheel.teeth
+    steep = wheel.radius / wheel.apex if wheel.apex else 0.0
+    near: Floats = axes[:, 2]
+    found: Bools = near[0] * np.cos(turns) + near[1] * np.sin(turns) + near[2] * steep > 0.0
+    return found
+
+
+def runs_of(facing: Bools) -> list[NDArray[np.intp]]:
+    """The numbers of those that face the eye, in runs round the wheel."""
+    numbers = np.flatnonzero(facing)
+    if numbers.size in (0, facing.size):
+        return [numbers] if numbers.size else []
+    # from one after a gap on, a run that passes the last tooth is whole
+    start = int(np.flatnonzero(facing & ~np.roll(facing, 1))[0])
+    turned = (np.flatnonzero(np.roll(facing, -start)) + start) % facing.size
+    breaks = np.flatnonzero(np.diff(turned) % facing.size != 1) + 1
+    return np.split(turned, breaks)
+
+
+def facing_threads(
+    origin: Floats, axes: Floats, radius: float, lead: float, starts: int, ends: tuple[float, float]
+) -> list[Floats]:
+    """The lines (n, 3) of a thread of some `starts`, one of which is on x at the origin, as far as
+    they face the eye: of a frame as it is seen, its origin (3,) and its axes (3, 3), z between two
+    `ends`; the last component is towards the eye."""
+    x, y, z = axes
+    facing = float(np.arctan2(y[2], x[2]))
+    found: list[Floats] = []
+    for start in range(starts):
+        # at a turn t the height is lead * (t/(2 pi) - shift), less whole turns
+        shift = start / starts
+        low, high = sorted(end / lead + shift - facing / (2.0 * np.pi) for end in ends)
+        for whole in range(int(np.ceil(low - 0.25)), int(np.floor(high + 0.25)) + 1):
+            begin, end = (min(max(each - whole, -0.25), 0.25) for each in (low, high))
+            if begin == end:
+                continue
+            turns = facing + 2.0 * np.pi * np.linspace(begin, end, FRONT)
+            round_ = radius * (np.cos(turns)[:, None] * x + np.sin(turns)[:, None] * y)
+            heights = lead * (turns / (2.0 * np.pi) - shift + whole)
+            found.append(origin + round_ + heights[:, None] * z)
+    return found
 
 
 def belt_line(belt: DrawnBelt) -> Floats:

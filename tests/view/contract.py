@@ -33,6 +33,7 @@ LENGTH = {"type": "number", "exclusiveMinimum": 0}
 INDEX = {"type": "integer", "minimum": 0}
 VECTOR = _list(NUMBER, minItems=3, maxItems=3)
 COLUMN = _object(label=TEXT, unit=TEXT)
+ENDS = _list(_or_null(NUMBER), minItems=2, maxItems=2)
 HALF = _object(point=VECTOR, axis=VECTOR, x=VECTOR, axis2=_or_null(VECTOR))
 
 
@@ -101,6 +102,7 @@ DATA = _object(
             track=_or_null(
                 _object(rows=_list(_list(VECTOR, minItems=3), minItems=1), closed=SWITCH)
             ),
+            stops=_object(turn=_or_null(ENDS), slide=_or_null(ENDS)),
         )
     ),
     points=_list(_object(name=TEXT, link=INDEX, place=VECTOR, path=SWITCH)),
@@ -138,6 +140,17 @@ DATA = _object(
             swivels=_list({"enum": [-1, 0, 1]}, minItems=2),
         )
     ),
+    screws=_list(
+        _object(
+            link=INDEX,
+            centre=VECTOR,
+            axis=VECTOR,
+            x=VECTOR,
+            lead=NUMBER,
+            reach=_list(NUMBER, minItems=2, maxItems=2),
+            nut=_object(link=INDEX, centre=VECTOR, axis=VECTOR),
+        )
+    ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),
     runs=_list(
         _object(
@@ -153,6 +166,7 @@ DATA = _object(
                     links=_list(INDEX, minItems=2, maxItems=2),
                     places=_list(VECTOR, maxItems=2),
                     radius=_or_null(LENGTH),
+                    stroke=_or_null(_list(LENGTH, minItems=2, maxItems=2)),
                 )
             ),
             branches=_list(BRANCH, minItems=1),

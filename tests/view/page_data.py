@@ -69,6 +69,7 @@ def joint(
         "travel": None,
         "radius": None,
         "track": None,
+        "stops": {"turn": None, "slide": None},
         **more,
     }
 
@@ -140,6 +141,7 @@ def page_data(
         "points": [],
         "wheels": [],
         "belts": [],
+        "screws": [],
         "discs": [],
         "cables": [],
         "runs": [

@@ -15,13 +15,17 @@ from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES
 from mechkin_cli.view.drawing import (
     HEIGHT,
     WIDTH,
-    Disc,
-    Half,
     Isometric,
-    Stroke,
     isometric,
     mechanism_picture,
-    symbol,
+)
+from mechkin_cli.view.symbols import Disc, Half, Stroke, slide_stops, symbol, turn_stops
+from mechkin_cli.view.wheels import (
+    facing_teeth,
+    facing_threads,
+    is_solid,
+    runs_of,
+    toothed_faces,
 )
 
 FOUR_BAR = """\
@@ -213,3 +217,94 @@ def test_a_turned_input_turns_the_crank():
         x, y = cos(radians(angle)), sin(radians(angle))
         right, up = crank_end(angle)
         assert up / right == pytest.approx((2 * y - x) / sqrt(6) / (x / sqrt(2)), abs=0.01)
+
+
+@pytest.mark.parametrize("lead", [0.3, -0.3, 2.0, 40.0])
+@pytest.mark.parametrize("starts", [1, 3])
+def test_threads_are_helices_as_far_as_they_face_the_eye(lead: float, starts: int):
+    """z = lead (turn/2 pi - start/starts) on a radius of .2, between -1 and 1.5; its z is aslant to
+    the eye, x square to it."""
+    axes = np.array([[1.0, 0.0, 0.0], [0.0, 0.6, 0.8], [0.0, -0.8, 0.6]])
+    origin = np.array([3.0, -2.0, 0.5])
+    lines = facing_threads(origin, axes, 0.2, lead, starts, (-1.0, 1.5))
+    assert len(lines) >= abs(2.5 / lead) * starts - 2
+    for places in lines:
+        x, y, z = axes @ (places - origin).T
+        np.testing.assert_allclose(np.hypot(x, y), 0.2, rtol=1e-12)
+        off = starts * (z / lead - np.arctan2(y, x) / (2.0 * np.pi))
+        np.testing.assert_allclose((off + 0.5) % 1.0, 0.5, atol=1e-9)
+        assert (0.8 * y > -1e-12).all()
+        assert -1.0 - 1e-12 < z.min() < z.max() < 1.5 + 1e-12
+
+
+def test_teeth_run_on_cones_and_helices():
+    bevel = mk.load(FILE_OF["bevel_differential"]).view_settings.wheels[0]
+    helical = mk.load(FILE_OF["worm_gear"]).view_settings.wheels[1]
+    for wheel in (bevel, helical):
+        assert is_solid(wheel)
+        on = np.array([wheel.on.x, wheel.on.y, wheel.on.z])
+        faces = [(face - np.array(wheel.on.o)) @ on.T for face in toothed_faces(wheel)]
+        low, high = (face.reshape(-1, 4, 3) for face in faces)
+        heights = [-wheel.width / 2.0, wheel.width / 2.0]
+        np.testing.assert_allclose([low[:, :, 2].mean(), high[:, :, 2].mean()], heights)
+        sizes = [np.hypot(*face[0, 1, :2]) for face in (low, high)]
+        turns = [np.arctan2(face[0, 1, 1], face[0, 1, 0]) for face in (low, high)]
+        if wheel.apex:
+            ratio = (wheel.apex - heights[1]) / (wheel.apex - heights[0])
+            assert sizes[1] / sizes[0] == pytest.approx(ratio)
+        else:
+            assert sizes[1] == pytest.approx(sizes[0])
+        turned = wheel.lean * wheel.width / wheel.radius
+        assert turns[1] - turns[0] == pytest.approx(turned, abs=1e-12)
+
+
+def test_half_the_teeth_of_a_cylinder_face_the_eye_and_all_of_a_flat_cone():
+    wheel = mk.load(FILE_OF["worm_gear"]).view_settings.wheels[1]
+    beside = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    facing = facing_teeth(wheel, beside)
+    turns = 2.0 * np.pi * np.arange(wheel.teeth) / wheel.teeth
+    clear = np.abs(np.cos(turns)) > 1e-9
+    np.testing.assert_array_equal(facing[clear], (np.cos(turns) > 0.0)[clear])
+    (run,) = runs_of(facing)
+    assert (np.diff(run) % wheel.teeth == 1).all()
+    assert sorted(run) == list(np.flatnonzero(facing))
+    cone = wheel._replace(apex=0.5 * wheel.radius, lean=0.0)
+    assert facing_teeth(cone, np.eye(3)).all()
+    assert not facing_teeth(cone._replace(apex=-cone.apex), np.eye(3)).any()
+    assert runs_of(np.zeros(5, dtype=bool)) == []
+
+
+RAIL_HALF = Half((50.0, 60.0), (0.8, -0.4), (0.4, 0.8), (0.0, 0.0))
+
+
+def test_stops_of_a_slide_are_where_its_block_touches():
+    """A block of 7 to both sides, along an axis that is shortened to sqrt(.8)."""
+    for ends in ((-30.0, 40.0), (None, 40.0), (-30.0, None)):
+        marks = slide_stops(RAIL_HALF, RAIL_HALF, ends)
+        across = [mark for mark in marks if isinstance(mark, Stroke)][1::2]
+        middles = [np.mean(mark.places, axis=0) for mark in across]
+        wanted = [(end, side) for end, side in zip(ends, (-1, 1), strict=True) if end is not None]
+        for middle, (end, side) in zip(middles, wanted, strict=True):
+            way = ((middle - [50.0, 60.0]) @ [0.8, -0.4]) / 0.8
+            assert way == pytest.approx(end + side * 8.5)
+    assert slide_stops(RAIL_HALF._replace(axis=(0.1, 0.0)), RAIL_HALF, (0.0, 1.0)) == []
+
+
+def test_stops_of_a_turn_end_its_arc():
+    half = Half((50.0, 60.0), (0.0, 0.0), (1.0, 0.0), (0.0, -1.0))
+    arc, *ends = turn_stops(half, half, (-0.5, 2.0))
+    assert isinstance(arc, Stroke)
+    out = np.array(arc.places) - [50.0, 60.0]
+    np.testing.assert_allclose(np.hypot(*out.T), 16.0)
+    np.testing.assert_allclose(np.arctan2(-out[[0, -1], 1], out[[0, -1], 0]), [-0.5, 2.0])
+    assert len(ends) == 2
+    assert len(turn_stops(half, half, (None, 2.0))) == 2
+    assert turn_stops(half, half, (-4.0, 4.0)) == []
+
+
+LIMITED = FOUR_BAR + "limits: {A.theta: [-1 rad, 380 deg], D.theta: [-60 deg, 60 deg]}\n"
+
+
+def test_stops_are_drawn_at_limits_alone():
+    """An arc and two ends; a range of more than a turn has none."""
+    assert drawn(LIMITED).count("<path") == drawn(FOUR_BAR).count("<path") + 3

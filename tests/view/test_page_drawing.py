@@ -214,7 +214,7 @@ def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
 
 def test_a_spring_ends_at_its_points(show: Show) -> None:
     data = four_bar()
-    tie = {"joint": None, "turns": False, "links": [0, 1], "radius": None}
+    tie = {"joint": None, "turns": False, "links": [0, 1], "radius": None, "stroke": None}
     tie["places"] = [[0, 50, 0], [30, 0, 0]]
     kinds = ("spring", "damper", "cylinder")
     data["runs"][0]["ties"] = [{**tie, "kind": kind} for kind in kinds]
@@ -252,6 +252,7 @@ def test_a_piston_stays_in_its_tube(show: Show) -> None:
 def test_what_is_about_a_pin_turns_with_it(show: Show, kind: str) -> None:
     data = four_bar()
     tie = {"kind": kind, "joint": 0, "turns": True, "links": [0, 1], "places": [], "radius": None}
+    tie["stroke"] = None
     data["runs"][0]["ties"] = [tie]
     browser = show(data)
     for at in (0, 3, 9, 15):

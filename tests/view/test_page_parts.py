@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from view.browser import PACKAGES, missing
-from view.page_data import PAGE
+from view.page_data import PAGE, half, joint, link, page_data
 
 SOURCES = PAGE.parent / "page"
 
@@ -139,3 +139,113 @@ def test_what_a_wheel_reaches_holds_it() -> None:
     assert np.abs((corners - [5, 0, 0]) @ axis).max() == pytest.approx(0.5, abs=1e-6)
     assert (places.max(axis=0) <= corners.max(axis=0) + 1e-5).all()
     assert (places.min(axis=0) >= corners.min(axis=0) - 1e-5).all()
+
+
+def halves(letter: str, stops: str, turned: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices (n, 3) of the halves of a joint of size 1 at the origin, about or along z, that
+    slides from -40 to 60; the second one, which points to x, is turned by an angle."""
+    found = in_node(f"""
+        import {{ Vector3 }} from "three";
+        import {{ Half }} from "./src/scene/halves.js";
+        import {{ PAIRS }} from "./src/scene/pairs.js";
+        const drawn = {{ point: [0, 0, 0], axis: [0, 0, 1], x: [0, 1, 0] }};
+        const made = [[], []].map((parts) => {{
+          const add = (geometry, matrix) => {{
+            const part = geometry.index ? geometry.toNonIndexed() : geometry.clone();
+            part.applyMatrix4(matrix);
+            for (const each of part.attributes.position.array) parts.push(each);
+          }};
+          return {{ parts, half: new Half(drawn, {{ add }}, 1, new Vector3(1, 0, 0), false) }};
+        }});
+        const [first, second] = made.map(({{ half }}) => half);
+        const box = {{ least: new Vector3(0, 0, -40), most: new Vector3(0, 0, 60) }};
+        const joint = {{ lead: 5, stops: {stops} }};
+        const more = {{ joint, stops: joint.stops.slide, u: 1, travel: [box, box] }};
+        PAIRS.get("{letter}")({{ first, second, ...more }});
+        console.log(JSON.stringify(made.map(({{ parts }}) => parts)));
+    """)
+    first, second = (np.array(parts).reshape(-1, 3) for parts in found)
+    c, s = np.cos(turned), np.sin(turned)
+    return first, second @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+@pytest.mark.parametrize(("letter", "hold"), [("P", 1.2), ("C", 1.2), ("H", 0.9)])
+def test_what_slides_touches_its_stops_at_its_limits(letter: str, hold: float) -> None:
+    first, second = halves(letter, "{turn: null, slide: [-50, 80]}")
+    reach = second[:, 2].min(), second[:, 2].max()
+    np.testing.assert_allclose(reach, [-hold, hold], atol=1e-6)
+    wide = first[np.isclose(np.abs(first[:, 0]), 0.85)][:, 2]
+    low, high = wide[wide < 0.0].max(), wide[wide > 0.0].min()
+    np.testing.assert_allclose([low, high], [-50 + reach[0], 80 + reach[1]], atol=1e-5)
+    free, _ = halves(letter, "{turn: null, slide: [null, null]}")
+    assert not np.isclose(np.abs(free[:, 0]), 0.85).any()
+
+
+@pytest.mark.parametrize("limits", [(-0.6, 1.9), (-0.6, None), (None, 1.9)])
+def test_a_hand_comes_to_its_stops_at_the_limits_of_a_turn(limits: Any) -> None:
+    written = json.dumps(limits)
+    plain, _ = halves("R", "{turn: null, slide: null}")
+    for side, limit in zip((-1, 1), limits, strict=True):
+        if limit is None:
+            continue
+        first, second = halves("R", f"{{turn: {written}, slide: null}}", limit)
+        hand = second[(second[:, 2] > 1.74) & (np.hypot(second[:, 0], second[:, 1]) > 1.2)]
+        stops = first[first[:, 2] > 1.76]
+        assert len(stops) > 0
+        assert plain[:, 2].max() < 1.76
+        # about where the hand points
+        x, y = np.cos(limit), np.sin(limit)
+        angles = [
+            np.arctan2(x * p[:, 1] - y * p[:, 0], x * p[:, 0] + y * p[:, 1]) for p in (hand, stops)
+        ]
+        edge = np.abs(angles[0]).max()
+        near = np.min(side * angles[1][np.abs(angles[1]) < 0.6])
+        assert 0.0 < edge < near < edge + 0.1
+
+
+def test_a_turn_of_more_than_one_has_no_stop() -> None:
+    plain, _ = halves("R", "{turn: null, slide: null}")
+    first, _ = halves("R", "{turn: [-7, 7], slide: null}")
+    np.testing.assert_array_equal(first, plain)
+
+
+def test_faces_of_a_bevel_wheel_are_flat() -> None:
+    """All normals of a face are its own, whatever little its edge is broken."""
+    found = in_node("""
+        import { addWheel } from "./src/scene/wheels.js";
+        const add = (geometry) => {
+          const { position, normal } = geometry.attributes;
+          console.log(JSON.stringify([[...position.array], [...normal.array]]));
+        };
+        const on = { centre: [0, 0, 0], axis: [0, 0, 1], x: [1, 0, 0] };
+        const bevel = { radius: 50, width: 6, teeth: 40, apex: 20, lean: 0 };
+        addWheel({ add }, { ...on, ...bevel, inner: false, reach: null }, 1);
+    """)
+    places, normals = (np.array(each).reshape(-1, 3, 3) for each in found)
+    faces = np.ptp(places[:, :, 2], axis=1) < 1e-6
+    assert faces.sum() > 100
+    upright = np.sign(places[faces][:, :, 2])[:, :, None] * [0.0, 0.0, 1.0]
+    np.testing.assert_allclose(normals[faces], upright, atol=1e-6)
+
+
+def test_what_is_framed_holds_pulleys_and_stops() -> None:
+    """A pulley of 30 at (100, 0), and a slide from -10 to 20 that ends at 45; not one that ends
+    farther away than half the size of 200."""
+    rail = half([0, 0, 0], [1, 0, 0], [0, 1, 0])
+    joints = [
+        joint("A", "P", (0, 1), rail, travel=[-10, 20], stops={"turn": None, "slide": [-500, 45]})
+    ]
+    cable = {"links": [1, 0, 1], "places": [[0, 0, 0], [100, 0, 0], [0, 9, 0]]}
+    cables = [{**cable, "beside": [0, -30, 0]}]
+    links = [link("ground"), link("slider")]
+    shown = page_data("slide", links, joints, [], size=200.0, centre=[0.0, 0.0, 0.0], cables=cables)
+    found = in_node(f"""
+        import {{ placesOf }} from "./src/scene/viewpoint.js";
+        const branch = {{ poseCount: 1, pose: () => ({{ t: [0, 0, 0], q: [1, 0, 0, 0] }}) }};
+        const data = {json.dumps({**shown, "runs": []})};
+        console.log(JSON.stringify(placesOf(data, branch).map((place) => place.toArray())));
+    """)
+    places = np.array(found)
+    np.testing.assert_allclose(places.min(axis=0), [0, -30, 0])
+    np.testing.assert_allclose(places.max(axis=0), [130, 30, 0])
+    assert [45, 0, 0] in found

@@ -73,6 +73,7 @@ def test_wheels_cylinders_and_springs_reach_the_page() -> None:
         "links": [2, 0],
         "places": [[50, 30, 0], [0, 90, 0]],
         "radius": 2,
+        "stroke": None,
     }
     assert (spring["kind"], spring["links"], spring["radius"]) == ("spring", [0, 2], None)
 

@@ -9,6 +9,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+from references import FILE_OF
 from view.contract import DATA
 from view.seen import data
 
@@ -389,3 +390,56 @@ motion: {inputs: {C.s: {from: 0, to: 1, step: 1}}}
     places = np.array([at.vector for at in cable.places])
     line = cable_line(places, cable.beside, np.array(cable.axes), cable.swivels)
     assert np.linalg.norm(np.diff(line, axis=0), axis=1) == pytest.approx([3, 3, 3, 3, 1])
+
+
+@pytest.mark.parametrize("nut", ["ground, nut", "nut, ground"])
+def test_a_spindle_reaches_from_its_bearing_past_its_nut(nut: str) -> None:
+    """A left-hand thread of 8 mm: ten turns move the nut by 80 mm, away from a bearing at -30."""
+    text = (
+        SPACE
+        + f"""\
+links: {{spindle: {{}}, nut: {{}}}}
+joints:
+  A: {{type: R, links: [ground, spindle], point: [0, 0, 0], axis: [1, 0, 0]}}
+  S: {{type: P, links: [{nut}], point: [30, 5, 0], axis: [1, 0, 0]}}
+couplings: {{K: {{type: screw, joints: [A, S], lead: -8 mm}}}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 3600, step: 360}}}}}}
+"""
+    )
+    shown = data(mk.loads(text), modes=False)
+    jsonschema.validate(shown, DATA)
+    names = [link["name"] for link in shown["links"]]
+    (screw,) = shown["screws"]
+    assert (names[screw["link"]], names[screw["nut"]["link"]]) == ("spindle", "nut")
+    assert screw["lead"] == pytest.approx(-8.0)
+    assert screw["reach"] == pytest.approx([-30.0, 80.0])
+    for drawn in (screw, screw["nut"]):
+        assert drawn["centre"] == pytest.approx([30.0, 0.0, 0.0])
+        assert drawn["axis"] == pytest.approx([1.0, 0.0, 0.0])
+
+
+def test_stops_and_strokes_are_where_limits_are() -> None:
+    """Angles in rad, lengths in the file's unit, of one angle and one slide."""
+    text = (
+        PLANE
+        + """\
+links: {crank: {}, rod: {}, slider: {}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, rod], point: [40, 0]}
+  C: {type: R, links: [rod, slider], point: [140, 0]}
+  S: {type: P, links: [ground, slider], point: [140, 0], axis: [1, 0]}
+motion: {inputs: {A.theta: {from: -10, to: 100, step: 10}}}
+limits: {A.theta: [-30, 120], S.s: {max: 5}}
+"""
+    )
+    shown = data(mk.loads(text), modes=False)
+    jsonschema.validate(shown, DATA)
+    stops = [joint["stops"] for joint in shown["joints"]]
+    assert stops[0]["turn"] == pytest.approx([-pi / 6.0, 2.0 * pi / 3.0])
+    assert stops[1] == stops[2] == {"turn": None, "slide": None}
+    assert stops[3]["slide"][0] is None
+    assert stops[3]["slide"][1] == pytest.approx(5.0)
+    boom = data(mk.load(FILE_OF["cylinder_boom"]), modes=False)
+    (tie,) = boom["runs"][0]["ties"]
+    assert tie["stroke"] == pytest.approx([480.0, 720.0])

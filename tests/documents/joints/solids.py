@@ -13,7 +13,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from mechkin_cli.view.drawing import Isometric, Place, number
+from mechkin_cli.view.drawing import Isometric
+from mechkin_cli.view.symbols import Place, number
 
 Point = tuple[float, float, float]
 Vectors = NDArray[np.float64]

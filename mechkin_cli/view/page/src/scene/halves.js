@@ -17,6 +17,7 @@ export class Half {
     this.point = vector(drawn.point);
     this.axis = vector(drawn.axis).normalize();
     this.x = squareTo(this.axis, vector(drawn.x));
+    this.y = this.axis.clone().cross(this.x);
     this.stem = stem ?? this.x;
     this.frame = frame(this.point, this.axis, this.x);
   }

@@ -7,9 +7,9 @@ import { Half, stemOf } from "./halves.js";
 import { PAIRS } from "./pairs.js";
 import { bar } from "./parts.js";
 import { BORE, TUBE, addShape } from "./shapes.js";
-import { travels } from "./travel.js";
+import { slideStops, travels } from "./travel.js";
 import { vector } from "./vectors.js";
-import { addBelt, addDisc, addWheel } from "./wheels.js";
+import { addBelt, addDisc, addScrew, addWheel } from "./wheels.js";
 
 const JOINT_SIZE = 0.028; // of the mechanism's size
 const LEAST_JOINT_SIZE = 0.008;
@@ -54,6 +54,7 @@ export class Mechanism {
     data.wheels.forEach((wheel) => addWheel(bodies[wheel.link], wheel, unit));
     data.discs.forEach((disc) => addDisc(bodies[disc.link], disc, unit));
     data.belts.forEach((belt) => addBelt(bodies[belt.link], belt));
+    data.screws.forEach((screw) => addScrew(bodies, screw, unit));
     const travel = travels(data, branch);
     data.joints.forEach((joint, j) => this.#addJoint(joint, bodies, travel[j]));
     this.links = bodies.map((body, index) => {
@@ -81,7 +82,8 @@ export class Mechanism {
       rod.add(bar(bore, -0.5 * bore, 0.5 * bore));
       return;
     }
-    PAIRS.get(joint.type)?.({ joint, first, second, u, travel, flat: this.data.planar });
+    const stops = slideStops(joint, this.data.size);
+    PAIRS.get(joint.type)?.({ joint, stops, first, second, u, travel, flat: this.data.planar });
   }
 
   /** Puts the links where a branch has them; `place` may lie between two poses (see `between`). */

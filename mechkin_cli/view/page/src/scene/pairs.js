@@ -1,13 +1,15 @@
 // How each type of joint is drawn: its two halves, each into its own link's body.
 // Lengths are in units of the joint's size u; `travel[k]` is where the other half's point comes to, in half k's frame.
 
-import { bar, ball, block, nut, shell, sleeve, squareTube, thread, trough } from "./parts.js";
+import { bar, ball, block, nut, shell, sleeve, squareTube, thread, trough, turnedOutline } from "./parts.js";
 import { addShell, addSlot, addTrough } from "./tracks.js";
 import { frame, vector } from "./vectors.js";
 
 const HOLD = 1.2; // half the length of what slides, over the travel
+const STOP = 0.4; // thickness of a stop
 
-function revolute({ first, second, u }) {
+function revolute({ joint, first, second, u }) {
+  dial(first, second, joint.stops, u);
   first.add(bar(0.5 * u, -1.45 * u, 1.45 * u));
   second.add(sleeve(0.5 * u, 0.95 * u, -0.9 * u, 0.9 * u));
   if (first.across) {
@@ -32,24 +34,57 @@ function railEnds(half, [from, to], u) {
   for (const z of [from, to]) half.add(block([-0.9 * u, -0.9 * u, z - 0.3 * u], [0.9 * u, 0.9 * u, z + 0.3 * u]));
 }
 
-function prismatic({ first, second, u, travel }) {
-  const rail = reach(travel[0], u);
+const upright = (axis) => Math.abs(axis.z) > 0.999;
+
+/** Blocks on a rail where `limits:` stop what slides on it, which holds it `hold` to both sides; the rail with them. */
+function stopped(half, [low, high], rail, hold, u) {
+  const [from, to] = rail;
+  const blocks = [];
+  if (low !== null) blocks.push([low - hold - STOP * u, low - hold]);
+  if (high !== null) blocks.push([high + hold, high + hold + STOP * u]);
+  for (const [begin, end] of blocks) half.add(block([-0.85 * u, -0.85 * u, begin], [0.85 * u, 0.85 * u, end]));
+  return [Math.min(from, ...blocks.map(([begin]) => begin)), Math.max(to, ...blocks.map(([, end]) => end))];
+}
+
+/** A hand on the second half and, on the first, the arc that `limits:` leave it, with a stop at each end. */
+function dial(first, second, { turn }, u) {
+  if (!turn) return;
+  const [low, high] = turn;
+  if (low !== null && high !== null && high - low > 2 * Math.PI - 0.5) return;
+  const hand = second.across ?? second.x;
+  const at = Math.atan2(hand.dot(second.y), hand.dot(second.x));
+  const [levels, radii] = [[1.5 * u, 1.75 * u], [1.05 * u, 1.35 * u]];
+  const half = 0.16;
+  const [from, to] = [low ?? high - 1, high ?? low + 1].map((angle) => angle + at);
+  const arc = (start, end, [inner, outer], [below, above]) =>
+    first.add(turnedOutline([[inner, below], [outer, below], [outer, above], [inner, above]], end - start, start + Math.PI / 2));
+  arc(from - half, to + half, radii, levels);
+  const stop = [[radii[0], 1.6 * u], [levels[0], levels[1] + 0.25 * u]];
+  if (low !== null) arc(from - half - 0.3, from - half, ...stop);
+  if (high !== null) arc(to + half, to + half + 0.3, ...stop);
+  const pointer = frame(second.point, second.axis, hand);
+  second.add(bar(0.3 * u, 0, levels[1] + 0.2 * u));
+  second.add(block([0, -0.13 * u, levels[1]], [1.5 * u, 0.13 * u, levels[1] + 0.2 * u]), pointer);
+}
+
+function prismatic({ stops, first, second, u, travel }) {
+  const rail = stopped(first, stops, reach(travel[0], u), HOLD * u, u);
   first.add(block([-0.5 * u, -0.5 * u, rail[0]], [0.5 * u, 0.5 * u, rail[1]]));
   railEnds(first, rail, u);
   second.add(squareTube(0.52 * u, 0.95 * u, -HOLD * u, HOLD * u));
   second.post(2.4 * u);
 }
 
-function cylindric({ first, second, u, travel }) {
-  const rail = reach(travel[0], u);
+function cylindric({ stops, first, second, u, travel }) {
+  const rail = stopped(first, stops, reach(travel[0], u), HOLD * u, u);
   first.add(bar(0.5 * u, ...rail));
   railEnds(first, rail, u);
   second.add(sleeve(0.52 * u, 0.95 * u, -HOLD * u, HOLD * u));
   second.post(2.4 * u);
 }
 
-function helical({ joint, first, second, u, travel }) {
-  const screw = reach(travel[0], u);
+function helical({ joint, stops, first, second, u, travel }) {
+  const screw = stopped(first, stops, reach(travel[0], u), 0.9 * u, u);
   first.add(bar(0.42 * u, ...screw));
   if (joint.lead) first.add(thread(0.42 * u, 0.2 * u, joint.lead, 0.5 * u, ...screw));
   railEnds(first, screw, u);
@@ -108,12 +143,21 @@ function sphereInGroove({ joint, first, second, u, travel, flat }) {
     addSlot(second, joint.track, first.axis, u);
     return;
   }
-  first.add(ball(0.8 * u));
-  first.post(2.1 * u);
   if (joint.track) {
+    first.add(ball(0.8 * u));
+    first.post(2.1 * u);
     addTrough(second, joint.track, u);
     return;
   }
+  if (flat && upright(first.axis) && !upright(second.axis)) {
+    // a pin in a slot is seen from above: walls beside it, no trough
+    first.add(bar(0.55 * u, -1.2 * u, 1.2 * u));
+    const row = reach(travel[1], u, 1.4).map((z) => second.point.clone().addScaledVector(second.axis, z).toArray());
+    addSlot(second, { rows: [row], closed: false }, first.axis, u);
+    return;
+  }
+  first.add(ball(0.8 * u));
+  first.post(2.1 * u);
   const open = frame(second.point, second.axis, (second.across ?? second.x).clone().negate());
   second.add(trough(0.83 * u, 1.1 * u, ...reach(travel[1], u, 1.4)), open);
   second.foot(1.1 * u);

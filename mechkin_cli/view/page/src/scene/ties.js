@@ -68,7 +68,7 @@ class Along {
     this.tie = tie;
     this.places = places;
     this.group = new Group();
-    [this.least, this.most] = reach(branch, tie.links, places);
+    [this.least, this.most] = tie.stroke ?? reach(branch, tie.links, places);
     if (!(this.most > 0)) return;
     this.least = Math.max(this.least, 0.05 * this.most);
     if (tie.kind === "spring") {

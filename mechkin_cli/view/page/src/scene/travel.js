@@ -35,6 +35,15 @@ export function poseMatrix({ t, q }) {
   );
 }
 
+const STOPS = 0.5; // farther from where a joint slides, in parts of the mechanism's size, no stop is drawn
+
+/** Where `limits:` stop a joint's slide, null on a side that is not drawn. */
+export function slideStops({ stops, travel }, size) {
+  const [least, most] = travel ?? [0, 0];
+  const near = (end) => (end > least - STOPS * size && end < most + STOPS * size ? end : null);
+  return (stops.slide ?? [null, null]).map((end) => (end === null ? null : near(end)));
+}
+
 const emptyBox = () => ({
   least: new Vector3(Infinity, Infinity, Infinity), most: new Vector3(-Infinity, -Infinity, -Infinity),
 });

@@ -3,8 +3,8 @@
 import { Box3, Vector3 } from "three";
 import { reached } from "./shapes.js";
 import { squareTo, vector } from "./vectors.js";
-import { poseMatrix } from "./travel.js";
-import { reachedBy, reachedByDisc } from "./wheels.js";
+import { poseMatrix, slideStops } from "./travel.js";
+import { reachedBy, reachedByDisc, reachedByScrew } from "./wheels.js";
 
 const MOST_POSES = 60;
 const TURNS = 24;
@@ -16,7 +16,16 @@ export function placesOf(data, branch) {
   const shown = (link) => !data.links[link].hidden;
   const shapes = data.links.map(({ shape }) => reached(shape));
   data.wheels.forEach((wheel) => shapes[wheel.link].push(...reachedBy(wheel)));
+  data.screws.forEach((screw) => shapes[screw.link].push(...reachedByScrew(screw)));
+  for (const { links, places, beside } of data.cables) {
+    links.forEach((link, k) => shapes[link].push(...rim(vector(places[k]), Math.abs(beside[k]))));
+  }
   data.discs.forEach((disc) => shapes[disc.link].push(...reachedByDisc(disc)));
+  for (const joint of data.joints) {
+    const [point, axis] = [vector(joint.halves[0].point), vector(joint.halves[0].axis)];
+    const ends = slideStops(joint, data.size).filter((end) => end !== null);
+    shapes[joint.links[0]].push(...ends.map((end) => point.clone().addScaledVector(axis, end)));
+  }
   for (const { links, track } of data.joints) if (track) shapes[links[1]].push(...track.rows.flat().filter((_, k) => k % 8 === 0).map(vector));
   const stride = Math.max(1, Math.ceil(branch.poseCount / MOST_POSES));
   for (let index = 0; index < branch.poseCount; index += stride) {
@@ -29,6 +38,10 @@ export function placesOf(data, branch) {
   if (found.length === 0) found.push(vector(data.centre));
   return found;
 }
+
+/** The box about a pulley in the plane z. */
+const rim = (centre, radius) =>
+  radius > 0 ? [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([x, y]) => centre.clone().add(new Vector3(x * radius, y * radius, 0))) : [];
 
 /** The diagonal of the box that holds places. */
 export function diagonal(places) {

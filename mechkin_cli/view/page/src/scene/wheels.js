@@ -1,8 +1,8 @@
-// What couplings have on their links: wheels with involute teeth or smooth, rings, bevel wheels, worms, racks and belts.
+// What couplings have on their links: wheels with involute teeth or smooth, rings, bevel wheels, worms, racks, belts and screws.
 
 import { BufferGeometry, Float32BufferAttribute, ShapeUtils, Vector2, Vector3 } from "three";
-import { toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
-import { bar, block, drawnOut, polygon, thread } from "./parts.js";
+import { mergeGeometries, toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
+import { bar, block, drawnOut, nut, polygon, thread } from "./parts.js";
 import { frame, vector } from "./vectors.js";
 
 const PRESSURE = (20 * Math.PI) / 180; // of the teeth that are drawn
@@ -13,6 +13,7 @@ const WORM = 2; // teeth that lean by a larger tangent are threads
 const ROUND = 72; // sides of a smooth wheel
 const HOLES = 5;
 const CREASE = 0.6;
+const SPINDLE = 0.75; // core of a spindle in joint sizes: the rail of what slides beside it is inside
 const BELT = 0.3; // thickness of a belt in parts of its width
 
 const moduleOf = ({ radius, teeth, lean }) => (2 * radius) / teeth / Math.sqrt(1 + lean * lean);
@@ -48,7 +49,7 @@ const turned = (points, angle) => points.map((point) => point.clone().rotateArou
 /** What contours (the outer one first) sweep along z: at each section [z, scale, turn]. */
 function lofted(contours, sections) {
   const rings = contours.map((contour, k) => (ShapeUtils.isClockWise(contour) === k > 0 ? contour : [...contour].reverse()));
-  const places = [];
+  const [places, caps] = [[], []];
   const at = (point, [z, size, turn]) => {
     const moved = point.clone().rotateAround(new Vector2(), turn).multiplyScalar(size);
     return [moved.x, moved.y, z];
@@ -67,12 +68,17 @@ function lofted(contours, sections) {
   for (const face of ShapeUtils.triangulateShape(rings[0], rings.slice(1))) {
     const [one, two, three] = face.map((k) => all[k]);
     const [low, high] = [sections[0], sections.at(-1)];
-    places.push(...at(three, low), ...at(two, low), ...at(one, low), ...at(one, high), ...at(two, high), ...at(three, high));
+    caps.push(...at(three, low), ...at(two, low), ...at(one, low), ...at(one, high), ...at(two, high), ...at(three, high));
   }
+  // faces are flat to their edge, however little that is broken
+  return mergeGeometries([toCreasedNormals(solid(places), CREASE), solid(caps)]);
+}
+
+function solid(places) {
   const made = new BufferGeometry();
   made.setAttribute("position", new Float32BufferAttribute(places, 3));
   made.computeVertexNormals();
-  return toCreasedNormals(made, CREASE);
+  return made;
 }
 
 /** Adds a wheel, ring, worm or rack to its link. */
@@ -136,6 +142,16 @@ function addRack(body, wheel) {
   body.add(drawnOut(polygon(points), -width / 2, width / 2), frame(vector(wheel.centre), along.clone().cross(out), along));
 }
 
+/** A spindle with its thread, from its bearing to beyond where the nut comes, and the nut, about whatever holds it. */
+export function addScrew(bodies, screw, unit) {
+  const [from, to] = [screw.reach[0] - 2.2 * unit, screw.reach[1] + 2.2 * unit];
+  const on = frame(vector(screw.centre), vector(screw.axis), vector(screw.x));
+  const body = bodies[screw.link];
+  body.add(bar(SPINDLE * unit, from, to), on);
+  if (screw.lead) body.add(thread(SPINDLE * unit, 0.2 * unit, screw.lead, 0.5 * unit, from, to), on);
+  bodies[screw.nut.link].add(nut((SPINDLE + 0.2) * unit, 1.6 * unit, -0.8 * unit, 0.8 * unit), frame(vector(screw.nut.centre), vector(screw.nut.axis)));
+}
+
 /** The disc of a cam. */
 export function addDisc(body, disc, unit) {
   const half = disc.width / 2;
@@ -162,6 +178,12 @@ export function addBelt(body, belt) {
 export function reachedByDisc(disc) {
   const on = frame(vector(disc.centre), vector(disc.axis), vector(disc.x));
   return disc.outline.filter((_, k) => k % 15 === 0).map(([x, y]) => new Vector3(x, y, 0).applyMatrix4(on));
+}
+
+/** Places that a spindle reaches. */
+export function reachedByScrew(screw) {
+  const on = frame(vector(screw.centre), vector(screw.axis), vector(screw.x));
+  return screw.reach.map((z) => new Vector3(0, 0, z).applyMatrix4(on));
 }
 
 /** Places that a wheel reaches. */
