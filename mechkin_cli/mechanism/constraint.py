@@ -122,7 +122,7 @@ class Follower(NamedTuple):
 class Relation(NamedTuple):
     """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
     m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
-    strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
+    strands with `tensions`, by name. `pulls` are what it pulls two points of links towards each
     other with (N) when it transmits nothing. `extents` and `fleets`: those of a cable. One that a
     cam keeps may know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
 
@@ -131,7 +131,7 @@ class Relation(NamedTuple):
     total: float = 0.0
     mesh: Mesh | None = None
     tensions: tuple[tuple[str, Tension], ...] = ()
-    pull: tuple[Attached, Attached, float] | None = None
+    pulls: tuple[tuple[Attached, Attached, float], ...] = ()
     extents: tuple[Extent, ...] = ()
     fleets: tuple[Fleet, ...] = ()
     follower: Follower | None = None
@@ -139,8 +139,8 @@ class Relation(NamedTuple):
 
     @property
     def has_teeth(self) -> bool:
-        """Whether the force of its mesh is one."""
-        return self.mesh is not None and self.mesh.other is None
+        """Whether the force of its mesh is one, and no strand's."""
+        return self.mesh is not None and self.mesh.other is None and not self.tensions
 
     @property
     def pushes_apart(self) -> bool:

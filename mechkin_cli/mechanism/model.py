@@ -343,8 +343,7 @@ class Mechanism:
         """What couplings pull with when they transmit nothing, as springs without stiffness."""
         found = []
         for relation in self.couplings.values():
-            if relation.pull is not None:
-                one, other, pull = relation.pull
+            for one, other, pull in relation.pulls:
                 length = norm(subtract(other.vector, one.vector))
                 found.append(Spring((one, other), None, None, 0.0, length, pull))
         return tuple(found)
