@@ -44,7 +44,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "constraint": "Constraint DistanceConstraint Extent Fleet Follower InputConstraint Mesh "
-        "PairConstraint Relation Tension Term",
+        "PairConstraint Relation Swing Tension Term",
         "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
         "smooth_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "

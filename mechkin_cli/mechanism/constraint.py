@@ -27,6 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism.curve import CoordinateLaw
@@ -44,7 +45,10 @@ from mechkin_cli.mechanism.vectors import (
     subtract,
 )
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.tape import largest
+from mechkin_cli.tape import cos, largest, sin
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
 
 JointsAt = Mapping[str, tuple[Joint, ...]]
 """The joints at each link, in order."""
@@ -93,6 +97,36 @@ class Extent(NamedTuple):
     terms: tuple[Term, ...]
     most: float | None = None
 
+    def value(self, read: Callable[[Term], Floats]) -> Floats | float:
+        """At the states at which `read` finds the terms (states,)."""
+        return float(self.drawn) + sum(read(term) for term in self.terms)
+
+
+class Swing(NamedTuple):
+    """How far the point to which a pulley swivels is from the line about which it does (m), as
+    `drawn`: on the side of the pulley, else the pulley would swing round, which `words` say.
+
+    From the centre the point lies by `arm` away from the line and beside that, in the pulley's
+    plane. Its `slide` moves it in the direction `along`, then the `turn` of the stretch turns it.
+    """
+
+    words: str
+    drawn: float
+    arm: tuple[float, float]
+    along: tuple[float, float]
+    slide: Term
+    turn: Term
+    most: None = None
+
+    def value(self, read: Callable[[Term], Floats]) -> Floats:
+        """At the states at which `read` finds the terms (states,)."""
+        slide, turn = read(self.slide), read(self.turn)
+        out, beside = (
+            float(a) + slide * float(b) for a, b in zip(self.arm, self.along, strict=True)
+        )
+        found: Floats = float(self.drawn - self.arm[0]) + out * cos(turn) - beside * sin(turn)
+        return found
+
 
 class Fleet(NamedTuple):
     """How a stretch of a cable leaves the plane of a pulley or its line: a `term` that is an angle
@@ -132,7 +166,7 @@ class Relation(NamedTuple):
     mesh: Mesh | None = None
     tensions: tuple[tuple[str, Tension], ...] = ()
     pulls: tuple[tuple[Attached, Attached, float], ...] = ()
-    extents: tuple[Extent, ...] = ()
+    extents: tuple[Extent | Swing, ...] = ()
     fleets: tuple[Fleet, ...] = ()
     follower: Follower | None = None
     loss: Rubbing | None = None

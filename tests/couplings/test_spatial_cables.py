@@ -150,6 +150,20 @@ def test_a_cable_robot_whose_pulleys_swivel() -> None:
     assert model.mobility().mobility == 3
     rows = [model.analyze(lanes=n, threads=t)["K1.tension"] for n in (2, 8) for t in (1, 2)]
     assert len({row.tobytes() for row in rows}) == 1
+    assert set(model.certify().status) == {"proven"}
+
+
+def test_pulleys_swivel_towards_their_points_in_all_modes() -> None:
+    """Turned away, a pulley has its cable in the plane, too, but swings round at a touch: below
+    the pulleys, where the robot works, and above them one place is left each."""
+    modes = mk.loads(ROBOT).modes().modes
+    with mpmath.workdps(30):
+        home = [mpmath.mpf("0.2"), mpmath.mpf("0.1"), mpmath.mpf(-1)]
+        for mode in modes:
+            place = [h + mode.coordinates[f"{n}.s"] for h, n in zip(home, "XYZ", strict=True)]
+            for k in CORNERS:
+                assert abs(rope(k, *place) - rope(k, *home)) < 1e-9
+    assert sorted(mode.coordinates["Z.s"] > 1.0 for mode in modes) == [False, True]
 
 
 GANTRY = """
