@@ -25,7 +25,6 @@ from mechkin_cli.mechanism import (
     DERIVED_KINDS,
     POWER_KINDS,
     accelerated,
-    is_told,
     is_written,
     quantities_read,
 )
@@ -265,11 +264,7 @@ def _loops(analysis: Analysis) -> str:
     )
     words = (f"closed at {closed}" * bool(closed), f"coupled by {coupled}" * bool(coupled))
     sizes = " then ".join(str(len(block.unknowns)) for block in graph.blocks)
-    # links and joints of a cable's stretches have no names that are told
-    stretches = sum(not is_told(name) for name in mechanism.joints)
-    stretches -= sum(not is_told(name) for name in mechanism.links)
-    loops = mechanism.loops - stretches
-    return f"{loops or 'none'}, {', '.join(filter(None, words))}; {sizes} unknowns"
+    return f"{mechanism.told_loops or 'none'}, {', '.join(filter(None, words))}; {sizes} unknowns"
 
 
 def _rows(analysis: Analysis) -> str:

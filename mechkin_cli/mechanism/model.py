@@ -15,11 +15,17 @@ from mechkin_cli.mechanism.constraint import (
     Constraint,
     DistanceConstraint,
     InputConstraint,
-    Relation,
     find_constraints,
 )
-from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written, told_coordinates
+from mechkin_cli.mechanism.joint import (
+    GROUND_NAME,
+    Joint,
+    is_told,
+    is_written,
+    told_coordinates,
+)
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
+from mechkin_cli.mechanism.relation import Relation
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
@@ -396,6 +402,13 @@ class Mechanism:
         """Number of independent loops."""
         moving = sum(name != GROUND_NAME for name in self.links)
         return len(self.joints) - moving
+
+    @property
+    def told_loops(self) -> int:
+        """Those that users see: stretches of cables, whose links and joints are not told, make
+        none."""
+        stretches = sum(not is_told(name) for name in self.joints)
+        return self.loops - stretches + sum(not is_told(name) for name in self.links)
 
     @property
     def kutzbach(self) -> int:

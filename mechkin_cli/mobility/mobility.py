@@ -182,7 +182,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     be solved as it is driven, gives the first row's assembly."""
     mechanism = problem.mechanism
     inputs = tuple(item.name for item in problem.motion.inputs)
-    counted = Mobility(mechanism.name, mechanism.kutzbach, mechanism.loops, inputs)
+    counted = Mobility(mechanism.name, mechanism.kutzbach, mechanism.told_loops, inputs)
     body = Body(mechanism)
     start = (session and first_row(session, body)) or assembled(body)
     if start is None:
