@@ -16,7 +16,7 @@ and the screw slides. The thread carries a force along its axis, and the moment 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import pi
 
 from mechkin_cli import tolerances
@@ -51,15 +51,11 @@ def belt_relation(
     joints: Mapping[str, Joint],
 ) -> Relation | None:
     """The relation of two pulleys, or of two chain wheels; None where errors are noted."""
-    pulleys = [joints[name] for name in section.joints]
-    for i, joint in enumerate(pulleys):
-        if not joint.type.is_bearing:
-            text = f"{joint.name} is of type {joint.letter}: a pulley turns on an R or C joint"
-            hint = "name the joint that it turns on"
-            fields.error("wheel-joint", (*path, "joints", i), text, hint)
-            return None
-    radii = _radii(fields, path, section)
-    pretension = _pretension(fields, path, section)
+    pulleys = belt_joints(fields, path, section, joints)
+    if pulleys is None:
+        return None
+    radii = belt_radii(fields, path, section)
+    pretension = belt_pretension(fields, path, section)
     pair = on_one_carrier(pulleys[0], pulleys[1], joints)
     if pair is None:
         one, other = (joint.name for joint in pulleys)
@@ -94,10 +90,28 @@ def belt_relation(
     )
 
 
-def _radii(
+def belt_joints(
+    fields: Fields,
+    path: Path,
+    section: BeltCoupling | ChainCoupling,
+    joints: Mapping[str, Joint],
+) -> list[Joint] | None:
+    """The joints that pulleys turn on; None where errors are noted."""
+    pulleys = [joints[name] for name in section.joints]
+    for i, joint in enumerate(pulleys):
+        if not joint.type.is_bearing:
+            text = f"{joint.name} is of type {joint.letter}: a pulley turns on an R or C joint"
+            hint = "name the joint that it turns on"
+            fields.error("wheel-joint", (*path, "joints", i), text, hint)
+            return None
+    return pulleys
+
+
+def belt_radii(
     fields: Fields, path: Path, section: BeltCoupling | ChainCoupling
-) -> tuple[float, float] | None:
-    """Radii (m) on which the middle of a belt, or the average of a chain, runs."""
+) -> list[float] | None:
+    """Radii (m) on which the middle of a belt, or the average of a chain, runs; None where errors
+    are noted."""
     errors = fields.error_count
     if isinstance(section, ChainCoupling):
         key, texts = "teeth", section.teeth
@@ -117,11 +131,13 @@ def _radii(
                 text = f"the {key} of a pulley are {texts[i]}"
                 hint = "give positive numbers; crossed: true turns pulleys opposite ways"
                 fields.error("no-wheel", (*path, key, i), text, hint, limit="more than 0")
-    return (radii[0], radii[1]) if fields.error_count == errors else None
+    return radii if fields.error_count == errors else None
 
 
-def _pretension(fields: Fields, path: Path, section: BeltCoupling | ChainCoupling) -> float | None:
-    """That of each strand at rest (N), 0 without one."""
+def belt_pretension(
+    fields: Fields, path: Path, section: BeltCoupling | ChainCoupling
+) -> float | None:
+    """That of each strand at rest (N), 0 without one; None where errors are noted."""
     if section.pretension is None:
         return 0.0
     errors = fields.error_count
@@ -140,7 +156,7 @@ def _distance(
     fields: Fields,
     path: Path,
     pair: tuple[str, Turning, Turning],
-    radii: tuple[float, float],
+    radii: Sequence[float],
 ) -> float | None:
     """The distance of two parallel axes, which leaves room for both pulleys (m)."""
     _, first, second = pair
@@ -181,7 +197,7 @@ def _across(first: Turning, second: Turning) -> Vector:
 def _strands(
     relation: Relation,
     pair: tuple[str, Turning, Turning],
-    radii: tuple[float, float],
+    radii: Sequence[float],
     distance: float,
     crossed: bool,
     pretension: float,
@@ -213,13 +229,13 @@ def _strands(
         ("slack", Tension(0.0, -half, pretension)),
     )
     centres = first.axis.o, add(first.axis.o, scale(distance, along))
-    ends = (_on_wheel(w, at, joints) for w, at in zip((first, second), centres, strict=True))
+    ends = (on_wheel(w, at, joints) for w, at in zip((first, second), centres, strict=True))
     one, other = ends
     pull = one, other, 2.0 * cosine * pretension
-    return relation._replace(mesh=mesh, tensions=tensions, pull=pull)
+    return relation._replace(mesh=mesh, tensions=tensions, pulls=(pull,))
 
 
-def _on_wheel(wheel: Turning, at: Vector, joints: Mapping[str, Joint]) -> Attached:
+def on_wheel(wheel: Turning, at: Vector, joints: Mapping[str, Joint]) -> Attached:
     """A point of a wheel's axis, drawn on the carrier, as a point of the wheel."""
     link = ""
     for name, sense in reversed(wheel.way):

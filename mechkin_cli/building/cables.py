@@ -41,16 +41,19 @@ from mechkin_cli.mechanism import (
     Mechanism,
     Relation,
     RigidLink,
+    Swing,
     Tension,
     Term,
     Vector,
     add,
     counted,
     cross,
+    dot,
     frame_about,
     joint_type,
     perpendicular,
     scale,
+    subtract,
     upright,
 )
 from mechkin_cli.record import NamedTuple
@@ -142,7 +145,7 @@ class _Cable:
         self.joints: dict[str, Joint] = {}
         self.slides: list[Term] = []
         self.wound: list[list[Term]] = [[] for _ in places]
-        self.extents: list[Extent] = []
+        self.extents: list[Extent | Swing] = []
         self.fleets: list[Fleet] = []
         self.moves = [one.centre.link != other.centre.link for one, other in pairwise(places)]
         # between points there and back is one way
@@ -225,6 +228,7 @@ class _Cable:
         far = self._slide(i, near, one, length, along, count)
         if one.swivel is not None and one.is_round:
             self._joint(f"{name} end", "S", far, other.centre.link, finish)
+            self._swing(i, one, other, along)
             return
         words = "leaves the plane of a pulley"
         rounds = [place.axis for place in (one, other) if place.is_round]
@@ -257,9 +261,25 @@ class _Cable:
         axis = frame_about(along, perpendicular(along), start)
         slide = self._joint(f"{name} slide", "P", near, far, axis, is_counted=True)
         self.slides.append(Term(slide, "s", count))
-        words, place = "has no straight stretch", f"between {self.names[i]} and {self.names[i + 1]}"
-        self.extents.append(Extent(words, place, length, (Term(slide, "s", 1.0),)))
+        words, terms = "has no straight stretch", (Term(slide, "s", 1.0),)
+        self.extents.append(Extent(words, self._between(i), length, terms))
         return far
+
+    def _between(self, i: int) -> str:
+        """Where stretch `i` is."""
+        return f"between {self.names[i]} and {self.names[i + 1]}"
+
+    def _swing(self, i: int, one: Place, other: Place, along: Vector) -> None:
+        """How far the point to which a pulley swivels by stretch `i` is from its line."""
+        assert one.swivel is not None
+        out = scale(1.0 / one.radius, subtract(one.centre.vector, one.swivel.entry.vector))
+        beside = cross(one.axis, out)
+        apart = subtract(other.centre.vector, one.centre.vector)
+        slide, turn = (self.joints[f"{self.name}.{i + 1} {word}"] for word in ("slide", "turn"))
+        words = "has behind its line the point to which a pulley swivels"
+        arm, way = ((dot(each, out), dot(each, beside)) for each in (apart, along))
+        terms = Term(slide, "s", 1.0), Term(turn, "theta", 1.0)
+        self.extents.append(Swing(words, self._between(i), one.radius + arm[0], arm, way, *terms))
 
     def _stray(
         self,

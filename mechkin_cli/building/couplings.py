@@ -1,8 +1,8 @@
 """`couplings:` to relations between coordinates, each a sum of terms that is constant; a term is a
 coordinate or a function of it.
 
-What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`,
-cables in `cables.py`.
+What wheels and teeth come to is in `wheels.py`, belts, chains and screws in `belts.py`, those over
+more than two pulleys in `serpentine.py`, cables in `cables.py`.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from mechkin_cli.building.law_reading import Over, note_bends, read_law
 from mechkin_cli.building.law_shapes import LawOfCoordinate, PiecewiseLaw
 from mechkin_cli.building.load_laws import join, joining_of, note_overshoot, read_rows
 from mechkin_cli.building.losses import Lossy, with_losses
+from mechkin_cli.building.serpentine import serpentine_relations
 from mechkin_cli.building.wheels import gear_relation, on_one_carrier, rack_relation
 from mechkin_cli.diagnostics import nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Resolve, scalar
@@ -110,6 +111,9 @@ def build_couplings(
             found[name] = rack_relation(fields, path, section, joints)
         elif isinstance(section, ScrewCoupling):
             found[name] = screw_relation(fields, path, section, joints)
+        elif len(section.joints) > 2:
+            found |= serpentine_relations(fields, path, section, joints)
+            continue
         else:
             found[name] = belt_relation(fields, path, section, joints)
         relation = found[name]

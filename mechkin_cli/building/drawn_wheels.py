@@ -14,7 +14,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import pi
 
 from mechkin_cli import tolerances
+from mechkin_cli.building.belts import belt_radii
 from mechkin_cli.building.fields import Fields, place_at
+from mechkin_cli.building.serpentine import belt_loop
 from mechkin_cli.building.wheels import Turning, against, on_one_carrier
 from mechkin_cli.mechanism import (
     Frame,
@@ -139,13 +141,12 @@ def drawn_couplings(
     """The wheels and racks, belts and screws of a file without errors."""
     drawing = _Drawing(fields, mechanism)
     for name, section in couplings.items():
-        relation = mechanism.couplings.get(name)
-        if relation is None:
-            continue
         if isinstance(section, GearCoupling):
-            drawing.gear(name, section, relation)
+            drawing.gear(name, section, mechanism.couplings[name])
         elif isinstance(section, RackCoupling):
             drawing.rack(name, section)
+        elif isinstance(section, BeltCoupling | ChainCoupling) and len(section.joints) > 2:
+            drawing.serpentine(name, section)
         elif isinstance(section, BeltCoupling | ChainCoupling):
             drawing.belt(name, section)
         elif isinstance(section, ScrewCoupling):
@@ -271,6 +272,37 @@ class _Drawing:
                 (sliding.name, sense * (1.0 if dot(about.z, along.z) > 0.0 else -1.0)),
             )
         )
+
+    def serpentine(self, name: str, section: BeltCoupling | ChainCoupling) -> None:
+        """More than two pulleys and what runs over them."""
+        path = ("couplings", name)
+        radii = belt_radii(self.fields, path, section)
+        loop = None if radii is None else belt_loop(self.fields, path, section, radii, self.joints)
+        if loop is None:
+            return
+        counts = [0] * len(loop.wheels)
+        if isinstance(section, ChainCoupling):
+            teeth = (
+                self.fields.number((*path, "teeth", i), text, DIMENSIONLESS)
+                for i, text in enumerate(section.teeth)
+            )
+            counts = [round(float(number)) for number in teeth]
+        width = FACE * min(place.radius for place in loop.places)
+        first = 0
+        line: list[Vector] = []
+        for k, (wheel, place, count) in enumerate(
+            zip(loop.wheels, loop.places, counts, strict=True)
+        ):
+            # from where the belt comes
+            x = scale(place.side, cross(place.axis, loop.along[k - 1]))
+            y = scale(-place.side, cross(place.axis, x))
+            line += _arc(place.centre.vector, place.radius, x, y, (0.0, loop.wrap(k)))
+            frame = Frame(x, cross(wheel.axis.z, x), wheel.axis.z, place.centre.vector)
+            at, _ = self._wheel(_Side(frame, place.radius, wheel, count), 1.3 * width, x, True)
+            first = at if k == 0 else first
+            self._join(first, at)
+        z = loop.places[0].axis
+        self.belts.append((DrawnBelt(loop.carrier, tuple(line), z, width), first))
 
     def layered(self) -> tuple[tuple[DrawnWheel, ...], tuple[DrawnBelt, ...]]:
         """All of them; in a plane those of one shaft above one another."""

@@ -26,6 +26,7 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.progress import working
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
+from mechkin_cli.mechanism import is_told
 from mechkin_cli.record import asdict
 from mechkin_cli.tables import MARK, OVERVIEW_PAGE, OverviewRow, overview_page
 
@@ -222,7 +223,9 @@ def overview_row(
     return OverviewRow(
         file.with_suffix("").as_posix(),
         model.name,
-        " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
+        " ".join(
+            joint.letter for name, joint in model.problem.mechanism.joints.items() if is_told(name)
+        ),
         _mobility(model),
         _modes(model),
         str(solved) if solved == rows else f"{solved} of {rows}",

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.pairs import *
     from mechkin_cli.mechanism.problem import *
     from mechkin_cli.mechanism.quantities import *
+    from mechkin_cli.mechanism.relation import *
     from mechkin_cli.mechanism.response import *
     from mechkin_cli.mechanism.track import *
     from mechkin_cli.mechanism.vectors import *
@@ -43,8 +44,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "constraint": "Constraint DistanceConstraint Extent Fleet Follower InputConstraint Mesh "
-        "PairConstraint Relation Tension Term",
+        "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint",
         "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
         "smooth_curve",
         "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
@@ -66,6 +66,7 @@ __getattr__, __dir__ = lazy_names(
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities strands_of",
+        "relation": "Extent Fleet Follower Mesh Relation Swing Tension Term",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
         "track": "Track",

@@ -29,10 +29,10 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, far_link, frame_on
-from mechkin_cli.mechanism.pair_type import Attached, Condition, Rubbing
+from mechkin_cli.mechanism.pair_type import Attached, Condition
 from mechkin_cli.mechanism.pairs import CLOSING_CONDITIONS
+from mechkin_cli.mechanism.relation import Relation, Term
 from mechkin_cli.mechanism.vectors import (
     Frame,
     Line,
@@ -48,117 +48,6 @@ from mechkin_cli.tape import largest
 
 JointsAt = Mapping[str, tuple[Joint, ...]]
 """The joints at each link, in order."""
-
-
-class Term(NamedTuple):
-    """A joint's coordinate with its factor: a number, a length per rad (m) or an angle per length
-    (rad/m); or where it has a law, a number times the law's value at the coordinate."""
-
-    joint: Joint
-    coordinate: str
-    factor: float
-    law: CoordinateLaw | None = None
-
-
-class Mesh(NamedTuple):
-    """Forces that a coupling acts by, on the carrier's drawing: a point (m) of the line of the
-    first, as the pitch point of teeth, and that force on the second wheel per unit moment on the
-    first: `along`, as of a flank, and `apart` per magnitude, both in 1/m. `way` leads from the
-    first wheel to the second: joints, each passed from its first link to its second (1) or back
-    (-1). `other`: point, `along` and `apart` of a second force."""
-
-    carrier: str
-    point: Vector
-    along: Vector
-    apart: Vector
-    way: tuple[tuple[str, int], ...]
-    other: tuple[Vector, Vector, Vector] | None = None
-
-
-class Tension(NamedTuple):
-    """What pulls in a strand (N): `along` per unit moment on the first wheel and `apart` per its
-    magnitude (both 1/m), beside what is there `at_rest`."""
-
-    along: float
-    apart: float
-    at_rest: float
-
-
-class Extent(NamedTuple):
-    """A length of a cable (m): as `drawn`, and what `terms` add to it. It is more than nothing and,
-    where it is known, less than `most`; else the cable does what `words` say at `place`."""
-
-    words: str
-    place: str
-    drawn: float
-    terms: tuple[Term, ...]
-    most: float | None = None
-
-
-class Fleet(NamedTuple):
-    """How a stretch of a cable leaves the plane of a pulley or its line: a `term` that is an angle
-    (rad), or over the `length` of the stretch (m) the tangent of one; else the cable does what
-    `words` say."""
-
-    words: str
-    term: Term
-    length: float | None = None
-
-
-class Follower(NamedTuple):
-    """What a disc cam moves: it `oscillates` about a pivot or slides, with a `contact` by a knife's
-    edge, a roller of a `radius` or a flat face. Lengths in m: the cam's base circle; by how much a
-    slide's line passes the cam's axis, or a face its pivot; an oscillating one's arm and the
-    distance of both axes."""
-
-    oscillates: bool
-    contact: str
-    base_radius: float
-    radius: float = 0.0
-    offset: float = 0.0
-    arm: float = 0.0
-    distance: float = 0.0
-
-
-class Relation(NamedTuple):
-    """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
-    m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
-    strands with `tensions`, by name. `pull` is what it pulls two points of links towards each
-    other with (N) when it transmits nothing. `extents` and `fleets`: those of a cable. One that a
-    cam keeps may know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
-
-    terms: tuple[Term, ...]
-    length: bool
-    total: float = 0.0
-    mesh: Mesh | None = None
-    tensions: tuple[tuple[str, Tension], ...] = ()
-    pull: tuple[Attached, Attached, float] | None = None
-    extents: tuple[Extent, ...] = ()
-    fleets: tuple[Fleet, ...] = ()
-    follower: Follower | None = None
-    loss: Rubbing | None = None
-
-    @property
-    def has_play(self) -> bool:
-        """Whether the last of its terms is the play of its flanks."""
-        return self.terms[-1].joint.is_play
-
-    @property
-    def along_coordinates(self) -> tuple[Term, ...]:
-        """The terms that it acts on along their coordinates: those that its mesh does not pass."""
-        passed = () if self.mesh is None else [name for name, _ in self.mesh.way]
-        return tuple(term for term in self.terms if term.joint.name not in passed)
-
-    @property
-    def has_teeth(self) -> bool:
-        """Whether the force of its mesh is one."""
-        return self.mesh is not None and self.mesh.other is None
-
-    @property
-    def pushes_apart(self) -> bool:
-        """Whether it acts by a force that goes with the magnitude of its multiplier."""
-        return self.mesh is not None and any(part != 0.0 for part in self.mesh.apart)
-
 
 OwnEdge = tuple[Joint, str, str, bool]
 """A joint by which a constraint carries a link of its own, its parent and child, and whether two

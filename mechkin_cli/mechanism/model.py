@@ -15,7 +15,6 @@ from mechkin_cli.mechanism.constraint import (
     Constraint,
     DistanceConstraint,
     InputConstraint,
-    Relation,
     find_constraints,
 )
 from mechkin_cli.mechanism.joint import (
@@ -26,6 +25,7 @@ from mechkin_cli.mechanism.joint import (
     told_coordinates,
 )
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
+from mechkin_cli.mechanism.relation import Extent, Relation
 from mechkin_cli.mechanism.vectors import ZERO, Vector, norm, subtract
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import largest, nonzero, smallest
@@ -349,8 +349,7 @@ class Mechanism:
         """What couplings pull with when they transmit nothing, as springs without stiffness."""
         found = []
         for relation in self.couplings.values():
-            if relation.pull is not None:
-                one, other, pull = relation.pull
+            for one, other, pull in relation.pulls:
                 length = norm(subtract(other.vector, one.vector))
                 found.append(Spring((one, other), None, None, 0.0, length, pull))
         return tuple(found)
@@ -423,7 +422,7 @@ class Mechanism:
             extent.terms[0].joint.name.partition(" ")[0]: f"cable {name} {extent.place}"
             for name, relation in self.couplings.items()
             for extent in relation.extents
-            if extent.most is None
+            if isinstance(extent, Extent) and extent.most is None
         }
 
     @property

@@ -16,12 +16,12 @@ from mechkin_cli.expressions import (
     Resolve,
     parse,
 )
-from mechkin_cli.mechanism.constraint import Relation
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
+from mechkin_cli.mechanism.relation import Relation
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
     ACCELERATION,

@@ -8,7 +8,7 @@ origin is the ground origin unless the drawing lies far from it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,7 +37,16 @@ from mechkin_cli.structure import Loop, SolverGraph, TreeEdge
 from mechkin_cli.tape import next_power_of_two
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import CoordinateLaw, Extent, Fleet, Laws, Relation, Term, Track
+    from mechkin_cli.mechanism import (
+        CoordinateLaw,
+        Extent,
+        Fleet,
+        Laws,
+        Relation,
+        Swing,
+        Term,
+        Track,
+    )
     from mechkin_cli.show import Bools, Floats
 
 
@@ -78,7 +87,7 @@ class RelationRow(NamedTuple):
     argument: float
 
 
-def is_lifted(extent: Extent, value: Floats) -> Bools:
+def is_lifted(extent: Extent | Swing, value: Floats) -> Bools:
     """Whether a length of a cable (m) is less than nothing, beyond rounding."""
     size = float(extent.drawn if extent.most is None else extent.most)
     return np.asarray(value < -tolerances.PARALLEL * size)
@@ -245,25 +254,23 @@ class Layout:
         relations = self.mechanism.couplings.values()
         return tuple(t.law for r in relations for t in r.terms if t.law is not None)
 
-    def extents(self, states: Floats) -> Iterator[tuple[str, Extent, Floats]]:
+    def extents(self, states: Floats) -> Iterator[tuple[str, Extent | Swing, Floats]]:
         """Those of cables, with the coupling's name, and their values (m) at some states (states,
         places)."""
         for name, relation in self.mechanism.couplings.items():
             for extent in relation.extents:
-                value = np.full(states.shape[1], float(extent.drawn))
-                for term in extent.terms:
-                    value += self._value(term, states)
-                yield name, extent, value
+                value = extent.value(partial(self._value, states))
+                yield name, extent, np.full(states.shape[1], value)
 
     def fleets(self, states: Floats) -> Iterator[tuple[str, Fleet, Floats]]:
         """Those of cables, with the coupling's name, and the tangents of their angles at some
         states (states, places)."""
         for name, relation in self.mechanism.couplings.items():
             for fleet in relation.fleets:
-                value = self._value(fleet.term, states)
+                value = self._value(states, fleet.term)
                 yield name, fleet, value if fleet.length is None else value / float(fleet.length)
 
-    def _value(self, term: Term, states: Floats) -> Floats:
+    def _value(self, states: Floats, term: Term) -> Floats:
         """A factor times a coordinate (rad, m) that has a state, at some states."""
         freedom = term.joint.freedom_number(term.coordinate)
         state = states[self.state(self.edge_number[term.joint.name], freedom)]

@@ -110,7 +110,7 @@ def _struck(session: Session, rebound: Rebound) -> Session:
     """The session in which nothing acts but the impulses of limits, as forces."""
     problem = session.problem
     couplings = {
-        name: relation._replace(pull=None) for name, relation in problem.mechanism.couplings.items()
+        name: relation._replace(pulls=()) for name, relation in problem.mechanism.couplings.items()
     }
     loads = tuple(JointLoad(*at, push) for at, push in rebound.pushes.items())
     mechanism = replace(

@@ -30,8 +30,9 @@ RACK = (
     "20 mm}}, A the pinion's R joint, S the rack's P joint"
 )
 BELT = (
-    "belts and chains over two pulleys are couplings: couplings: {K: {type: belt, joints: [A, B], "
-    "radii: [30 mm, 50 mm]}}, or {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}"
+    "belts and chains over pulleys are couplings: couplings: {K: {type: belt, joints: [A, B], "
+    "radii: [30 mm, 50 mm]}}, or {type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}; "
+    "over more than two with tensioner: C"
 )
 CAM = (
     "a cam is a coupling of its angle and the follower's coordinate: couplings: {K: {type: "
@@ -154,6 +155,15 @@ BELT_KEYS: Final = {
     ),
     "teeth": "of a toothed belt: radii, of a chain: type: chain, teeth: [17, 38], pitch: 12.7 mm",
     **dict.fromkeys(("tension", "preload", "initial_tension"), "the key is pretension: 200 N"),
+    **dict.fromkeys(
+        ("idlers", "idler", "back", "backside", "inside", "sides", "side", "reversed"),
+        "name all pulleys under joints, in the order in which the belt passes them, and under "
+        "outside those that it touches with its back: outside: [C]",
+    ),
+    **dict.fromkeys(
+        ("tensioners", "tension_pulley", "tensioning"),
+        "the key is tensioner: C, the joint of the pulley that holds the pretension",
+    ),
     **dict.fromkeys(("length", "belt_length"), "its length is that of the drawing; leave it out"),
 }
 """Keys of a belt."""

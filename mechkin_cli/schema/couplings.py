@@ -56,6 +56,12 @@ Truth = Annotated[
     SchemaName("Truth"),
 ]
 
+SeveralJoints = Annotated[
+    tuple[Name, ...],
+    Limits(min_length=2, max_length=100),
+    Rule(each_once),
+    SchemaName("SeveralJoints"),
+]
 TwoJoints = Annotated[
     tuple[Name, ...], Limits(min_length=2, max_length=2), Rule(each_once), SchemaName("TwoJoints")
 ]
@@ -275,39 +281,83 @@ class RackCoupling(Toothed):
 
 
 class Strands(Section):
-    """Two strands that pull at two pulleys with parallel axes on one carrier."""
+    """Strands that pull at pulleys with parallel axes on one carrier."""
 
-    joints: TwoJoints
-    """The R or C joints of the two pulleys, which turn on one link, the carrier; where a pulley
-    turns on another link, that is joined to the carrier about the same axis."""
+    joints: SeveralJoints
+    """The R or C joints of the pulleys, in the order in which the belt passes them; they turn on
+    one link, the carrier. Of two, a pulley may turn on another link that is joined to the carrier
+    about the same axis."""
+    outside: tuple[Name, ...] = ()
+    """Of more than two pulleys the joints of those that the belt touches with its back, such as
+    idlers outside its loop, which turn the other way; left out, none."""
+    tensioner: Name | None = None
+    """Of more than two pulleys, which need it, the joint of the one that holds the pretension in
+    the strand that comes to it; left out, one of two, both of whose strands have it at rest."""
     pretension: Force | None = None
-    """What pulls in each strand at rest; left out, the slack strand carries nothing."""
+    """What pulls in each strand at rest, and in the strand of the tensioner always; left out, the
+    slack strand, or that of the tensioner, carries nothing."""
     efficiency: Dimensionless | None = None
     """Share of the power put in that comes out, whichever side drives; left out, all of it."""
 
+    def check_numbers(self, key: str) -> None:
+        """As many numbers under a key as joints, and what goes with two or with more."""
+        count = len(self.joints)
+        if len(getattr(self, key)) != count:
+            text = f"{count} joints have {len(getattr(self, key))} {key}"
+            raise refuse("lengths", text, f"give {key} for each joint, in their order", key)
+        for name in (*self.outside, *(() if self.tensioner is None else (self.tensioner,))):
+            if name not in self.joints:
+                at = "outside" if name in self.outside else "tensioner"
+                text = f"{name} is none of the joints {', '.join(self.joints)}"
+                raise refuse("unknown-joint", text, "name one of these", at)
+        if count > 2 and self.tensioner is None:
+            text = (
+                "of more than two pulleys one holds the pretension in the strand that comes to it"
+            )
+            raise refuse("missing-key", text, f"add tensioner: {self.joints[-1]}")
+        if count > 2 and self.efficiency is not None:
+            text = "an efficiency is that of two pulleys"
+            raise refuse("two-choices", text, "write friction of the bearings", "efficiency")
+        for own in ("outside", "tensioner") if count == 2 else ():
+            if getattr(self, own):
+                text = f"{own} goes with more than two pulleys"
+                hint = "write crossed: true" if own == "outside" else "write pretension alone"
+                raise refuse("two-choices", text, hint, own)
+
 
 class BeltCoupling(Strands):
-    """A belt over two pulleys that does not slip."""
+    """A belt over pulleys that does not slip."""
 
     advice: ClassVar[dict[str, str]] = BELT_KEYS
 
     type: Literal["belt"]
-    radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=2)]
+    radii: Annotated[tuple[Length, ...], Limits(min_length=2, max_length=100)]
     """Radii of the pulleys to the middle of the belt, in the order of the joints."""
     crossed: Truth = False
-    """Whether the strands cross, so that the pulleys turn opposite ways; left out, no."""
+    """Whether the strands of two pulleys cross, so that these turn opposite ways; left out, no."""
+
+    def check(self) -> None:
+        """Numbers of radii and joints agree."""
+        self.check_numbers("radii")
+        if self.crossed and len(self.joints) > 2:
+            text = "the strands of more than two pulleys do not cross"
+            raise refuse("two-choices", text, "name the pulleys under outside", "crossed")
 
 
 class ChainCoupling(Strands, Flanks):
-    """A chain over two wheels."""
+    """A chain over wheels."""
 
     advice: ClassVar[dict[str, str]] = CHAIN_KEYS
 
     type: Literal["chain"]
-    teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=2)]
+    teeth: Annotated[tuple[Dimensionless, ...], Limits(min_length=2, max_length=100)]
     """Numbers of teeth of the wheels, in the order of the joints."""
     pitch: Length
     """Distance of the chain's pins."""
+
+    def check(self) -> None:
+        """Numbers of teeth and joints agree."""
+        self.check_numbers("teeth")
 
 
 class ScrewCoupling(Flanks):

@@ -242,8 +242,8 @@ class _Scene:
         for between in self.settings.between:
             if between.kind == "cylinder":
                 parts += [self._placed(at.link, np.array([at.vector])) for at in between.ends]
-        for line, rims in self._ropes:
-            parts += [self.view.seen(each) for each in (line, *rims)]
+        for places, _, rims in self._ropes:
+            parts += [self.view.seen(each) for each in (places, *rims)]
         for wheel in self._drawn_wheels():
             parts += [self._placed(wheel.link, line) for line in wheel_outlines(wheel, False)]
         parts = [part for part in parts if part.size] or [np.zeros((1, 3))]
@@ -423,15 +423,16 @@ class _Scene:
             yield Stroke(places, self._ink(belt.link), 1.6, closed=True)
 
     def _cables(self) -> Iterator[Mark]:
-        for line, rims in self._ropes:
+        for _, rope, rims in self._ropes:
             for rim in rims:
                 places = tuple(self._on_picture(one) for one in self.view.seen(rim))
                 yield Stroke(places, "k", 1.2, closed=True, filled=True)
-            yield Stroke(tuple(self._on_picture(one) for one in self.view.seen(line)), "k", 1.2)
+            yield Stroke(tuple(self._on_picture(one) for one in self.view.seen(rope)), "k", 1.2)
 
     @cached_property
-    def _ropes(self) -> list[tuple[Floats, list[Floats]]]:
-        """The line of each cable, and the rims of its pulleys, in the pose drawn (m)."""
+    def _ropes(self) -> list[tuple[Floats, Floats, list[Floats]]]:
+        """The places and the line of each cable, and the rims of its pulleys, in the pose drawn
+        (m)."""
         found = []
         for cable in self.settings.cables:
             own = [self.poses[0, self.links.index(at.link)] for at in cable.places]
@@ -453,7 +454,7 @@ class _Scene:
                 )
                 if beside
             ]
-            found.append((cable_line(places, *shape), rims))
+            found.append((places, cable_line(places, *shape), rims))
         return found
 
     @cached_property

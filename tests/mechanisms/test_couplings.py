@@ -377,8 +377,64 @@ def test_gear_with_play() -> None:
     assert met[1].impulses[0] == pytest.approx(1.4 * rate * 0.25 / 1.25, rel=1e-6)
 
 
+def test_cable_robot() -> None:
+    """A drum winds up what the length from its pulley on loses; three pulls hold the mass."""
+    rows = rows_of("cable_robot")
+    corners = ((1000, 0), (-500, 900), (-500, -900))
+
+    def length(corner: tuple[int, int], x: mp.mpf, y: mp.mpf, z: mp.mpf) -> mp.mpf:
+        """Of the tangent to a pulley of 40 mm in the vertical plane of the mass, and of the arc."""
+        out = mp.hypot(x - corner[0], y - corner[1]) - 40
+        apart = mp.hypot(out, z)
+        touch = mp.atan2(z, out) + mp.acos(40 / apart)
+        return mp.sqrt(apart**2 - 1600) + 40 * (mp.pi - touch)
+
+    with mp.workdps(40):
+        for k, x in enumerate(rows["X.s"]):
+            at = [mp.mpf(float(x)), mp.mpf(float(x)) / 2, mp.mpf(float(x)) ** 2 / 600 - 1200]
+            pulls = mp.matrix(3, 3)
+            for n, corner in enumerate(corners):
+                paid = length(corner, *at) - length(corner, 0, 0, -1200)
+                near(rows[f"D{n + 1}.theta"][k], float(-mp.degrees(paid / 50)))
+                for axis in range(3):
+                    order = tuple(int(axis == i) for i in range(3))
+                    pulls[axis, n] = -mp.diff(lambda *p, c=corner: length(c, *p), tuple(at), order)
+            # x'' = 0.5, y'' = x''/2, z'' = (x'^2 + x x'')/0.3 in m and s
+            rise = (mp.mpf("0.04") + at[0] / 1000 / 2) / mp.mpf("0.3")
+            force = mp.matrix([mp.mpf("2.5"), mp.mpf("1.25"), 5 * (mp.mpf("9.81") + rise)])
+            for n, pull in enumerate(mp.lu_solve(pulls, force)):
+                near(rows[f"K{n + 1}.tension"][k], float(pull), 1e-10)
+                near(rows[f"D{n + 1}.effort"][k], 50.0 * float(pull), 1e-10)
+
+
+def test_serpentine_drive() -> None:
+    """6 N m at 60 mm and 4 N m at 45 mm leave their shares of 300 N from strand to strand; the
+    idler's and the crankshaft's bearings take both, by the angle between them."""
+    rows = rows_of("serpentine_drive")
+    for name, radius in (("B", 60.0), ("I", -30.0), ("C", 45.0), ("T", -35.0)):
+        near(rows[f"{name}.theta"], 80.0 / radius * rows["A.theta"])
+    fan, pump = 4000.0 / 45.0, 100.0
+    near(rows["A.effort"], 80.0 * (fan + pump), 1e-9)
+    near(rows["K.T.tension"], 300.0, 1e-10)
+    near(rows["K.I.tension"], 300.0 - fan, 1e-10)
+    near(rows["K.B.tension"], 300.0 - fan, 1e-10)
+    near(rows["K.A.tension"], 300.0 - fan - pump, 1e-10)
+
+    def strand(apart: complex, rise: float) -> float:
+        """Direction of a tangent whose circles lie `rise` further to its left at its end."""
+        return float(np.angle(apart) - np.arcsin(rise / abs(apart)))
+
+    between = strand(-70 + 150j, 75.0) - strand(-90 + 110j, -90.0)
+    near(rows["norm(I.force)"], 2.0 * (300.0 - fan) * abs(np.sin(between / 2.0)), 1e-10)
+    leaves, comes = strand(240 + 40j, -20.0), strand(40 - 140j, 115.0)
+    pull = (300.0 - fan - pump) * np.exp(1j * leaves) - 300.0 * np.exp(1j * comes)
+    near(rows["norm(A.force)"], abs(pull), 1e-10)
+
+
 NAMES = (
     "tackle",
+    "cable_robot",
+    "serpentine_drive",
     "cylinder_boom",
     "spur_gears",
     "planetary_gear",

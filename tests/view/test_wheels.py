@@ -3,6 +3,7 @@ have the lengths of closed forms."""
 
 from __future__ import annotations
 
+import re
 from math import acos, pi, sqrt
 from typing import Any
 
@@ -310,6 +311,36 @@ def test_a_cable_keeps_its_length_and_touches_its_pulleys(side: str, other: str)
             ends = np.linalg.norm(line - centre, axis=1)
             assert np.sum(np.abs(ends - abs(beside)) < 1e-12) >= 3
     assert np.ptp(lengths) < 7e-4 * 2.0 * pi * 0.04
+    jsonschema.validate(data(model, modes=False), DATA)
+
+
+@pytest.mark.parametrize("space", [False, True])
+def test_a_belt_over_several_pulleys_touches_each(space: bool) -> None:
+    """Each pulley is passed at its radius, and turns about its axis as the belt runs."""
+    text = """\
+links: {a: {}, b: {}, c: {}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [100, 0]}
+  C: {type: R, links: [ground, c], point: [50, 20]}
+couplings: {K: {type: belt, joints: [A, B, C], radii: [20, 15, 10], outside: [C], tensioner: C}}
+motion: {inputs: {A.theta: {from: 0, to: 40, step: 10}}}
+"""
+    if space:
+        text = SPACE + re.sub(
+            r"point: \[(\d+), (\d+)\]", r"point: [\1, 0, \2], axis: [0, 1, 0]", text
+        )
+    model = mk.loads(text if space else PLANE + text)
+    (belt,) = model.view_settings.belts
+    wheels = model.view_settings.wheels
+    line = np.array(belt.line)
+    middles = line + 0.5 * (np.roll(line, -1, axis=0) - line)
+    for wheel in wheels:
+        ends, chords = (
+            np.linalg.norm(each - np.array(wheel.on.o), axis=1) for each in (line, middles)
+        )
+        assert ends.min() == pytest.approx(wheel.radius)
+        assert chords.min() > 0.99 * wheel.radius
     jsonschema.validate(data(model, modes=False), DATA)
 
 

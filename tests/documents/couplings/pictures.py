@@ -70,6 +70,25 @@ points:
   d: {{link: ground, at: [70, 0]}}
   c: {{link: cart, at: [110, -60]}}
 """
+SEVERAL = f"""{PLANE}{MOVED}links: {{one: {{}}, two: {{}}, three: {{}}, four: {{}}}}
+joints:
+  A: {{type: R, links: [ground, one], point: [0, 0]}}
+  B: {{type: R, links: [ground, two], point: [150, 10]}}
+  C: {{type: R, links: [ground, three], point: [105, 75]}}
+  D: {{type: R, links: [ground, four], point: [60, 130]}}
+"""
+ROBOT = f"""{SPACE}motion:
+  inputs: {{Y.s: {{from: 0, to: 60, step: 10}}, Z.s: {{with: Y.s/2}}}}
+links: {{cart: {{}}, body: {{}}, winch: {{}}}}
+joints:
+  Y: {{type: P, links: [ground, cart], point: [100, 0, -80], axis: [0, 1, 0]}}
+  Z: {{type: P, links: [cart, body], point: [100, 0, -80], axis: [0, 0, 1]}}
+  S: {{type: P, links: [ground, winch], point: [0, 0, -90], axis: [0, 0, 1]}}
+points:
+  a: {{link: winch, at: [0, 0, -90]}}
+  b: {{link: ground, at: [0, 0, 0]}}
+  c: {{link: body, at: [100, 0, -80]}}
+"""
 
 PICTURES: Final[dict[str, tuple[str, str, str]]] = {
     "spur": (
@@ -112,11 +131,22 @@ PICTURES: Final[dict[str, tuple[str, str, str]]] = {
         _wheels(300),
         "{type: chain, joints: [A, B], teeth: [17, 38], pitch: 12.7 mm}",
     ),
+    "serpentine": (
+        "a belt over several pulleys",
+        SEVERAL,
+        "{type: belt, joints: [A, B, C, D], radii: [40 mm, 25 mm, 15 mm, 30 mm], outside: [C], "
+        "tensioner: C, pretension: 200 N}",
+    ),
     "cable": (
         "a cable",
         HOIST,
         "{type: cable, path: [a, {pulley: b, radius: 20 mm, side: right}, "
         "{pulley: d, radius: 30 mm, side: left}, c]}",
+    ),
+    "swivel": (
+        "a pulley that swivels",
+        ROBOT,
+        "{type: cable, path: [a, {pulley: b, radius: 20 mm, swivel: [0, 0, 1]}, c]}",
     ),
     "tackle": ("a tackle", HOIST, "{type: cable, path: [a, b, a, b, d, c]}"),
     "screw": ("a screw and its nut", SCREW, "{type: screw, joints: [A, S], lead: 5 mm}"),

@@ -1,0 +1,159 @@
+"""What couplings keep: sums of coordinates of joints anywhere in a mechanism, the forces by which
+they act, and what is measured of cables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from mechkin_cli.mechanism.curve import CoordinateLaw
+from mechkin_cli.mechanism.joint import Joint
+from mechkin_cli.mechanism.pair_type import Attached, Rubbing
+from mechkin_cli.mechanism.vectors import Vector
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.tape import cos, sin
+
+if TYPE_CHECKING:
+    from mechkin_cli.show import Floats
+
+
+class Term(NamedTuple):
+    """A joint's coordinate with its factor: a number, a length per rad (m) or an angle per length
+    (rad/m); or where it has a law, a number times the law's value at the coordinate."""
+
+    joint: Joint
+    coordinate: str
+    factor: float
+    law: CoordinateLaw | None = None
+
+
+class Mesh(NamedTuple):
+    """Forces that a coupling acts by, on the carrier's drawing: a point (m) of the line of the
+    first, as the pitch point of teeth, and that force on the second wheel per unit moment on the
+    first: `along`, as of a flank, and `apart` per magnitude, both in 1/m. `way` leads from the
+    first wheel to the second: joints, each passed from its first link to its second (1) or back
+    (-1). `other`: point, `along` and `apart` of a second force."""
+
+    carrier: str
+    point: Vector
+    along: Vector
+    apart: Vector
+    way: tuple[tuple[str, int], ...]
+    other: tuple[Vector, Vector, Vector] | None = None
+
+
+class Tension(NamedTuple):
+    """What pulls in a strand (N): `along` per unit moment on the first wheel and `apart` per its
+    magnitude (both 1/m), beside what is there `at_rest`."""
+
+    along: float
+    apart: float
+    at_rest: float
+
+
+class Extent(NamedTuple):
+    """A length of a cable (m): as `drawn`, and what `terms` add to it. It is more than nothing and,
+    where it is known, less than `most`; else the cable does what `words` say at `place`."""
+
+    words: str
+    place: str
+    drawn: float
+    terms: tuple[Term, ...]
+    most: float | None = None
+
+    def value(self, read: Callable[[Term], Floats]) -> Floats | float:
+        """At the states at which `read` finds the terms (states,)."""
+        return float(self.drawn) + sum(read(term) for term in self.terms)
+
+
+class Swing(NamedTuple):
+    """How far the point to which a pulley swivels is from the line about which it does (m), as
+    `drawn`: on the side of the pulley, else the pulley would swing round, which `words` say, at
+    `place`.
+
+    From the centre the point lies by `arm` away from the line and beside that, in the pulley's
+    plane. Its `slide` moves it in the direction `along`, then the `turn` of the stretch turns it.
+    """
+
+    words: str
+    place: str
+    drawn: float
+    arm: tuple[float, float]
+    along: tuple[float, float]
+    slide: Term
+    turn: Term
+    most: None = None
+
+    def value(self, read: Callable[[Term], Floats]) -> Floats:
+        """At the states at which `read` finds the terms (states,)."""
+        slide, turn = read(self.slide), read(self.turn)
+        out, beside = (
+            float(a) + slide * float(b) for a, b in zip(self.arm, self.along, strict=True)
+        )
+        found: Floats = float(self.drawn - self.arm[0]) + out * cos(turn) - beside * sin(turn)
+        return found
+
+
+class Fleet(NamedTuple):
+    """How a stretch of a cable leaves the plane of a pulley or its line: a `term` that is an angle
+    (rad), or over the `length` of the stretch (m) the tangent of one; else the cable does what
+    `words` say."""
+
+    words: str
+    term: Term
+    length: float | None = None
+
+
+class Follower(NamedTuple):
+    """What a disc cam moves: it `oscillates` about a pivot or slides, with a `contact` by a knife's
+    edge, a roller of a `radius` or a flat face. Lengths in m: the cam's base circle; by how much a
+    slide's line passes the cam's axis, or a face its pivot; an oscillating one's arm and the
+    distance of both axes."""
+
+    oscillates: bool
+    contact: str
+    base_radius: float
+    radius: float = 0.0
+    offset: float = 0.0
+    arm: float = 0.0
+    distance: float = 0.0
+
+
+class Relation(NamedTuple):
+    """What a coupling keeps: the sum of its `terms`, an angle or a `length`, is `total` (rad,
+    m). It acts along its coordinates, or by a `mesh`, whose work at them is the same: teeth, or
+    strands with `tensions`, by name. `pulls` are what it pulls two points of links towards each
+    other with (N) when it transmits nothing. `extents` and `fleets`: those of a cable. One that a
+    cam keeps may know its `follower`, which is nothing to the motion. `loss`: what rubs in it."""
+
+    terms: tuple[Term, ...]
+    length: bool
+    total: float = 0.0
+    mesh: Mesh | None = None
+    tensions: tuple[tuple[str, Tension], ...] = ()
+    pulls: tuple[tuple[Attached, Attached, float], ...] = ()
+    extents: tuple[Extent | Swing, ...] = ()
+    fleets: tuple[Fleet, ...] = ()
+    follower: Follower | None = None
+    loss: Rubbing | None = None
+
+    @property
+    def has_play(self) -> bool:
+        """Whether the last of its terms is the play of its flanks."""
+        return self.terms[-1].joint.is_play
+
+    @property
+    def along_coordinates(self) -> tuple[Term, ...]:
+        """The terms that it acts on along their coordinates: those that its mesh does not pass."""
+        passed = () if self.mesh is None else [name for name, _ in self.mesh.way]
+        return tuple(term for term in self.terms if term.joint.name not in passed)
+
+    @property
+    def has_teeth(self) -> bool:
+        """Whether the force of its mesh is one, and no strand's."""
+        return self.mesh is not None and self.mesh.other is None and not self.tensions
+
+    @property
+    def pushes_apart(self) -> bool:
+        """Whether it acts by a force that goes with the magnitude of its multiplier."""
+        return self.mesh is not None and any(part != 0.0 for part in self.mesh.apart)
