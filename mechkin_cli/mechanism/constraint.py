@@ -74,6 +74,15 @@ class Mesh(NamedTuple):
     way: tuple[tuple[str, int], ...]
     other: tuple[Vector, Vector, Vector] | None = None
 
+    def ends(self, joints: Mapping[str, Joint]) -> tuple[str, str]:
+        """The links at both ends of its way: the first wheel and the second."""
+        (first, ahead), (last, onward) = self.way[0], self.way[-1]
+        one, other = joints[first], joints[last]
+        return (
+            one.first if ahead > 0 else one.second,
+            other.second if onward > 0 else other.first,
+        )
+
 
 class Tension(NamedTuple):
     """What pulls in a strand (N): `along` per unit moment on the first wheel and `apart` per its

@@ -26,7 +26,8 @@ struct ContactOf {
 };
 
 // Coulomb friction of a joint: a drag against the velocity of its surfaces, the coefficient times its normal load.
-// Which motions rub: FreeCode of its turns and its slides, -1 for none.
+// Which motions rub: FreeCode of its turns and its slides, -1 for none. Beside friction stand forces that go by a magnitude,
+// too: those with which relations push links apart, of the coefficient 1 and a fixed direction (`pushes`).
 template <class Number>
 struct FrictionOf {
   int place;
@@ -34,6 +35,7 @@ struct FrictionOf {
   int link;          // that carries the axis
   int falls;         // whether the coefficient depends on the speed; else it is `sliding`
   int screws;        // whether turn and slide are one motion, by `pitch`
+  int pushes;        // no friction, but what the place's relation pushes apart with
   Number axis[3];
   Number radius;     // of the surfaces that turn
   Number pitch;      // of a screw: slide by turn; else 0
