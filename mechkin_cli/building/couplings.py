@@ -123,9 +123,9 @@ def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Probl
     said."""
     for i, load in enumerate(loads):
         if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
-            text = f"{problem.tied[load.joint]}, and how that loads {load.joint} is not said"
-            hint = "write the tie as a coupling, or leave out the friction"
-            fields.error("rubbing", ("loads", i), text, hint)
+            tie, cure = problem.tied[load.joint]
+            text = f"{tie}, and how that loads {load.joint} is not said"
+            fields.error("rubbing", ("loads", i), text, f"{cure}, or leave out the friction")
 
 
 def _linear(
