@@ -16,7 +16,6 @@ from mechkin_cli.building.cables import build_cables
 from mechkin_cli.building.couplings import (
     build_couplings,
     coupled_joints,
-    refuse_friction,
     refuse_tied_friction,
 )
 from mechkin_cli.building.cylinders import build_cylinders, define_cylinders
@@ -250,7 +249,6 @@ def build_problem(
         joints[coupled] = counted(joints[coupled])
     cable_links, cable_joints, cables = build_cables(fields, file.couplings, joints, points)
     couplings = build_couplings(fields, file.couplings, joints, cables)
-    refuse_friction(fields, file.loads, couplings)
     directions = {
         name: Attached(d.link, fields.direction(("directions", name, "vector"), d.vector))
         for name, d in file.directions.items()

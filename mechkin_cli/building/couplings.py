@@ -122,32 +122,14 @@ def build_couplings(
     return {name: relation for name, relation in found.items() if relation is not None}
 
 
-def refuse_friction(
-    fields: Fields, loads: Iterable[object], couplings: Mapping[str, Relation]
-) -> None:
-    """Notes teeth that push wheels apart, and belts without pretension, where joints rub: friction
-    is solved for by reactions that are linear in it."""
-    if not any(isinstance(load, FrictionAtJoint) and load.law != "viscous" for load in loads):
-        return
-    for name, relation in couplings.items():
-        if relation.pushes_apart and relation.tensions:
-            text = "with friction in joints a strand that goes slack is not computed"
-            hint = "give the pretension, or leave out the friction"
-            fields.error("rubbing", ("couplings", name), text, hint)
-        elif relation.pushes_apart:
-            text = "with friction in joints the force that pushes wheels apart is not computed"
-            hint = "leave out pressure_angle, or the friction"
-            fields.error("rubbing", ("couplings", name, "pressure_angle"), text, hint)
-
-
 def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Problem) -> None:
     """Notes friction at inputs that are tied: it depends on what transmits the tie, which is not
     said."""
     for i, load in enumerate(loads):
         if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
-            text = f"{problem.tied[load.joint]}, and how that loads {load.joint} is not said"
-            hint = "write the tie as a coupling, or leave out the friction"
-            fields.error("rubbing", ("loads", i), text, hint)
+            tie, cure = problem.tied[load.joint]
+            text = f"{tie}, and how that loads {load.joint} is not said"
+            fields.error("rubbing", ("loads", i), text, f"{cure}, or leave out the friction")
 
 
 def _linear(

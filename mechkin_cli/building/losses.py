@@ -169,8 +169,7 @@ def _flanks(
         return None
     flank = unit(cross(normal, mesh.along))
     press = square_root(dot(mesh.along, mesh.along) + dot(mesh.apart, mesh.apart))
-    one_link, other_link = (_link(wheel, joints) for wheel in wheels)
-    place = mesh.carrier, one_link, other_link, mesh.point, flank
+    place = mesh.carrier, *mesh.ends(joints), mesh.point, flank
     # how fast the pitch point of each moves along the flank when the first turns by a unit
     speeds = [dot(cross(axis.z, subtract(mesh.point, axis.o)), flank) for axis in (one, other)]
     speeds[1] = -speeds[1] / _per_turn(relation, wheels[1])

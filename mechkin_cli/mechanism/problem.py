@@ -32,7 +32,7 @@ from mechkin_cli.mechanism.derived import (
 from mechkin_cli.mechanism.held import LockedFreedom
 from mechkin_cli.mechanism.joint import GROUND_NAME
 from mechkin_cli.mechanism.model import Mechanism, without_effort
-from mechkin_cli.mechanism.motion import Assembly, Limit, MotionInputs
+from mechkin_cli.mechanism.motion import Assembly, DrivenInput, Limit, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
 from mechkin_cli.mechanism.wanted import Wanted
@@ -160,13 +160,14 @@ class Problem:
         return passive or self._why_untold(name) or held or hint_of(name, self._quantities)
 
     @cached_property
-    def tied(self) -> Mapping[str, str]:
-        """Joints that are tied to others as inputs, by name, with the tie in words: its effort is
-        known, but not what transmits it, a tooth or a belt, of which their reactions depend."""
+    def tied(self) -> Mapping[str, tuple[str, str]]:
+        """Joints that are tied to others as inputs, by name, with the tie in words and the cure:
+        its effort is known, but not what transmits it, a tooth or a belt, of which their reactions
+        depend."""
         inputs = self.motion.inputs
         pairs = [(inputs[tie.input], inputs[tie.leader]) for tie in self.motion.constraints]
         return {
-            joint: f"{one.name} is tied to {other.name}"
+            joint: (f"{one.name} is tied to {other.name}", _as_coupling(one, other))
             for one, other in pairs
             if one.joint != other.joint
             for joint in (one.joint, other.joint)
@@ -179,11 +180,10 @@ class Problem:
         )
         if owner not in self.tied or word not in _REACTIONS:
             return None
+        tie, cure = self.tied[owner]
         return (
-            f"{self.tied[owner]}, and what transmits that is not said: teeth push their "
-            "bearings, a belt pulls; write couplings: {K: {type: gear, ...}} (or linear, for "
-            "moments and forces along the coordinates alone), or drive: own if they are not "
-            "connected"
+            f"{tie}, and what transmits that is not said: teeth push their bearings, a belt pulls; "
+            f"{cure}, or write drive: own if they are not connected"
         )
 
     def _linear(self, found: Mapping[str, Wanted]) -> Mapping[str, Wanted]:
@@ -235,6 +235,20 @@ class Problem:
             found |= ledger_catalogue()
         found |= bearing_catalogue(mechanism)
         return found | derived_catalogue(mechanism, motion.driven, leading)
+
+
+def _as_coupling(tied: DrivenInput, leader: DrivenInput) -> str:
+    """What to write in place of a tie between two inputs."""
+    slides = [one.joint for one in (leader, tied) if not is_angle(one.coordinate)]
+    turns = [one.joint for one in (leader, tied) if is_angle(one.coordinate)]
+    terms = f"type: linear, terms: {{{leader.name}: ..., {tied.name}: ...}}"
+    form, along = terms, ""
+    if turns:
+        form = f"type: gear, joints: [{', '.join(turns)}], teeth: [..., ...]"
+        if slides:
+            form = f"type: rack, joints: [{turns[0]}, {slides[0]}], radius: ..."
+        along = f" (or, for moments and forces along the coordinates alone, {{{terms}}})"
+    return f"take {tied.name} out of inputs: and write couplings: {{K: {{{form}}}}}{along}"
 
 
 # Loads that vary: laws of coordinates, rates and time.

@@ -3,7 +3,7 @@ they act, and what is measured of cables."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from mechkin_cli.mechanism.curve import CoordinateLaw
@@ -40,6 +40,15 @@ class Mesh(NamedTuple):
     apart: Vector
     way: tuple[tuple[str, int], ...]
     other: tuple[Vector, Vector, Vector] | None = None
+
+    def ends(self, joints: Mapping[str, Joint]) -> tuple[str, str]:
+        """The links at both ends of its way: the first wheel and the second."""
+        (first, ahead), (last, onward) = self.way[0], self.way[-1]
+        one, other = joints[first], joints[last]
+        return (
+            one.first if ahead > 0 else one.second,
+            other.second if onward > 0 else other.first,
+        )
 
 
 class Tension(NamedTuple):

@@ -193,6 +193,22 @@ class Layout:
         return {name: k for k, name in enumerate(rubbing, start=len(self.mechanism.joints))}
 
     @cached_property
+    def pushes(self) -> dict[str, tuple[str, str]]:
+        """Both links of each coupling that pushes them apart, where something rubs: such a force
+        goes by a magnitude, as friction does, and both are solved for together. Their places in the
+        kernel stand behind those of `place_number`."""
+        if not self.mechanism.frictions:
+            return {}
+        joints = self.mechanism.joints
+        return {
+            c.name: mesh.ends(joints)
+            for c in self.graph.closings
+            if (relation := self.mechanism.couplings.get(c.name)) is not None
+            and (mesh := relation.mesh) is not None
+            and relation.pushes_apart
+        }
+
+    @cached_property
     def axis_number(self) -> dict[tuple[str, str], int]:
         """Number of the axis of each coordinate (joint, name) along which loads may act."""
         pairs = [

@@ -97,6 +97,17 @@ def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
     yield record("add_contact", ContactCode.TRANSMITTED, 1.0, share, 0.0, own, ZERO)
 
 
+def _pushes(layout: Layout) -> Iterator[PlanRecord]:
+    """What couplings push apart with, as frictions without a motion: the coefficient 1 by the
+    multiplier."""
+    numbers = enumerate(layout.pushes.values(), start=len(layout.place_number))
+    for number, (first, _) in numbers:
+        link, none = layout.link_number[first], NO_MOTION
+        size = (ZERO, 0.0, 0.0, 1.0, 1.0, 1.0)
+        yield record("add_friction", number, none, none, link, False, *size)
+        yield record("add_contact", ContactCode.TRANSMITTED, 1.0, 1.0, 0.0, 0.0, ZERO)
+
+
 def _code(motion: Motion | None) -> int:
     return NO_MOTION if motion is None else FreeCode[motion.upper()]
 
@@ -208,6 +219,7 @@ def plan_records(layout: Layout, size: float | None = None) -> list[PlanRecord]:
         *_inertias(layout),
         *(load_record(layout, load) for load in layout.mechanism.loads),
         *(each for rubbing in layout.mechanism.frictions for each in _friction(layout, rubbing)),
+        *_pushes(layout),
         *_load_program(layout),
         *_drives(layout),
         *_size_points(layout),
@@ -317,6 +329,16 @@ def _places(layout: Layout) -> Iterator[PlanRecord]:
             -1 - layout.coupling_number[rubbing.joint],
             *(layout.link_number[link] for link in (loss.first, loss.second, loss.carrier)),
             layout.point(Attached(loss.carrier, loss.point)),
+            1.0,
+        )
+    for name, links in layout.pushes.items():
+        mesh = layout.mechanism.couplings[name].mesh
+        assert mesh is not None
+        yield record(
+            "add_place",
+            layout.joint_reference[name],
+            *(layout.link_number[link] for link in (*links, mesh.carrier)),
+            layout.point(Attached(mesh.carrier, mesh.point)),
             1.0,
         )
 

@@ -110,10 +110,44 @@ def test_a_tie_to_what_is_not_driven_says_what_to_do() -> None:
         _load("gears_spun_up.yaml")
 
 
+@pytest.mark.parametrize(
+    ("one", "other", "form"),
+    [
+        ("A.theta", "S.s", "{K: {type: rack, joints: [A, S], radius: ...}}"),
+        ("S.s", "A.theta", "{K: {type: rack, joints: [A, S], radius: ...}}"),
+        ("S.s", "T.s", "{K: {type: linear, terms: {S.s: ..., T.s: ...}}}"),
+    ],
+)
+def test_a_tie_is_answered_by_the_coupling_to_write(one: str, other: str, form: str) -> None:
+    scale = {"A": "1 rad", "S": "1 m", "T": "1 m"}
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{a: {{}}, s: {{}}, t: {{}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  S: {{type: P, links: [ground, s], point: [0, 1], axis: [1, 0]}}
+  T: {{type: P, links: [ground, t], point: [0, 2], axis: [1, 0]}}
+motion:
+  inputs:
+    {one}: {{from: 0, to: 1, count: 3}}
+    {other}: {{with: "{one}*({scale[other[0]]})/({scale[one[0]]})", drive: tie}}
+    FREE: {{at: 0}}
+tables: [{{name: t, columns: [{other[0]}.force.x]}}]
+"""
+    free = {"A", "S", "T"}.difference((one[0], other[0])).pop()
+    text = text.replace("FREE", f"{free}.{'theta' if free == 'A' else 's'}")
+    with pytest.raises(mk.InvalidFile) as told:
+        mk.loads(text)
+    assert f"take {other} out of inputs: and write couplings: {form}" in str(told.value)
+
+
 def test_what_transmits_a_tie_is_not_left_out_of_bearings() -> None:
     """100 N at the rim of the wheel are 100 N in both bearings; a tie alone does not say so."""
     text = (HERE / "spur_pair.yaml").read_text()
-    with pytest.raises(mk.InvalidFile, match=r"what transmits that is not said.*couplings:"):
+    form = r"take B.theta out of inputs: and write couplings: \{K: \{type: gear, joints: \[A, B\]"
+    with pytest.raises(mk.InvalidFile, match=rf"what transmits that is not said.*{form}"):
         mk.loads(text)
     rubbing = "loads: [{type: friction, joint: A, coefficient: 0.1, radius: 2}, {type: torque"
     columns = "columns: [A.theta, A.effort, norm(A.force), norm(B.force)]"
@@ -121,7 +155,7 @@ def test_what_transmits_a_tie_is_not_left_out_of_bearings() -> None:
     assert mk.loads(alone).analyze()["A.effort"] == pytest.approx(-2000.0)
     with pytest.raises(mk.ExpressionError, match="what transmits that is not said"):
         mk.loads(alone).analyze()["B.radial_force"]
-    with pytest.raises(mk.InvalidFile, match="how that loads A is not said"):
+    with pytest.raises(mk.InvalidFile, match=f"how that loads A is not said; {form}"):
         mk.loads(alone.replace("loads: [{type: torque", rubbing))
     own = text.replace("drive: tie", "drive: own")
     assert mk.loads(own).analyze()["norm(B.force)"] == pytest.approx(0.0)

@@ -217,8 +217,27 @@ def test_pretension_rubs_in_bearings() -> None:
     result = mk.loads(text).analyze()
     np.testing.assert_allclose(result["A.normal_load"], 200.0, rtol=1e-12)
     np.testing.assert_allclose(result["A.effort"], 2 * 0.1 * 8.0 * 200.0, rtol=1e-12)
-    with pytest.raises(InvalidFile, match="a strand that goes slack is not computed"):
-        mk.loads(text.replace(", pretension: 100 N", ""))
+
+
+@pytest.mark.parametrize("load", [-4.0, 4.0])
+def test_a_tight_strand_rubs_in_bearings(load: float) -> None:
+    """Without pretension the slack one carries nothing: each bearing carries the tight one, whose
+    moment at the second pulley holds the load and the friction, 0.1 (8 mm) of it, which brakes."""
+    text = drive(load, "").replace("[30, 50]", "[40, 40]")
+    text = text.replace(
+        "loads: [",
+        "loads: [{type: friction, joint: A, coefficient: 0.1, radius: 8}, "
+        "{type: friction, joint: B, coefficient: 0.1, radius: 8}, ",
+    )
+    result = mk.loads(text).analyze()
+    # a load that turns on with the belt is braked by its bearing
+    tight = 4000.0 / (40.0 + np.sign(load) * 0.8)
+    np.testing.assert_allclose(result["K.tight"], tight, rtol=1e-12)
+    np.testing.assert_allclose(result["K.slack"], 0.0, atol=1e-12 * tight)
+    np.testing.assert_allclose(result["B.normal_load"], tight, rtol=1e-12)
+    effort = -np.sign(load) * tight * (40.0 - np.sign(load) * 0.8)
+    np.testing.assert_allclose(result["A.effort"], effort, rtol=1e-12)
+    assert set(result["row.status"]) == {"ok"}
 
 
 WRONG = {

@@ -3,8 +3,11 @@ hand (Shigley, Mechanical Engineering Design, force analysis of spur and helical
 
 from __future__ import annotations
 
+import mpmath as mp
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import InvalidFile
@@ -186,14 +189,6 @@ def test_teeth_that_cannot_mesh_are_refused(before: str, after: str, words: str)
     assert any(words in str(d) for d in told.value.diagnostics)
 
 
-def test_friction_beside_teeth_that_push_apart_is_refused() -> None:
-    text = SPUR + "loads: [{type: friction, joint: A, coefficient: 0.1, radius: 5}]\n"
-    words = "couplings: {G: {type: gear, joints: [A, B], teeth: [20, 40]%s}}"
-    assert mk.loads(text + words % "").analyze()["B.theta"][-1] == pytest.approx(-45.0)
-    with pytest.raises(InvalidFile, match="pushes wheels apart"):
-        mk.loads(text + words % ", pressure_angle: 20")
-
-
 RUBBING = (
     HEAD
     + """
@@ -233,3 +228,175 @@ def test_bearings_rub_by_the_force_of_teeth() -> None:
     time = moved["time"]
     turn = np.degrees(10.0 * time + acceleration * time * time / 2.0)
     np.testing.assert_allclose(moved["A.theta"], turn, rtol=1e-10, atol=1e-12)
+
+
+def bearings(
+    force: float, acceleration: float, slope: float, weight: float, ways: tuple[float, float]
+) -> np.ndarray:
+    """Moments left about both axes (N m) with a tangential force at the teeth, the weights of the
+    wheels per kg along x and y, their bearings' friction against the wheels' ways, and 4 N m on the
+    second one; then the bearings' forces."""
+    teeth = np.array([slope * abs(force), force])
+    pull = weight * np.array([0.6, -0.8])
+    on_first, on_second = teeth - 1.0 * pull, -teeth - 2.0 * pull
+    first, second = np.hypot(*on_first), np.hypot(*on_second)
+    about_first = -0.02 * force - ways[0] * 0.1 * 0.005 * first - 100e-6 * acceleration
+    about_second = 4.0 - 0.04 * force - ways[1] * 0.2 * 0.008 * second + 0.5 * 300e-6 * acceleration
+    return np.array([about_first, about_second, first, second])
+
+
+@pytest.mark.parametrize("weight", [0.0, 200.0])
+@pytest.mark.parametrize("degrees", [0.0, 20.0, 35.0])
+@pytest.mark.parametrize("rate", [1000.0, -1000.0])
+def test_bearings_rub_by_what_pushes_wheels_apart(
+    rate: float, degrees: float, weight: float
+) -> None:
+    gravity = f"  - {{type: gravity, g: [{0.6 * weight} m/s^2, {-0.8 * weight} m/s^2]}}\n"
+    text = RUBBING.replace("loads:\n", f"loads:\n{gravity}").replace("10 rad/s", f"{rate} rad/s")
+    model = mk.loads(text.replace("teeth: [20, 40]", f"teeth: [20, 40], pressure_angle: {degrees}"))
+    slope, ways = np.tan(np.radians(degrees)), (np.sign(rate), -np.sign(rate))
+    result = model.analyze()
+    force = brentq(lambda f: bearings(f, 0.0, slope, weight, ways)[1], 1.0, 1000.0, xtol=1e-13)
+    effort, _, first, second = bearings(force, 0.0, slope, weight, ways)
+    np.testing.assert_allclose(result["A.effort"], -1e3 * effort, rtol=1e-11)
+    np.testing.assert_allclose(result["A.normal_load"], first, rtol=1e-11)
+    np.testing.assert_allclose(result["B.normal_load"], second, rtol=1e-11)
+    teeth = [slope * force, force]
+    np.testing.assert_allclose(result["G.tooth_force"], [teeth] * 3, rtol=1e-11, atol=1e-9)
+    assert result["row.power_error"].max() < 1e-13
+    moved = model.respond("r")
+
+    def accelerated(force: float) -> float:
+        """By 3 N m and the teeth at the first wheel."""
+        return (3.0 + bearings(force, 0.0, slope, weight, ways)[0]) / 100e-6
+
+    def left(force: float) -> float:
+        return bearings(force, accelerated(force), slope, weight, ways)[1]
+
+    force = brentq(left, -1000.0, 1000.0, xtol=1e-12)
+    acceleration = accelerated(force)
+    _, _, first, second = bearings(force, acceleration, slope, weight, ways)
+    assert set(moved["row.status"]) == {"ok"}
+    np.testing.assert_allclose(moved["norm(A.force)"], first, rtol=1e-9)
+    np.testing.assert_allclose(moved["norm(B.force)"], second, rtol=1e-9)
+    time = moved["time"]
+    turn = np.degrees(rate * time + acceleration * time * time / 2.0)
+    np.testing.assert_allclose(moved["A.theta"], turn, rtol=1e-9, atol=1e-10)
+    assert np.nanmax(moved["row.energy_error"]) < 1e-9
+
+
+def test_a_bearing_lets_go_by_what_pushes_apart() -> None:
+    """A moment that grows by 1 N m/s: the bearing of the second wheel, which carries 400 N and the
+    teeth, holds it until the moment of the teeth is more than 1.6 mm of that."""
+    gravity = "  - {type: gravity, g: [120 m/s^2, -160 m/s^2]}\n"
+    text = RUBBING.replace("  - {type: torque, joint: B, value: 4 N*m}\n", gravity)
+    text = text.replace("  - {type: friction, joint: A, coefficient: 0.1, radius: 5}\n", "")
+    text = text.replace("teeth: [20, 40]", "teeth: [20, 40], pressure_angle: 30")
+    motion = '{start: {A.theta: 0}, efforts: {A.theta: "1 N*m*time/(1 s)"}, time: {TIME}}'
+    motion = motion.replace("TIME", "from: 0, to: 1, step: 0.01")
+    result = mk.loads(f"{text[: text.index('responses:')]}responses: {{r: {motion}}}\n").respond(
+        "r"
+    )
+    slope = np.tan(np.pi / 6.0)
+
+    def held(force: float) -> float:
+        return 0.04 * force - 0.0016 * np.hypot(slope * abs(force) + 240.0, 320.0 - force)
+
+    def second(time: float) -> float:
+        def left(force: float) -> float:
+            return held(force) - 150e-6 * (time - 0.02 * force) / 100e-6
+
+        return (time - 0.02 * brentq(left, -100.0, 1e3, xtol=1e-13)) / 100e-6
+
+    start = 0.02 * brentq(held, 0.0, 100.0, xtol=1e-13)
+    time, turn = result["time"], np.radians(result["A.theta"])
+    rests = time < start
+    np.testing.assert_array_equal(turn[rests], 0.0)
+    np.testing.assert_allclose(result["G.tooth_force"][rests, 1], time[rests] / 0.02, atol=1e-12)
+    moved = solve_ivp(
+        lambda t, y: [y[1], second(t)], (start, 1.0), [0.0, 0.0], rtol=1e-11, atol=1e-11
+    )
+    assert turn[-1] == pytest.approx(moved.y[0, -1], rel=1e-9)
+    assert set(result["row.status"]) == {"ok"}
+    assert np.nanmax(result["row.energy_error"]) < 1e-9
+
+
+def test_what_pushes_apart_has_true_errors_and_sensitivities() -> None:
+    """With the secant k of the pressure angle F = 4 N m/(40 mm - 1.6 mm k) is at the teeth."""
+    text = RUBBING.replace("teeth: [20, 40]", "teeth: [20, 40], pressure_angle: a")
+    model = mk.loads(f"{text}parameters: {{a: 20 deg}}\n")
+
+    def effort(degrees: mp.mpf) -> mp.mpf:
+        secant = 1 / mp.cos(mp.radians(degrees))
+        return 4000 / (40 - mp.mpf("1.6") * secant) * (20 + mp.mpf("0.5") * secant)
+
+    result = model.analyze()
+    assert result.errors["A.effort"].max() < 1e-11
+    found = model.sensitivities(["A.effort"], ["a"])
+    with mp.workdps(30):
+        np.testing.assert_allclose(result["A.effort"], float(effort(mp.mpf(20))), rtol=1e-13)
+        slope = float(mp.diff(effort, mp.mpf(20)))
+    np.testing.assert_allclose(found["A.effort", "a"], slope, rtol=1e-12)
+    varied = model.vary({"a": ["0 deg", "20 deg", "35 deg"]}, ["A.effort"])["A.effort"]
+    for degrees, row in zip((0, 20, 35), varied, strict=True):
+        np.testing.assert_allclose(row, float(effort(mp.mpf(degrees))), rtol=1e-12)
+
+
+PLANET = (
+    HEAD
+    + """
+links: {sun: {}, arm: {}, planet: {mass: 1, center_of_mass: [30, 0], inertia: 50}}
+joints:
+  S: {type: R, links: [ground, sun], point: [0, 0]}
+  C: {type: R, links: [ground, arm], point: [0, 0]}
+  P: {type: R, links: [arm, planet], point: [30, 0]}
+couplings:
+  I: {type: gear, joints: [S, P], teeth: [18, 12], pressure_angle: 20}
+  O: {type: gear, joints: [C, P], teeth: [42, 12], internal: true, pressure_angle: 25}
+motion: {inputs: {S.theta: {from: 0, to: 300, count: 7, rate: 40 rad/s, acceleration: 900 rad/s^2}}}
+loads:
+  - {type: torque, joint: C, value: LOAD N*m}
+  - {type: friction, joint: P, coefficient: 0.15, radius: 4}
+"""
+)
+
+
+@pytest.mark.parametrize("load", [-6, 6])
+def test_the_bearing_of_a_planet_rubs_by_both_meshes(load: int) -> None:
+    """Its force and its friction hold the planet, whose mass centre turns with the arm."""
+    result = mk.loads(PLANET.replace("LOAD", str(load))).analyze()
+    assert set(result["row.status"]) == {"ok"}
+    # on the planet; the sun's mesh has it as its second wheel, the ring's as well
+    teeth = result["I.tooth_force"] + result["O.tooth_force"]
+    force = result["P.force"] + teeth
+    rate, second = result["C.theta_dot"], result["C.theta_ddot"]
+    angle = np.radians(result["C.theta"])
+    x, y = np.cos(angle), np.sin(angle)
+    along, across = np.column_stack([x, y]), np.column_stack([-y, x])
+    wanted = 0.03 * (second[:, None] * across - (rate**2)[:, None] * along)
+    np.testing.assert_allclose(force, wanted, rtol=1e-10, atol=1e-9)
+    size = np.hypot(*result["P.force"].T)
+    np.testing.assert_allclose(result["P.normal_load"], size, rtol=1e-12)
+    for name, degrees, side in (("I", 20.0, -1.0), ("O", 25.0, 1.0)):
+        own = result[f"{name}.tooth_force"]
+        radial, tangential = (own * along).sum(axis=1), (own * across).sum(axis=1)
+        pushed = -side * np.tan(np.radians(degrees)) * np.abs(tangential)
+        np.testing.assert_allclose(radial, pushed, rtol=1e-11)
+    moments = [
+        side * 0.012 * (result[f"{name}.tooth_force"] * across).sum(axis=1)
+        for name, side in (("I", -1.0), ("O", 1.0))
+    ]
+    rubs = -np.sign(result["P.theta_dot"]) * 0.15 * 0.004 * size
+    turning = 50e-6 * (second + result["P.theta_ddot"])
+    np.testing.assert_allclose(sum(moments) + rubs, turning, rtol=1e-9, atol=1e-10)
+    assert result["row.power_error"].max() < 1e-12
+
+
+def test_rows_with_what_pushes_apart_are_the_same_in_lanes_of_any_width() -> None:
+    text = RUBBING.replace("teeth: [20, 40]", "teeth: [20, 40], pressure_angle: 20")
+    names = ["A.effort", "B.force", "G.tooth_force", "A.normal_load"]
+    one, other = (mk.loads(text).analyze(names, lanes=lanes) for lanes in (2, 4))
+    moved = [mk.loads(text).respond("r", names, lanes=lanes) for lanes in (2, 4)]
+    for name in names:
+        np.testing.assert_array_equal(one[name], other[name])
+        np.testing.assert_array_equal(moved[0][name], moved[1][name])

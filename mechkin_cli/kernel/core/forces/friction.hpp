@@ -84,6 +84,12 @@ inline void aim_friction(const Plan& p, Workspace& w, int k, bool accelerating, 
   const Rubbing& r = w.rubbing;
   const Vec3 axis = r.axis[k], point = r.point[k];
   const Motion &a = motion_of(w, j.first), &b = motion_of(w, j.second);
+  if (f.pushes) {
+    r.drag[k] = Pack(-1.0) * push_of(p, w, j);
+    r.speed[k] = power(b.velocity - a.velocity, r.drag[k]);
+    r.coefficient[k] = 1.0, r.at_rest[k] = 0.0;
+    return;
+  }
   const Pack radius = f.radius, lever = Pack(JOINT_AT_REST) * ((f.slides < 0 ? Pack(0.0) : Pack(1.0)) +
                                                                (f.turns < 0 ? Pack(0.0) : radius));
   Slip slip = slip_of(f, axis, b.velocity.angular - a.velocity.angular, b.velocity.at(point) - a.velocity.at(point));

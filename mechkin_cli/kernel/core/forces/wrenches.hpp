@@ -234,20 +234,27 @@ inline void unknown_efforts(const Plan& p, const Workspace& w, int index, Pack* 
   }
 }
 
-// What a relation that acts by forces exerts by the one in a frame: teeth push along the flank that bears, and always apart.
-inline Vec3 force_by(const Workspace& w, const ClosingJoint& j, const Frame& f, Pack multiplier) {
-  return multiplier * carried_vector(w, j.first, f.x) + abs(multiplier) * carried_vector(w, j.first, f.y);
+// What a relation that acts by forces exerts by the one in a frame: teeth push along the flank that bears, and always apart,
+// by the magnitude `size` of the multiplier.
+inline Vec3 force_by(const Workspace& w, const ClosingJoint& j, const Frame& f, Pack multiplier, Pack size) {
+  return multiplier * carried_vector(w, j.first, f.x) + size * carried_vector(w, j.first, f.y);
 }
-inline Wrench wrench_by(const Workspace& w, const ClosingJoint& j, const Frame& f, Pack multiplier) {
-  return force_at(carried_point(w, j.first, f.o), force_by(w, j, f, multiplier));
+inline Wrench wrench_by(const Workspace& w, const ClosingJoint& j, Pack multiplier, Pack size) {
+  const auto by = [&](const Frame& f) { return force_at(carried_point(w, j.first, f.o), force_by(w, j, f, multiplier, size)); };
+  Wrench r = by(j.on_first);
+  if (j.is_pair_of_forces) r += by(j.on_second);
+  return r;
 }
 inline Vec3 mesh_force(const Workspace& w, const ClosingJoint& j, Pack multiplier) {
-  return force_by(w, j, j.on_first, multiplier);
+  return force_by(w, j, j.on_first, multiplier, abs(multiplier));
+}
+// What it pushes apart with by a unit of that magnitude, as a force on the second link.
+inline Wrench push_of(const Plan& p, const Workspace& w, const JointPlace& place) {
+  return wrench_by(w, p.closing[-1 - place.reference], Pack(0.0), Pack(1.0));
 }
 inline void transmit_by_force(const Plan& p, Workspace& w, int c, Pack multiplier) {
   const ClosingJoint& j = p.closing[c];
-  Wrench r = wrench_by(w, j, j.on_first, multiplier);
-  if (j.is_pair_of_forces) r += wrench_by(w, j, j.on_second, multiplier);
+  const Wrench r = wrench_by(w, j, multiplier, j.is_pushed ? Pack(0.0) : abs(multiplier));
   for (int l = j.path_begin; l < j.path_end; ++l) w.carried[p.loop[l].joint] -= Pack(p.loop[l].sign) * r;
 }
 

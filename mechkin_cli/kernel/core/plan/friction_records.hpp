@@ -26,7 +26,8 @@ struct ContactOf {
 };
 
 // Coulomb friction of a joint: a drag against the velocity of its surfaces, the coefficient times its normal load.
-// Which motions rub: FreeCode of its turns and its slides, -1 for none.
+// Which motions rub: FreeCode of its turns and its slides, -1 for none. Beside friction stand forces that go by a magnitude,
+// too: those with which relations push links apart, of the coefficient 1 and a fixed direction (`pushes`).
 template <class Number>
 struct FrictionOf {
   int place;
@@ -35,6 +36,7 @@ struct FrictionOf {
   int falls;         // whether the coefficient depends on the speed; else it is `sliding`
   int screws;        // whether turn and slide are one motion, by `pitch`
   int course;        // tree joint: the axis is the tangent of its curve, or the normal of its surface; -1: as given
+  int pushes;        // no friction, but what the place's relation pushes apart with
   Number axis[3];
   Number radius;     // of the surfaces that turn
   Number pitch;      // of a screw: slide by turn; else 0

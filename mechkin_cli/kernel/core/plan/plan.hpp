@@ -65,6 +65,7 @@ struct ClosingJointOf {
                              // `first` carries the point of contact o and the force on the latter per multiplier, x, and
                              // per its magnitude, y, in on_first
   int is_pair_of_forces;     // and another such force in on_second
+  int is_pushed;             // what goes by the magnitude stands among the frictions, which are solved for together
 };
 
 // One freedom of a loop: a tree joint on the way to the closing joint's second link (+1) or first link (-1). Of a relation

@@ -124,7 +124,7 @@ Refusal PlanBuilder::add_closing_joint(int type, int first, int second, const Fr
   CHECK(check_loop(loop));
   const auto [begin, end] = add_loop(loop);
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
-  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0, 0});
+  closing_.push_back({type, first, second, frame(on_first), frame(on_second), parameter, -1, 0.0, 0, begin, end, 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
@@ -208,7 +208,7 @@ Refusal PlanBuilder::add_relation(bool length, const std::vector<TermTuple>& ter
   const std::size_t at = closing_.size() * sizeof(ClosingJoint);
   const Frame none = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 0.0, 0.0}};
   const int type = length ? RELATION_OF_LENGTHS : RELATION_OF_ANGLES;
-  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0, 0});
+  closing_.push_back({type, -1, -1, none, none, sum, -1, 0.0, 0, begin, (int)loop_.size(), 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, parameter), 1);
   return {};
 }
@@ -267,7 +267,7 @@ Refusal PlanBuilder::add_hung_links(int body, int rod, int first, int second, co
   joints_[body].hung = (int)hung_.size();
   const std::size_t at = closing_.size() * sizeof(ClosingJoint), hung_at = hung_.size() * sizeof(HungBody);
   hung_.push_back(hung);
-  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0, 0});
+  closing_.push_back({PAIR_DISTANCE, first, second, frame(on_first), at_end, length, rod, slide_sign, 0, begin, end, 0, 0, 0, 0});
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_first), 12);
   const int end_point = (int)constants_.size() + 9;
   number(ARRAY_CLOSING, at + offsetof(ClosingJoint, on_second), 12);
@@ -493,14 +493,21 @@ Refusal PlanBuilder::add_friction(int place, int turns, int slides, int link, bo
   CHECK(open());
   REQUIRE(place >= 0 && place < (int)place_.size(), "friction of an unknown joint");
   const auto motion = [](int code) { return code >= -1 && code < FREE_CODES; };
-  REQUIRE(motion(turns) && motion(slides) && (turns >= 0 || slides >= 0), "friction of an unknown motion");
+  REQUIRE(motion(turns) && motion(slides), "friction of an unknown motion");
   CHECK(check_link(link));
   CHECK(check_finite(axis, radius, pitch, at_rest, sliding, speed));
   REQUIRE(course == -1 || (course >= 0 && course < (int)joints_.size() && is_carriage(joints_[course].type)),
           "friction along the course of a joint that has none");
   for (const Friction& other : friction_) REQUIRE(other.place != place, "a joint has one friction");
+  const bool pushes = turns < 0 && slides < 0;
+  if (pushes) {
+    const int of = -1 - place_[place].reference;
+    REQUIRE(of >= 0 && is_relation(closing_[of].type) && closing_[of].path_end > 0, "a relation that acts by a force pushes");
+    REQUIRE(!closing_[of].is_pushed, "a relation pushes once");
+    closing_[of].is_pushed = 1;
+  }
   const int contacts = (int)contact_.size();
-  Friction f = {place, turns, slides, link, falls, pitch != 0.0, course, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
+  Friction f = {place, turns, slides, link, falls, pitch != 0.0, course, pushes, {}, radius, pitch, at_rest, sliding, speed, contacts, contacts};
   copy(axis, f.axis);
   const std::size_t at = friction_.size() * sizeof(Friction);
   friction_.push_back(f);

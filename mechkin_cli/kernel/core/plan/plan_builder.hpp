@@ -82,7 +82,8 @@ class PlanBuilder {
   Refusal add_actuator(int axis, int reference, int freedom);
   // Input `input` is moved by the motor of input `leader`, see InputConstraint.
   Refusal add_input_constraint(int input, int leader);
-  // The friction of a joint, see Friction; at most one a joint.
+  // The friction of a joint, see Friction; at most one a joint. Where neither turns nor slides rub, what the place's relation
+  // pushes its links apart with, of the coefficient 1.
   Refusal add_friction(int place, int turns, int slides, int link, bool falls, const Triple& axis, double radius,
                     double pitch, double at_rest, double sliding, double speed, int course);
   // The next contact of the last friction, see Contact.

@@ -84,7 +84,7 @@ inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w,
     closing[c] = {j.type, j.first, j.second, {}, {},
                   lanes.number([&](const LanePlan& p) { return p.closing[c].parameter; }),
                   j.slide, j.slide_sign, j.row, j.loop_begin, j.loop_end, j.path_begin, j.path_end,
-                  j.is_pair_of_forces};
+                  j.is_pair_of_forces, j.is_pushed};
     lanes.frame(&closing[c].on_first, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_first; });
     lanes.frame(&closing[c].on_second, [&](const LanePlan& p) -> const auto& { return p.closing[c].on_second; });
   }
@@ -183,7 +183,7 @@ inline void widen_frictions(const LanePlan& first, const Constants& lanes, Plan*
   if (!room.memory) return;
   for (int f = 0; f < first.frictions; ++f) {
     const auto& from = first.friction[f];
-    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, from.screws, from.course, {},
+    friction[f] = {from.place, from.turns, from.slides, from.link, from.falls, from.screws, from.course, from.pushes, {},
                    lanes.number([&](const LanePlan& p) { return p.friction[f].radius; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].pitch; }),
                    lanes.number([&](const LanePlan& p) { return p.friction[f].at_rest; }),

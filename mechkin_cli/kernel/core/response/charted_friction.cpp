@@ -47,9 +47,10 @@ SlipStage ChartedMotion::make_slips() const {
           make(n * TOLD_NUMBERS), make(n), make(2 * m), {}};
 }
 
+// What pushes has no friction: it always goes as it does.
 bool ChartedMotion::rubs(int lane, int k) const {
   const Friction& f = starts_[lane].plan->friction[k];
-  return f.at_rest > 0.0 || f.sliding > 0.0;
+  return !f.pushes && (f.at_rest > 0.0 || f.sliding > 0.0);
 }
 
 // What rubs goes as it slips, or as it starts to.
@@ -234,7 +235,7 @@ std::vector<int> ChartedMotion::sticking(int lane) const {
 void ChartedMotion::tell_undecided(const Stage& found, int lane) {
   std::vector<int> joints;
   for (int k = 0; k < plan_.frictions; ++k)
-    if (at(found.slip.state, k, lane) != 0.0) joints.push_back(k);
+    if (rubs(lane, k) && at(found.slip.state, k, lane) != 0.0) joints.push_back(k);
   slips_.doubtful[lane] = joints.empty() ? sticking(lane) : joints;
 }
 

@@ -7,10 +7,10 @@ namespace {
 
 constexpr int components_of(int code) { return code < 0 ? 0 : code == FREE_ALONG ? 1 : code == FREE_ALL ? 3 : 2; }
 
-// Whether a joint slips along one direction alone, so that its slip has a sign.
+// Whether a joint slips along one direction alone, so that its slip has a sign. What pushes has the direction of its force.
 template <class Number>
 inline bool has_signed_slip(const FrictionOf<Number>& f) {
-  return f.screws || components_of(f.turns) + components_of(f.slides) == 1;
+  return f.screws || f.pushes || components_of(f.turns) + components_of(f.slides) == 1;
 }
 
 template <class AnyPlan, class Number>

@@ -133,6 +133,10 @@ inline void find_frame(const Plan& p, const Workspace& w, const ReducedMotion& m
   const Vec3 axis = r.axis[k], point = r.point[k];
   const Pack radius = f.radius;
   int c = s.first[k];
+  if (f.pushes) {
+    s.frame[c] = Pack(-1.0) * push_of(p, w, p.place[f.place]);
+    return;
+  }
   if (has_signed_slip(f)) {
     const Pack size = f.screws ? sqrt(f.pitch * f.pitch + radius * radius) : f.turns < 0 ? Pack(1.0) : radius;
     const Wrench slide = force_at(point, axis);
@@ -256,7 +260,7 @@ inline void find_slips(const Plan& p, const Workspace& w, const ReducedMotion& m
       }
       s.rate[c] = power(motion_of(w, j.second).velocity - motion_of(w, j.first).velocity, frame);
       s.convective[c] = convective_slip(w, j, w.rubbing.point[k], frame);
-      s.mobile[c] = largest > Pack(IMMOBILE) * lever * level;
+      s.mobile[c] = f.pushes ? all_lanes(false) : largest > Pack(IMMOBILE) * lever * level;
       // a joint in a dead centre of its own has a derivative
       const Pack rounding = Pack(FORBIDDEN) * lever;
       const Mask forbidden = (largest <= rounding * level) & (abs(s.rate[c]) <= rounding * rates) &
