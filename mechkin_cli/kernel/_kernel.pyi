@@ -112,6 +112,12 @@ class FrictionState(IntEnum):
     NOT_UNIQUE = 2
     NOT_SOLVED = 3
 
+class FrictionTold(IntEnum):
+    NOTHING = 0
+    FORCE = 1
+    OPEN = 2
+    IMMOBILE = 3
+
 class Demand(IntFlag):
     POSITION = 0
     VELOCITY = 1

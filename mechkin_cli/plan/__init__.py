@@ -23,6 +23,6 @@ __getattr__, __dir__ = lazy_names(
         "needs_all_links",
         "plan": "build_plan plan_records",
         "programs": "kink_laws",
-        "records": "Demand FrictionState PassageEnd RowFlag TrackEnd flatten",
+        "records": "Demand FrictionState FrictionTold PassageEnd RowFlag TrackEnd flatten",
     },
 )

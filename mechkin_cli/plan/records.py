@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         Demand as Demand,
         FreeCode as FreeCode,
         FrictionState as FrictionState,
+        FrictionTold as FrictionTold,
         LoadCode as LoadCode,
         OutputCode as OutputCode,
         Outputs,
@@ -38,6 +39,7 @@ else:
     Demand = _kernel.Demand
     FreeCode = _kernel.FreeCode
     FrictionState = _kernel.FrictionState
+    FrictionTold = _kernel.FrictionTold
     LoadCode = _kernel.LoadCode
     OutputCode = _kernel.OutputCode
     PassageEnd = _kernel.PassageEnd

@@ -22,7 +22,7 @@ from mechkin_cli.mechanism import (
     effort_quantity,
     joined_curve,
 )
-from mechkin_cli.plan import demand_of
+from mechkin_cli.plan import FrictionTold, demand_of
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.response.integration import (
     Beginning,
@@ -63,6 +63,7 @@ class RestingMotion:
         response: the file's.
         stops: the limits at which they rest, by the numbers of the response's stops.
         begun: how it begins, at their limits and along them.
+        friction: what the free motion tells of frictions there (numbers,).
         packing: how rows are packed.
     """
 
@@ -72,9 +73,11 @@ class RestingMotion:
         response: ResponseProblem,
         stops: Sequence[int],
         begun: Beginning,
+        friction: Floats,
         packing: Packing,
     ) -> None:
         self.free, self.response, self.packing, self.stops = free, response, packing, list(stops)
+        self.as_free = friction
         ends = [response.stops[k] for k in stops]
         found = [
             (end.limit, 1.0 if end.direction == "up" else -1.0)
@@ -172,7 +175,9 @@ class RestingMotion:
         given = inputs.at(moved.states[:, rows], turned, times[reached])
         readout = self.session.readout(wanted)
         ask = Ask(demand_of(problem.mechanism, wanted), readout, iterations=0)
-        batch = self.session.run(given._replace(chart=moved.chart.at(rows)), ask)
+        chart = moved.chart.at(rows)
+        chart = chart._replace(friction=self._friction(chart.friction))
+        batch = self.session.run(given._replace(chart=chart), ask)
         assert batch.outputs is not None
         for own, quantity in zip(found, wanted, strict=True):
             own[reached] = batch.outputs[readout.slots[quantity.name].start]
@@ -213,6 +218,18 @@ class RestingMotion:
                 return (low if k == 0 else high), self.stops[number]
             low, high = float(inner[k - 1]), float(inner[k])
 
+    def _friction(self, told: Floats) -> Floats:
+        """What a motion tells of its frictions (numbers, rows), with no force where coordinates at
+        rest alone would rub: limits bear all that presses on these. How they would share that with
+        friction is not unique."""
+        found = told.copy()
+        for first in range(0, len(told), 1 + WRENCH):
+            if self.as_free[first] != FrictionTold.IMMOBILE:
+                still = told[first] == FrictionTold.IMMOBILE
+                found[first, still] = FrictionTold.FORCE
+                found[first + 1 : first + 1 + WRENCH, still] = 0.0
+        return found
+
     def _as_free(self, moved: MotionRows) -> MotionRows:
         """The rows as those of the free motion: its chart has the coordinates at rest, too."""
         chart, width = moved.chart, moved.states.shape[1]
@@ -223,8 +240,12 @@ class RestingMotion:
         direction = np.concatenate([chart.direction, resting.reshape(-1, width)])
         rates = np.concatenate([chart.rates, none])
         accelerations = np.concatenate([chart.accelerations, none])
-        return replace(moved, chart=Chart(direction, rates, accelerations, chart.friction))
+        friction = self._friction(chart.friction)
+        return replace(moved, chart=Chart(direction, rates, accelerations, friction))
 
+
+WRENCH = 6
+"""Numbers of a moment and a force."""
 
 FAR = 1e3
 """How far the stop of a limit is put away while its coordinate rests, in sizes."""

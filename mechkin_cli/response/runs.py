@@ -444,7 +444,8 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
             rebounds.append(struck._replace(impact=impact))
         before, was, left, at_last = moved, left, [], touch.limits(resting.held)
         if resting.held:
-            motion = RestingMotion(one.free, one.response, resting.held, begun, packing)
+            friction = later.chart.friction[:, 0]
+            motion = RestingMotion(one.free, one.response, resting.held, begun, friction, packing)
             later, own = motion.onward(begin, times)
             contacts += own
             if later.report.end is MotionEnd.STOPPED and later.report.stop in resting.held:

@@ -104,6 +104,11 @@ void bind_run_codes(nb::module_& m) {
       .value("GOOD", ROW_GOOD)
       .value("NOT_CONVERGED", ROW_NOT_CONVERGED)
       .value("SIDE_CONDITION", ROW_SIDE_CONDITION);
+  nb::enum_<FrictionTold>(m, "FrictionTold", nb::is_arithmetic(), "What a motion tells of a friction before its moment and force.")
+      .value("NOTHING", TOLD_NOTHING)
+      .value("FORCE", TOLD_FORCE)
+      .value("OPEN", TOLD_OPEN)
+      .value("IMMOBILE", TOLD_IMMOBILE);
   nb::enum_<TrackEnd>(m, "TrackEnd", nb::is_arithmetic(), "How following a branch ended.")
       .value("FINISHED", TrackEnd::finished)
       .value("STALLED", TrackEnd::stalled)

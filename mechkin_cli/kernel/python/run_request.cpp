@@ -19,7 +19,7 @@ const OutputList* read_request(Arguments& given, const FrozenPlan& plan, Request
   r.chart = given.read("chart", p.charts * p.columns);
   r.chart_rates = given.read("chart_rates", p.charts);
   r.chart_accelerations = given.read("chart_accelerations", p.charts);
-  r.friction_told = given.read("friction_told", p.charts ? p.frictions * TOLD_NUMBERS : 0);
+  r.friction_told = given.read("friction_told", p.frictions * TOLD_NUMBERS);
   r.full = given.read("full", p.inputs);
   r.time = given.read("time", Arguments::ONE_PER_ROW);
   const OutputList* outputs = nullptr;

@@ -175,7 +175,7 @@ inline void apply_told(Balance& balance) {
 
 inline void mark_open(const Plan& p, const Rubbing& r) {
   for (int k = 0; k < p.frictions && r.is_told; ++k)
-    r.state[k] = select(r.told[k * TOLD_NUMBERS] == Pack((double)TOLD_OPEN), Pack((double)FRICTION_AT_REST), r.state[k]);
+    r.state[k] = select(r.told[k * TOLD_NUMBERS] >= Pack((double)TOLD_OPEN), Pack((double)FRICTION_AT_REST), r.state[k]);
 }
 
 // Beside what was solved for: the drag of what is told is all of its friction.

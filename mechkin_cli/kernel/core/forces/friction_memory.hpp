@@ -45,7 +45,7 @@ inline void lay_out_friction(const Plan& p, Take&& take, Rubbing* r) {
   for (Vec3** each : of_contacts) *each = (Vec3*)take(p.contacts * sizeof(Vec3));
   r->size = (Pack*)take(p.contacts * pack);
   r->gain = (Vec3*)take(p.contacts * n * sizeof(Vec3));
-  r->told = (Pack*)take(p.charts ? n * TOLD_NUMBERS * pack : 0);
+  r->told = (Pack*)take(n * TOLD_NUMBERS * pack);
   r->is_told = false;
   r->effort = (Pack*)take((p.inputs + p.actuators + 1) * pack);
 }

@@ -56,6 +56,7 @@ enum FrictionState : int {
 enum FrictionTold : int {
   TOLD_NOTHING = 0,  // it slips: the row's own rates tell
   TOLD_FORCE = 1,    // it sticks, or is just starting to slip
-  TOLD_OPEN = 2      // it sticks by a force that is not unique
+  TOLD_OPEN = 2,     // it sticks by a force that is not unique
+  TOLD_IMMOBILE = 3  // so it does, as no coordinate of the motion moves it
 };
 constexpr int TOLD_NUMBERS = 7;

@@ -179,8 +179,9 @@ inline void tell_rows(const Plan& p, const Workspace& w, const Slips& s, const R
     const Mask sticks = s.sticks[begin], starts = ~sticks & mobile & (r.speed[k] <= Pack(JOINT_AT_REST) * lever * rates);
     const Mask loaded = ~(Pack(f.at_rest) * r.normal[k] <= Pack(NO_FRICTION) * *found.level);
     const Mask open = sticks & loaded & (~mobile | ~(found.loose[k] == Pack(0.0)));
+    const Pack how = select(mobile, Pack((double)TOLD_OPEN), Pack((double)TOLD_IMMOBILE));
     Pack* const told = found.told + k * TOLD_NUMBERS;
-    told[0] = select(open, Pack((double)TOLD_OPEN), select(sticks | starts, Pack((double)TOLD_FORCE), Pack((double)TOLD_NOTHING)));
+    told[0] = select(open, how, select(sticks | starts, Pack((double)TOLD_FORCE), Pack((double)TOLD_NOTHING)));
     const Vec3 part[2] = {sum.moment, sum.force};
     for (int i = 0; i < 2; ++i) {
       told[1 + 3 * i] = part[i].x, told[2 + 3 * i] = part[i].y, told[3 + 3 * i] = part[i].z;

@@ -82,8 +82,11 @@ void read_chart(const Plan& p, const Request& r, Workspace& w, const Reader& in)
   values(r.chart_place, p.charts, w.place);
   values(r.chart_rates, p.charts, w.place_rate);
   values(r.chart_accelerations, p.charts, w.place_acceleration);
-  w.rubbing.is_told = p.frictions && r.friction_told;
-  if (w.rubbing.is_told) values(r.friction_told, p.frictions * TOLD_NUMBERS, w.rubbing.told);
+}
+
+void read_friction(const Plan& p, const Request& r, Workspace& w, const Reader& in) {
+  w.rubbing.is_told = r.friction_told;
+  for (int i = 0; w.rubbing.is_told && i < p.frictions * TOLD_NUMBERS; ++i) w.rubbing.told[i] = in.get(r.friction_told, i);
 }
 
 // Factors cost more than a step where an operation is many.
@@ -118,6 +121,7 @@ struct RowPack {
     for (int s = 0; s < p.states; ++s) w.q[s] = in.get(r.guess, s);
     for (int i = 0; i < p.inputs; ++i) w.q[p.column_state[p.input_column[i]]] = in.get(r.inputs, i);
     if (p.charts) read_chart(p, r, w, in);
+    if (p.frictions) read_friction(p, r, w, in);
   }
   void read_columns(const double* given, Pack* to) const {
     for (int i = 0; i < p.inputs; ++i) to[p.input_column[i]] = in.get(given, i);
