@@ -120,7 +120,9 @@ def with_plays(mechanism: Mechanism, plays: Mapping[str, Relation]) -> Mechanism
 
 def loose_in_sweep(plays: Mapping[str, Relation], motion: MotionInputs) -> dict[str, Relation]:
     """Couplings that have their play in a sweep, too: whose play is an input, or all of whose other
-    coordinates are. Others stand in the middle of it."""
+    coordinates are. Others stand in the middle of it. Without a sweep all have their play."""
+    if not motion.inputs:
+        return dict(plays)
     driven = set(motion.driven)
     found = {}
     for name, relation in plays.items():

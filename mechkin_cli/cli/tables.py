@@ -222,7 +222,7 @@ def overview_row(
     return OverviewRow(
         file.with_suffix("").as_posix(),
         model.name,
-        " ".join(joint.letter for joint in model.problem.mechanism.joints.values()),
+        " ".join(j.letter for j in model.problem.mechanism.joints.values() if not j.is_play),
         _mobility(model),
         _modes(model),
         str(solved) if solved == rows else f"{solved} of {rows}",

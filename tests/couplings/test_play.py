@@ -192,6 +192,17 @@ def test_a_sweep_stands_in_the_middle_of_the_play() -> None:
     assert [d.code for d in rows.diagnostics] == ["mid-play"]
 
 
+def test_without_a_sweep_the_play_is_a_freedom() -> None:
+    run = "{start: {A.theta: 0, B.theta: 0}, time: {from: 0, to: 0.1, step: 0.01}}"
+    coupled = [GEAR, GEAR.replace(", backlash: 2 mm", "")]
+    runs = [run, run.replace(", B.theta: 0", "")]
+    found = [
+        mk.loads(f"{PAIR}couplings: {{K: {k}}}}}\nresponses: {{run: {r}}}\n").mobility().mobility
+        for k, r in zip(coupled, runs, strict=True)
+    ]
+    assert found == [2, 1]
+
+
 def test_a_sweep_whose_play_is_an_input_stands_on_a_flank() -> None:
     moved = "{A.theta: {from: 0, to: 1, step: 0.1, rate: 1, acceleration: 2}, K.play: {at: 1 mm}}"
     rows = sweep(f"{GEAR}}}", moved)
