@@ -141,6 +141,24 @@ def test_flanks_without_restitution_stay_together_at_once() -> None:
     np.testing.assert_allclose(rows["A.theta_dot"][after], speed / R1, rtol=1e-12)
 
 
+def test_flanks_lose_where_they_bear_alone() -> None:
+    """The second wheel's inertia by its efficiency at the first; in flight nothing is lost, and no
+    efficiency is told."""
+    run = (
+        "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
+        "time: {from: 0, to: 0.1, step: 0.005}}"
+    )
+    rows = pair(f"{GEAR}, restitution: 0.4, efficiency: 0.9}}", run)
+    time, rest = rows["time"], impacts_of(rows)[-1].time
+    turning = 1.0 / (I1 + I2 * (R1 / R2) ** 2 / 0.9)
+    np.testing.assert_allclose(rows["A.theta_ddot"][time > rest], turning, rtol=1e-11)
+    np.testing.assert_allclose(rows["K.efficiency"][time > rest], 0.9, rtol=1e-12)
+    assert np.isnan(rows["K.efficiency"][time < rest]).all()
+    flown = time < 0.02
+    np.testing.assert_allclose(rows["row.dissipated"][flown], 0.0, atol=1e-15)
+    assert np.nanmax(rows["row.energy_error"]) < 1e-12
+
+
 def test_a_reversed_moment_crosses_the_play() -> None:
     """The moment 1 - 10 t reverses at 0.1 s: the flank lets go there, the second wheel goes on as
     it is, and the first one crosses by the third power of time."""
