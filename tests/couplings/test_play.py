@@ -597,6 +597,36 @@ def test_helical_teeth_strike_along_their_flank(rate: float) -> None:
         assert rows[f"{name}_dot"][-1] == pytest.approx(float(rate_after), rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("coupling", "links", "factors"),
+    [
+        (GEAR, "[one, ground]", (R1, -R2)),
+        (
+            GEAR.replace("[A, B]", "[B, A]").replace("[20, 40]", "[40, 20]"),
+            "[one, ground]",
+            (-R1, R2),
+        ),
+        (
+            "{type: linear, terms: {A.theta: -2, B.theta: 3}, backlash: 1",
+            "[ground, one]",
+            (1.0, -1.5),
+        ),
+    ],
+)
+def test_play_is_positive_where_the_first_coordinate_is_ahead(
+    coupling: str, links: str, factors: tuple[float, float]
+) -> None:
+    joints = PAIR.replace("links: [ground, one]", f"links: {links}")
+    run = (
+        "{start: {A.theta: 0, B.theta: 0, A.theta_dot: 0.1, B.theta_dot: 0.03}, "
+        "time: {from: 0, to: 0.02, step: 0.01}}"
+    )
+    rows = pair(f"{coupling}}}", run, joints)
+    name = "K.lash" if "linear" in coupling else "K.play"
+    play = factors[0] * rows["A.theta"] + factors[1] * rows["B.theta"]
+    np.testing.assert_allclose(rows[name], play, atol=1e-16)
+
+
 def test_a_smaller_and_smaller_play_comes_to_the_gear() -> None:
     run = (
         "{start: {A.theta: 0, B.theta: 0}, efforts: {A.theta: 1}, "
