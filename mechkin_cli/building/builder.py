@@ -271,8 +271,7 @@ def build_problem(
     )
     mechanism = replace(mechanism, datum=fields.origin, couplings=couplings)
     loose = loose_in_sweep(plays, motion)
-    if motion.inputs:
-        note_tight(fields, plays, loose)
+    note_tight(fields, plays, loose)
     mechanism = with_plays(mechanism, loose)
     problem = Problem(mechanism, motion, assembly, fields.units, dict(fields.parameters))
     problem = replace(problem, limits=limits)

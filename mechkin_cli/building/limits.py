@@ -41,6 +41,19 @@ def build_limits(
     return tuple(limits.values())
 
 
+def read_restitution(fields: Fields, path: Path, text: str) -> float | None:
+    """The part of a rate in the section at `path`; None where an error is noted."""
+    place, errors = (*path, "restitution"), fields.error_count
+    restitution = fields.number(place, text, DIMENSIONLESS)
+    if fields.error_count > errors:
+        return None
+    if not (restitution >= 0.0 and restitution <= 1.0):
+        text = "a restitution is a number from 0 to 1"
+        fields.error("no-restitution", place, text, "write the part of the rate")
+        return None
+    return restitution
+
+
 def _of_tracks(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]) -> Iterator[Limit]:
     """The ends of curves and surfaces."""
     for (joint, coordinate), (path, low, high) in track_ends(fields, file, joints).items():
@@ -80,11 +93,8 @@ def _limits(
             continue
         restitution = None
         if isinstance(written, LimitSection) and written.restitution is not None:
-            place = (*path, "restitution")
-            restitution = fields.number(place, written.restitution, DIMENSIONLESS)
-            if not (restitution >= 0.0 and restitution <= 1.0):
-                text = "a restitution is a number from 0 to 1"
-                fields.error("no-restitution", place, text, "write the part of the rate")
+            restitution = read_restitution(fields, path, written.restitution)
+            if restitution is None:
                 continue
         here = fields.document.key_place(path)
         yield Limit(joint, coordinate, ends[0], ends[1], here, restitution)

@@ -5,7 +5,8 @@ the play p, along which a link without mass moves:
 
     r f - p = 0,    -b/2 <= p <= b/2,
 
-b the backlash and r the pitch radius of the first wheel, 1 where b is an angle. Between its limits
+b the backlash, r the pitch radius of the first wheel, 1 where b is an angle, and f such that the
+first coordinate has the factor 1. Between its limits
 nothing acts on that link, so that the coupling transmits nothing. At one of them a flank pushes,
 what the limit gives goes on to the coupling's other coordinates as from an ordinary one, and the
 limit's restitution is that of the flanks. The play is positive where the first joint is ahead.
@@ -18,6 +19,7 @@ from math import pi
 
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.joints import Halves, parts_of
+from mechkin_cli.building.limits import read_restitution
 from mechkin_cli.building.wheels import on_one_carrier
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.mechanism import (
@@ -76,7 +78,9 @@ def build_plays(
             continue
         wanted = _meant(section, of_first, dimension)
         backlash = fields.number((*path, "backlash"), section.backlash, wanted)
-        restitution = _restitution(fields, path, section)
+        restitution: float | None = 0.0
+        if section.restitution is not None:
+            restitution = read_restitution(fields, path, section.restitution)
         if fields.error_count > errors:
             continue
         if not backlash > 0.0:
@@ -94,10 +98,8 @@ def build_plays(
             radius = _radius(fields, path, section, relation, joints)
             if fields.error_count > errors:
                 continue
-        factor = relation.terms[0].factor if isinstance(section, LinearCoupling) else 1.0
-        kind = PLAY_ANGLE if wanted == ANGLE else PLAY
-        play = _play(name, kind, fields.plane)
-        term = Term(play, kind, -factor / radius)
+        kind = PLAY if wanted == LENGTH else PLAY_ANGLE
+        term = Term(_play(name, kind, fields.plane), kind, -relation.terms[0].factor / radius)
         plays[name] = relation._replace(terms=(*relation.terms, term))
         place = fields.document.place((*path, "backlash"))
         limits[name] = Limit(name, kind, -0.5 * backlash, 0.5 * backlash, place, restitution)
@@ -120,7 +122,9 @@ def with_plays(mechanism: Mechanism, plays: Mapping[str, Relation]) -> Mechanism
 
 def loose_in_sweep(plays: Mapping[str, Relation], motion: MotionInputs) -> dict[str, Relation]:
     """Couplings that have their play in a sweep, too: whose play is an input, or all of whose other
-    coordinates are. Others stand in the middle of it."""
+    coordinates are. Others stand in the middle of it. Without a sweep all have their play."""
+    if not motion.inputs:
+        return dict(plays)
     driven = set(motion.driven)
     found = {}
     for name, relation in plays.items():
@@ -151,17 +155,6 @@ def _meant(section: Flanks, of_first: Dimension, written: Dimension) -> Dimensio
     if isinstance(section, LinearCoupling):
         return of_first
     return ANGLE if written == ANGLE else LENGTH
-
-
-def _restitution(fields: Fields, path: Path, section: Flanks) -> float:
-    if section.restitution is None:
-        return 0.0
-    place = (*path, "restitution")
-    restitution = fields.number(place, section.restitution, DIMENSIONLESS)
-    if not (restitution >= 0.0 and restitution <= 1.0):
-        text = "a restitution is a number from 0 to 1"
-        fields.error("no-restitution", place, text, "write the part of the rate")
-    return restitution
 
 
 def _radius(

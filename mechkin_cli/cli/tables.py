@@ -224,7 +224,9 @@ def overview_row(
         file.with_suffix("").as_posix(),
         model.name,
         " ".join(
-            joint.letter for name, joint in model.problem.mechanism.joints.items() if is_told(name)
+            joint.letter
+            for name, joint in model.problem.mechanism.joints.items()
+            if is_told(name) and not joint.is_play
         ),
         _mobility(model),
         _modes(model),

@@ -225,7 +225,7 @@ class Problem:
             moving = [*self.response.independent, *self.response.driven_at]
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
-            found |= response_quantities() | bearing_catalogue(mechanism)
+            found |= response_quantities() | bearing_catalogue(mechanism, efforts)
             return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
         found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)

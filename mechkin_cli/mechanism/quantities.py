@@ -310,14 +310,16 @@ BEARING_KINDS: frozenset[str] = frozenset(_LOADS) | {
 efficiency."""
 
 
-def bearing_catalogue(mechanism: Mechanism) -> dict[str, Wanted]:
+def bearing_catalogue(
+    mechanism: Mechanism, efforts: Sequence[tuple[str, str]] = ()
+) -> dict[str, Wanted]:
     """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis, in a
     plane the first alone, of every joint with a point; `K.power` of every coupling, and
     `K.efficiency` of those that rub."""
     loads = (
         *_bearing_loads_of_joints(mechanism),
         *_powers_of_couplings(mechanism),
-        *_efficiencies(mechanism),
+        *_efficiencies(mechanism, efforts),
     )
     return {wanted.name: wanted for wanted in loads}
 
@@ -361,8 +363,9 @@ def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
 
 
-def _efficiencies(mechanism: Mechanism) -> Iterator[Wanted]:
-    """Of couplings that rub: what the driven wheel gets of what the driving one puts in."""
+def _efficiencies(mechanism: Mechanism, efforts: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+    """Of couplings that rub: what the driven wheel gets of what the driving one puts in; none where
+    no flank bears, of a play at which `efforts` are told."""
     for rubbing in mechanism.frictions:
         if rubbing.loss is None:
             continue
@@ -373,6 +376,10 @@ def _efficiencies(mechanism: Mechanism) -> Iterator[Wanted]:
         share = f"max({first}, {second})/(-min({first}, {second}))"
         # the root empties it where both put in power, and none comes out
         text = f"{share} + 0*sqrt({share})"
+        last = mechanism.couplings[owner].terms[-1]
+        if last.joint.is_play and (owner, last.coordinate) in efforts:
+            pushed = f"{owner}.{last.coordinate}.effort"
+            text += f" + 0*({pushed}/{pushed})"
         name = f"{owner}.efficiency"
         yield Wanted(name, "coupling_efficiency", owner, DIMENSIONLESS, False, text)
 
