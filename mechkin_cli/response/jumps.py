@@ -16,16 +16,14 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import SlopeEnd
-from mechkin_cli.plan import Demand
 from mechkin_cli.record import replace
 from mechkin_cli.response.integration import MotionEnd, MotionRows
-from mechkin_cli.session import Ask, RowInputs, Session
-from mechkin_cli.sweep import bends, jumps_between, place_text, size_text
+from mechkin_cli.sweep import bends, jumps_between, place_text, size_text, value_at
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import ResponseProblem
     from mechkin_cli.response.result import ResponseResult
-    from mechkin_cli.show import Floats
+    from mechkin_cli.session import Session
 
 
 def slope_ends(result: ResponseResult, chosen: Session) -> list[SlopeEnd]:
@@ -35,7 +33,7 @@ def slope_ends(result: ResponseResult, chosen: Session) -> list[SlopeEnd]:
         return []
     for bend in bends(result.problem):
         every = np.broadcast_to(np.asarray(result.quantity(bend.name).value), rows.reached.shape)
-        last = _value_at(chosen, bend.name, np.array(report.last))
+        last = value_at(chosen, bend.name, np.array(report.last))
         values = np.append(every[rows.reached], last)
         slack = tolerances.SLOPE_RANGE + float(np.abs(np.diff(values)).max())
         jumps = jumps_between(bend, float(values.min()) - slack, float(values.max()) + slack)
@@ -56,7 +54,7 @@ def at_jump(chosen: Session, response: ResponseProblem, moved: MotionRows) -> Mo
     last = np.array(report.last)
     for number, stop in enumerate(response.stops):
         if isinstance(stop, SlopeEnd):
-            off = abs(_value_at(chosen, f"{stop.joint}.{stop.coordinate}", last) - stop.at)
+            off = abs(value_at(chosen, f"{stop.joint}.{stop.coordinate}", last) - stop.at)
             if off <= tolerances.AT_LIMIT * max(1.0, abs(stop.at)):
                 report = report._replace(end=MotionEnd.STOPPED, stop=number)
                 return replace(moved, report=report)
@@ -72,14 +70,3 @@ def before_jump(response: ResponseProblem, moved: MotionRows) -> MotionRows:
     states = moved.states.copy()
     states[:, report.rows :] = nan
     return replace(moved, report=report._replace(end=MotionEnd.STUCK), states=states)
-
-
-def _value_at(session: Session, name: str, state: Floats) -> float:
-    """A coordinate (rad, m) at states (states,) of a session whose inputs are the independent
-    coordinates."""
-    readout = session.readout([session.problem.quantities()[name]])
-    places = [session.layout.state(edge, freedom) for edge, freedom in session.graph.inputs]
-    rows = RowInputs(state[places][:, None], state[:, None], np.zeros((len(places), 1)))
-    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
-    assert batch.outputs is not None
-    return float(batch.outputs[readout.slots[name].start, 0])

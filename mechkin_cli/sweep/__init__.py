@@ -32,7 +32,7 @@ __getattr__, __dir__ = lazy_names(
         "messages": "refuse_loaded_spin stands_elsewhere",
         "result": "Readable Result",
         "rows": "SHIFTS SweepRows has_turns",
-        "slopes": "ROUNDED bends jumps_between place_text size_text",
+        "slopes": "ROUNDED bends jumps_between place_text size_text value_at",
         "sweep": "analyze at_once closed_rows first_assembly judge_condition rest_on_reactions "
         "row_notes",
     },

@@ -22,6 +22,7 @@ from mechkin_cli.session import (
     input_text,
 )
 from mechkin_cli.sweep.rows import SweepRows
+from mechkin_cli.sweep.slopes import place_text, turning_corner
 from mechkin_cli.units import LENGTH, TIME
 from mechkin_cli.verdict import Status
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep.retracing import SingularPlace
+    from mechkin_cli.sweep.slopes import Bend, Jump
 
 
 NEAR_SINGULAR = "a singular position lies next to that place; sweep from its other side"
@@ -64,6 +66,9 @@ def explain_end(session: Session, path: Floats, followed: Followed, rows: SweepR
         rows.diagnostics.append(_runaway_note(session, followed, limit, rows))
     elif limit is not None:
         rows.diagnostics.append(_branch_point_note(session, followed, limit, rows))
+    elif (corner := turning_corner(session, followed.state)) is not None:
+        rows.status[missing] = Status.beyond_dead_centre
+        rows.diagnostics.append(_corner_note(session, followed, corner, rows))
     else:
         rows.diagnostics.append(_lost_note(session, followed, path, rows))
 
@@ -351,6 +356,23 @@ def _exhausted_note(session: Session, followed: Followed, rows: SweepRows) -> Di
     )
     limit = f"{MOST_PATH_STEPS} steps, {tolerances.MOST_STEPS} for half a radian or length unit"
     return note._replace(limit=limit)
+
+
+def _corner_note(
+    session: Session, followed: Followed, corner: tuple[Bend, Jump], rows: SweepRows
+) -> Diagnostic:
+    bend, jump = corner
+    where = place_text(session.problem, bend, jump.at)
+    shown = _place(session, followed, followed.inputs)
+    return Diagnostic(
+        "dead-centre",
+        "warning",
+        f"the branch turns back where the slope of {bend.owner} changes its sign with a jump, at "
+        f"{where}; {_stay_empty(rows, 'beyond it')}",
+        measured=_words(shown),
+        hint=f"end the sweep before it, or drive {bend.name}",
+        numbers=shown,
+    )
 
 
 def _lost_note(session: Session, followed: Followed, path: Floats, rows: SweepRows) -> Diagnostic:

@@ -14,14 +14,17 @@ import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import ExpressionOf, dimension_of
+from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
+from mechkin_cli.session import Ask, RowInputs
 from mechkin_cli.sweep.messages import named_rows
 from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of
-from mechkin_cli.tolerances import COURSE_SAME, SLOPE_JUMP
+from mechkin_cli.tolerances import AT_LIMIT, COURSE_SAME, SLOPE_JUMP
 from mechkin_cli.units import LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import CoordinateLaw, Problem, Track, Wanted
+    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
     from mechkin_cli.sweep.rows import RunRows
     from mechkin_cli.units import Dimension
@@ -123,6 +126,30 @@ def jumps_between(bend: Bend, low: float, high: float) -> list[Jump]:
         if not found or at - found[-1].at > near:
             found.append(Jump(0.0 if abs(at) <= near else at, size))
     return found
+
+
+def value_at(session: Session, name: str, state: Floats) -> float:
+    """A coordinate (rad, m) at states (states,)."""
+    readout = session.readout([session.problem.quantities()[name]])
+    places = [session.layout.state(edge, freedom) for edge, freedom in session.graph.inputs]
+    rows = RowInputs(state[places][:, None], state[:, None], np.zeros((len(places), 1)))
+    batch = session.run(rows, Ask(Demand.VELOCITY, readout))
+    assert batch.outputs is not None
+    return float(batch.outputs[readout.slots[name].start, 0])
+
+
+def turning_corner(session: Session, state: Floats) -> tuple[Bend, Jump] | None:
+    """The function and its place, next to states (states,), at which its slope changes the sign
+    with a jump: what follows it turns back there, and cannot lead beyond. None where there is
+    none."""
+    for bend in bends(session.problem):
+        value = value_at(session, bend.name, state)
+        slack = AT_LIMIT * max(1.0, abs(value))
+        for jump in jumps_between(bend, value - slack, value + slack):
+            sides = bend.slopes(np.array([jump.at - slack, jump.at + slack]))
+            if len(sides) == 1 and sides[0, 0] * sides[0, 1] < 0.0:
+                return bend, jump
+    return None
 
 
 def slope_notes(result: RunRows) -> list[Diagnostic]:

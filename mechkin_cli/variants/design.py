@@ -195,10 +195,13 @@ class Base:
         Raises:
             InvalidFile: with every independent error.
         """
-        known = self.design.problem.parameters
-        given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
         built = self.design.built
-        return build(built.file, built.document, given, built.problem.stopped)
+        return build(built.file, built.document, self.given(values), built.problem.stopped)
+
+    def given(self, values: Mapping[str, float]) -> dict[str, Quantity]:
+        """Parameters by their values in SI, as `Design.given`."""
+        known = self.design.problem.parameters
+        return {name: Quantity(v, known[name].dimension) for name, v in values.items()}
 
 
 def base_of(design: Design) -> Base:
@@ -234,8 +237,7 @@ class VariedDesign(Design):
         self._variation = None if verdict == Verdict.OTHER_WAY else variation
         self._advised = verdict == Verdict.OTHER_ADVICE
         built = base.built(values) if self._variation is None else base.design.built
-        given = {name: Quantity(v, known[name].dimension) for name, v in values.items()}
-        super().__init__(built, base.design.stem, given)
+        super().__init__(built, base.design.stem, base.given(values))
 
     @property
     def values(self) -> Mapping[str, float]:

@@ -428,8 +428,9 @@ class _ResponseRun:
         self, number: int, row: Floats, models: dict[int, tuple[Solvable, Prepared]]
     ) -> None:
         try:
-            built = self.base.built(dict(zip(self.names, row.tolist(), strict=True)))
-            design = Design(built, self.base.design.stem)
+            values = dict(zip(self.names, row.tolist(), strict=True))
+            built = self.base.built(values)
+            design = Design(built, self.base.design.stem, self.base.given(values))
             session = design.session_of(self.name)
             response = built.problem.responses[self.name]
             prepared = prepare(built.problem, response, self.packing, session)

@@ -116,3 +116,30 @@ def test_expressions_are_read(model: mk.Model) -> None:
     np.testing.assert_allclose(found["2*A.theta"], 2 * plain["A.theta"], rtol=1e-14)
     size = np.sqrt((plain["C.force"] ** 2).sum(axis=2))
     np.testing.assert_allclose(found["norm(C.force)"], size, rtol=1e-14)
+
+
+FOLLOWED = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+parameters: {k: 0.2 m/rad}
+links:
+  crank: {mass: 1, center_of_mass: [0, 0], inertia: 0.5}
+  rod: {mass: 2, center_of_mass: [0, 0], inertia: 1}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: P, links: [ground, rod], point: [0, 0], axis: [1, 0]}
+couplings: {K: {type: function, of: A.theta, gives: B.s, value: k*theta}}
+loads: [{type: torque, joint: A, value: 1}]
+responses: {r: {start: {A.theta: -1, A.theta_dot: 1}, time: {from: 0, to: 2, count: 9}}}
+"""
+
+
+def test_the_exact_numbers_of_variants_are_their_own() -> None:
+    """They were those of the text: far from it the start was told as a dead centre. The inertia is
+    0.5 + 2 k^2."""
+    slopes, times = [0.05, 0.2, 0.4, 0.9], np.linspace(0.0, 2.0, 9)
+    table = mk.loads(FOLLOWED).vary({"k": slopes}, ["A.theta"], run="r")
+    for number, slope in enumerate(slopes):
+        turn = -1.0 + times + 0.5 * times**2 / (0.5 + 2.0 * slope * slope)
+        np.testing.assert_allclose(table["A.theta"][number], turn, atol=1e-9)
