@@ -9,6 +9,7 @@ from random_families.driven_machines import (
     cables,
     cam_profiles,
     each_way,
+    misread,
     rebounds,
     rises,
     tracks,
@@ -24,6 +25,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "tracks": tracks.judge,
     "cables": cables.judge,
     "cam_profiles": cam_profiles.judge,
+    "misread": misread.judge,
 }
 
 
