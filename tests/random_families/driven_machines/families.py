@@ -12,6 +12,7 @@ from random_families.driven_machines import (
     misread,
     rebounds,
     rises,
+    said_otherwise,
     tracks,
     wheels_in_space,
 )
@@ -25,6 +26,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "tracks": tracks.judge,
     "cables": cables.judge,
     "cam_profiles": cam_profiles.judge,
+    "said_otherwise": said_otherwise.judge,
     "misread": misread.judge,
 }
 
