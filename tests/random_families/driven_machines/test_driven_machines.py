@@ -36,3 +36,11 @@ def test_what_is_misread_was_sound(kind: str) -> None:
     assert key in part
     rows = mk.load(data).analyze()
     assert set(map(str, rows["row.status"])) <= {"ok", "beyond-limit"}
+
+
+def test_what_is_no_refusal_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def raised(_: object) -> None:
+        raise KeyError("law")
+
+    monkeypatch.setattr(mk, "load", raised)
+    assert "KeyError" in judge("misread", 0).fault
