@@ -49,6 +49,8 @@ KINDS = {
     "torsional_stiffness": "force length rad^-1",
     "damping": "force time length^-1",
     "torsional_damping": "force length s rad^-1",
+    "viscosity": "force time length^-2",
+    "pressure": "force length^-2",
     "number": "",
 }
 """What a bare number of a kind is counted in: powers of the file's entries, of s and of rad."""

@@ -67,7 +67,7 @@ def judge(rng: np.random.Generator, judged: Judged) -> None:
     if swings:
         far = follower["distance"] = float(rng.uniform(0.9, 1.2)) * size
     if swings and contact != "flat":
-        arm = follower["arm"] = float(rng.uniform(0.7, 1.0)) * size
+        arm = follower["arm"] = far - float(rng.uniform(0.0, 0.25)) * size
     elif swings or contact != "flat":
         below = follower["offset"] = float(rng.uniform(-0.1, 0.2 if swings else 0.1)) * size
     moved = {"type": "R", "links": ["ground", "s"], "point": [1, 0]}

@@ -9,8 +9,10 @@ from random_families.driven_machines import (
     cables,
     cam_profiles,
     each_way,
+    misread,
     rebounds,
     rises,
+    said_otherwise,
     tracks,
     wheels_in_space,
 )
@@ -24,6 +26,8 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "tracks": tracks.judge,
     "cables": cables.judge,
     "cam_profiles": cam_profiles.judge,
+    "said_otherwise": said_otherwise.judge,
+    "misread": misread.judge,
 }
 
 
