@@ -30,7 +30,7 @@ from mechkin_cli.assembly import (
     telling_points,
     wrapped,
 )
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError
 from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.mobility import hold_ends
 from mechkin_cli.modes.circuits import (
@@ -163,7 +163,7 @@ class Modes(Listed):
         text += f"with {100.0 * self.confidence:g} % confidence one more that closes finds another "
         text += f"with a chance of at most {self.chance:.1g}"
         if self.turns is not None:
-            text += f"; threads within {self.turns}.5 turns to either side"
+            text += f"; what counts its turns within {self.turns}.5 of them to either side"
         return text
 
 
@@ -253,7 +253,9 @@ def _result(
     problem = session.problem
     notes = [*notes, *_search_notes(assemblies), *_family_notes(problem)]
     inputs = {
-        item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
+        # a tie by a negative factor has -0
+        item.name: at.get(item.name, float(item.written[0])) + 0.0
+        for item in problem.motion.inputs
     }
     probe = probe_of(session)
     found, points = probe.read(place, assemblies.states)
@@ -525,6 +527,21 @@ def _lost_ends(item: Range) -> int:
     return sum(end.kind == "branch-lost" for end in (item.lower, item.upper))
 
 
+BEYOND = "beyond"
+SIDES = ("below", "above", BEYOND)
+
+
+def _at_limit(name: str, met: tuple[str, ...], modes: list[str]) -> str:
+    """That modes meet a limit of a coordinate."""
+    several = len(modes) > 1
+    known = f"modes {', '.join(modes[:-1])} and {modes[-1]}" if several else f"mode {modes[0]}"
+    if BEYOND in met:
+        one, more = "stands beyond it: its range is that", "stand beyond it: their ranges are those"
+        return f"a limit of {name}: {known} {more if several else one} without it"
+    where = " and ".join(met)
+    return f"a limit of {name} ends the range{'s' * several} of {known} {where}"
+
+
 class _Survey:
     """The circuits of all modes, one after the other; values are those of the input `shown`, which
     stands the whole `turns` farther than the walker has it."""
@@ -545,7 +562,8 @@ class _Survey:
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
         self.limited = [LimitedWalk(walker, limit) for limit in self.problem.limits]
-        self.limit_notes: list[Diagnostic] = []
+        self.met: dict[tuple[str, Place, str], list[str]] = {}
+        """Modes by the limit that they meet, its place and on which side."""
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
@@ -603,22 +621,35 @@ class _Survey:
         for end, word in zip(ends, ("below", "above"), strict=True):
             for walk in self.limited:
                 if walk.begin(start) is None:
-                    self._say(name, walk, "stands beyond it: its range is that without it")
+                    self._meet(name, walk, BEYOND)
                     continue
                 at = walk.reached(start, end.value)
                 if at is not None:
                     end = End("limit", at)
-                    self._say(name, walk, f"ends the range {word}")
+                    self._meet(name, walk, word)
             found.append(end)
         return (found[0], found[1]) if any(end.kind == "limit" for end in found) else None
 
-    def _say(self, name: str, walk: LimitedWalk, words: str) -> None:
-        text = f"a limit of {walk.limit.name}: mode {name} {words}"
-        if words.startswith("ends"):
-            text = f"a limit of {walk.limit.name} {words} of mode {name}"
-        note = Diagnostic("range-at-limit", "note", text, walk.limit.place)
-        if note not in self.limit_notes:
-            self.limit_notes.append(note)
+    def _meet(self, name: str, walk: LimitedWalk, side: str) -> None:
+        modes = self.met.setdefault((walk.limit.name, walk.limit.place, side), [])
+        if name not in modes:
+            modes.append(name)
+
+    @property
+    def limit_notes(self) -> list[Diagnostic]:
+        """Which limits end ranges, a note for each and its modes."""
+        found: dict[tuple[str, Place, tuple[str, ...]], list[str]] = {}
+        places = dict.fromkeys((name, place) for name, place, _ in self.met)
+        for name, place in places:
+            sides = {side: self.met.get((name, place, side), []) for side in SIDES}
+            for mode in self.named.letters.values():
+                met = tuple(side for side, modes in sides.items() if mode in modes)
+                if met:
+                    found.setdefault((name, place, met), []).append(mode)
+        return [
+            Diagnostic("range-at-limit", "note", _at_limit(name, met, modes), place)
+            for (name, place, met), modes in found.items()
+        ]
 
     def _limit(self, end: End, shift: float) -> Limit:
         return Limit(end.kind, self._limit_value(end.value - shift))
