@@ -14,7 +14,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.mechanism import dimension_of
 from mechkin_cli.plan import Demand
 from mechkin_cli.session import Ask, RowInputs
@@ -23,6 +23,42 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Limit, Problem
     from mechkin_cli.modes.circuits import Passage, Walker
     from mechkin_cli.show import Floats
+
+
+BELOW, ABOVE, BEYOND = "below", "above", "beyond"
+"""Where a range ends at a limit, and that a mode stands beyond one."""
+
+
+class LimitsMet:
+    """The limits that ranges of modes meet."""
+
+    def __init__(self) -> None:
+        self._met: dict[tuple[str, Place], dict[str, list[str]]] = {}
+
+    def add(self, limit: Limit, side: str, mode: str) -> None:
+        """A mode's range ends at a limit `BELOW` or `ABOVE`, or the mode stands `BEYOND` it."""
+        self._met.setdefault((limit.name, limit.place), {}).setdefault(mode, []).append(side)
+
+    def notes(self, order: list[str]) -> list[Diagnostic]:
+        """A note for each limit and all modes that meet it alike, in the order of their names."""
+        found: dict[tuple[str, Place, tuple[str, ...]], list[str]] = {}
+        for (name, place), modes in self._met.items():
+            for mode in sorted(modes, key=order.index):
+                sides = tuple(s for s in (BELOW, ABOVE, BEYOND) if s in modes[mode])
+                found.setdefault((name, place, sides), []).append(mode)
+        return [
+            Diagnostic("range-at-limit", "note", _met_words(name, sides, modes), place)
+            for (name, place, sides), modes in found.items()
+        ]
+
+
+def _met_words(name: str, sides: tuple[str, ...], modes: list[str]) -> str:
+    several = len(modes) > 1
+    known = f"modes {', '.join(modes[:-1])} and {modes[-1]}" if several else f"mode {modes[0]}"
+    if BEYOND in sides:
+        one, more = "stands beyond it: its range is that", "stand beyond it: their ranges are those"
+        return f"a limit of {name}: {known} {more if several else one} without it"
+    return f"a limit of {name} ends the range{'s' * several} of {known} {' and '.join(sides)}"
 
 
 def admitted(problem: Problem, limit: Limit, value: float, length: float) -> float | None:

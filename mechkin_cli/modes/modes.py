@@ -30,7 +30,7 @@ from mechkin_cli.assembly import (
     telling_points,
     wrapped,
 )
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError
+from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, UsageError
 from mechkin_cli.mechanism import Problem, dimension_of
 from mechkin_cli.mobility import hold_ends
 from mechkin_cli.modes.circuits import (
@@ -43,7 +43,7 @@ from mechkin_cli.modes.circuits import (
     joined,
     undecided,
 )
-from mechkin_cli.modes.limits import LimitedWalk, beyond_notes
+from mechkin_cli.modes.limits import ABOVE, BELOW, BEYOND, LimitedWalk, LimitsMet, beyond_notes
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
@@ -477,7 +477,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
         *_hold_notes(walker),
-        *survey.limit_notes,
+        *survey.met.notes(list(named.letters.values())),
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
 
@@ -527,21 +527,6 @@ def _lost_ends(item: Range) -> int:
     return sum(end.kind == "branch-lost" for end in (item.lower, item.upper))
 
 
-BEYOND = "beyond"
-SIDES = ("below", "above", BEYOND)
-
-
-def _at_limit(name: str, met: tuple[str, ...], modes: list[str]) -> str:
-    """That modes meet a limit of a coordinate."""
-    several = len(modes) > 1
-    known = f"modes {', '.join(modes[:-1])} and {modes[-1]}" if several else f"mode {modes[0]}"
-    if BEYOND in met:
-        one, more = "stands beyond it: its range is that", "stand beyond it: their ranges are those"
-        return f"a limit of {name}: {known} {more if several else one} without it"
-    where = " and ".join(met)
-    return f"a limit of {name} ends the range{'s' * several} of {known} {where}"
-
-
 class _Survey:
     """The circuits of all modes, one after the other; values are those of the input `shown`, which
     stands the whole `turns` farther than the walker has it."""
@@ -562,8 +547,7 @@ class _Survey:
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
         self.limited = [LimitedWalk(walker, limit) for limit in self.problem.limits]
-        self.met: dict[tuple[str, Place, str], list[str]] = {}
-        """Modes by the limit that they meet, its place and on which side."""
+        self.met = LimitsMet()
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
@@ -618,38 +602,17 @@ class _Survey:
             turned = branch.upper.value - branch.lower.value
             ends = [End("far", value - turned), End("far", value + turned)]
         found: list[End] = []
-        for end, word in zip(ends, ("below", "above"), strict=True):
+        for end, side in zip(ends, (BELOW, ABOVE), strict=True):
             for walk in self.limited:
                 if walk.begin(start) is None:
-                    self._meet(name, walk, BEYOND)
+                    self.met.add(walk.limit, BEYOND, name)
                     continue
                 at = walk.reached(start, end.value)
                 if at is not None:
                     end = End("limit", at)
-                    self._meet(name, walk, word)
+                    self.met.add(walk.limit, side, name)
             found.append(end)
         return (found[0], found[1]) if any(end.kind == "limit" for end in found) else None
-
-    def _meet(self, name: str, walk: LimitedWalk, side: str) -> None:
-        modes = self.met.setdefault((walk.limit.name, walk.limit.place, side), [])
-        if name not in modes:
-            modes.append(name)
-
-    @property
-    def limit_notes(self) -> list[Diagnostic]:
-        """Which limits end ranges, a note for each and its modes."""
-        found: dict[tuple[str, Place, tuple[str, ...]], list[str]] = {}
-        places = dict.fromkeys((name, place) for name, place, _ in self.met)
-        for name, place in places:
-            sides = {side: self.met.get((name, place, side), []) for side in SIDES}
-            for mode in self.named.letters.values():
-                met = tuple(side for side, modes in sides.items() if mode in modes)
-                if met:
-                    found.setdefault((name, place, met), []).append(mode)
-        return [
-            Diagnostic("range-at-limit", "note", _at_limit(name, met, modes), place)
-            for (name, place, met), modes in found.items()
-        ]
 
     def _limit(self, end: End, shift: float) -> Limit:
         return Limit(end.kind, self._limit_value(end.value - shift))
