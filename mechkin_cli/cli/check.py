@@ -103,8 +103,11 @@ def _sentence(model: Model) -> str:
     graphs = [_graph(model, run) for run in model.runs]
     rows = sum(model.problem.responses[run].rows for run in model.runs if run != SWEEP)
     rows += model.problem.motion.rows if SWEEP in model.runs else 0
-    closed = max(sum(mechanism.is_told(c.name) for c in graph.closings) for graph in graphs)
-    counts = {"loop": closed, "row": rows}
+    # couplings and what cables are made of are no loops of the file
+    mechanism = model.problem.mechanism
+    unseen = mechanism.loops - mechanism.told_loops
+    loops = max(sum(not closing.terms for closing in graph.closings) for graph in graphs)
+    counts = {"loop": max(loops - unseen, 0), "row": rows}
     counts |= {"response": len(model.problem.responses)} if model.problem.responses else {}
     counts |= {"table": len(model.tables)}
     return ", ".join(f"{n} {noun}{'s' * (n != 1)}" for noun, n in counts.items())

@@ -23,7 +23,7 @@ LIMIT_WORDS = {
     "dead-centre": "dead centre",
     "branch-point": "branch point",
     "hold-ends": "hold of an idle freedom",
-    "limit": "limit of a coordinate",
+    "limit": "limit",
     "nowhere": "nowhere within the limits",
     "unbounded": "a slide grows out of bounds",
     "branch-lost": "could not be followed further",

@@ -15,7 +15,7 @@ import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.assembly import is_cyclic
-from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.diagnostics import Diagnostic, Number, Place
 from mechkin_cli.mechanism import dimension_of
 from mechkin_cli.modes.circuits import End, Stationary
 from mechkin_cli.plan import Demand, TrackEnd
@@ -28,6 +28,48 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import Limit, Problem
     from mechkin_cli.modes.circuits import Passage, Walker
     from mechkin_cli.show import Floats
+
+
+BELOW, ABOVE, BEYOND, NOWHERE = "below", "above", "beyond", "nowhere"
+"""Where a range ends at a limit, that a mode stands beyond one, and that its branch is nowhere
+within all."""
+
+
+class LimitsMet:
+    """The limits that ranges of modes meet."""
+
+    def __init__(self) -> None:
+        self._met: dict[tuple[str, Place], dict[str, list[str]]] = {}
+
+    def add(self, limit: Limit, side: str, mode: str) -> None:
+        """A mode's range ends at a limit `BELOW` or `ABOVE`, or the mode stands `BEYOND` it, where
+        its branch may be `NOWHERE` within all limits."""
+        self._met.setdefault((limit.name, limit.place), {}).setdefault(mode, []).append(side)
+
+    def notes(self, order: list[str]) -> list[Diagnostic]:
+        """A note for each limit and all modes that meet it alike, in the order of their names."""
+        found: dict[tuple[str, Place, tuple[str, ...]], list[str]] = {}
+        for (name, place), modes in self._met.items():
+            for mode in sorted(modes, key=order.index):
+                sides = tuple(s for s in (BELOW, ABOVE, BEYOND, NOWHERE) if s in modes[mode])
+                found.setdefault((name, place, sides), []).append(mode)
+        return [
+            Diagnostic("range-at-limit", "note", _met_words(name, sides, modes), place)
+            for (name, place, sides), modes in found.items()
+        ]
+
+
+def _met_words(name: str, sides: tuple[str, ...], modes: list[str]) -> str:
+    several = len(modes) > 1
+    known = f"modes {', '.join(modes[:-1])} and {modes[-1]}" if several else f"mode {modes[0]}"
+    stand = "stand" if several else "stands"
+    if NOWHERE in sides:
+        whose = "their whole branches" if several else "its whole branch"
+        return f"a limit of {name}: {known} {stand} beyond it, {whose} beyond some limit"
+    if BEYOND in sides:
+        ranges = "their ranges are the nearest" if several else "its range is the nearest one"
+        return f"a limit of {name}: {known} {stand} beyond it, {ranges} within all limits"
+    return f"a limit of {name} ends the range{'s' * several} of {known} {' and '.join(sides)}"
 
 
 def admitted(problem: Problem, limit: Limit, value: float, length: float) -> float | None:
@@ -228,41 +270,39 @@ class LimitedWalk:
 
 
 def limited_ends(
-    name: str, walks: Sequence[LimitedWalk], start: Passage, ends: tuple[End, End]
-) -> tuple[tuple[End, End], list[Diagnostic]]:
-    """Where limits of coordinates end a branch, else its own ends, and notes of that: about a place
-    or, of one beyond a limit, about the nearest place within all limits.
+    name: str,
+    walks: Sequence[LimitedWalk],
+    start: Passage,
+    ends: tuple[End, End],
+    met: LimitsMet,
+) -> tuple[End, End]:
+    """Where limits of coordinates end a branch, else its own ends: about a place or, of one beyond
+    a limit, about the nearest place within all limits.
 
     Args:
         name: of the mode that stands at the place.
         walks: all limited coordinates.
         start: the place.
         ends: the branch's, below and above.
+        met: takes the limits that are met.
     """
-    left, notes = [walk for walk in walks if walk.begin(start) is None], []
+    left = [walk.limit for walk in walks if walk.begin(start) is None]
     inner = _nearest_within(walks, start, [end.value for end in ends]) if left else start
-    range_is = "its range is the nearest one within all limits"
-    if inner is None:
-        range_is = "and a coordinate is beyond its limits along the whole branch"
-    for walk in left:
-        notes.append(_at_limit(walk, f": mode {name} stands beyond it, {range_is}"))
+    for limit in left:
+        met.add(limit, NOWHERE if inner is None else BEYOND, name)
     if inner is None:
         nowhere = End("nowhere", nan)
-        return (nowhere, nowhere), notes
+        return nowhere, nowhere
     found: list[End] = []
-    for end, word in zip(ends, ("below", "above"), strict=True):
+    for end, side in zip(ends, (BELOW, ABOVE), strict=True):
         for walk in walks:
             at = walk.reached(inner, end.value)
             if at is not None:
                 end = End("limit", at)
-                notes.append(_at_limit(walk, f" ends the range {word} of mode {name}"))
+                if walk.limit not in left:
+                    met.add(walk.limit, side, name)
         found.append(end)
-    return (found[0], found[1]), notes
-
-
-def _at_limit(walk: LimitedWalk, words: str) -> Diagnostic:
-    text = f"a limit of {walk.limit.name}{words}"
-    return Diagnostic("range-at-limit", "note", text, walk.limit.place)
+    return found[0], found[1]
 
 
 def _nearest_within(

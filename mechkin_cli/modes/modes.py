@@ -44,7 +44,7 @@ from mechkin_cli.modes.circuits import (
     joined,
     undecided,
 )
-from mechkin_cli.modes.limits import LimitedWalk, beyond_notes, limited_ends
+from mechkin_cli.modes.limits import LimitedWalk, LimitsMet, beyond_notes, limited_ends
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
@@ -164,7 +164,7 @@ class Modes(Listed):
         text += f"with {100.0 * self.confidence:g} % confidence one more that closes finds another "
         text += f"with a chance of at most {self.chance:.1g}"
         if self.turns is not None:
-            text += f"; threads within {self.turns}.5 turns to either side"
+            text += f"; what counts its turns within {self.turns}.5 of them to either side"
         return text
 
 
@@ -254,7 +254,9 @@ def _result(
     problem = session.problem
     notes = [*notes, *_search_notes(assemblies), *_family_notes(problem)]
     inputs = {
-        item.name: at.get(item.name, float(item.written[0])) for item in problem.motion.inputs
+        # a tie by a negative factor has -0
+        item.name: at.get(item.name, float(item.written[0])) + 0.0
+        for item in problem.motion.inputs
     }
     probe = probe_of(session)
     found, points = probe.read(place, assemblies.states)
@@ -478,7 +480,7 @@ def find_ranges(session: Session, name: str | None = None, outputs: tuple[str, .
         *_leader_note(problem, number, leader),
         *undecided(circuits, item.name),
         *_hold_notes(walker),
-        *survey.limit_notes,
+        *survey.met.notes(list(named.letters.values())),
     )
     return Ranges(item.name, unit, at, ranges, shown, notes)
 
@@ -548,7 +550,7 @@ class _Survey:
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
         self.limited = [LimitedWalk(walker, limit) for limit in self.problem.limits]
-        self.limit_notes: list[Diagnostic] = []
+        self.met = LimitsMet()
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:
         """The ranges in the order of the letters, and the circuits."""
@@ -602,8 +604,7 @@ class _Survey:
         if branch.upper.kind == "full-turn":
             turned = branch.upper.value - branch.lower.value
             ends = End("far", value - turned), End("far", value + turned)
-        found, notes = limited_ends(name, self.limited, start, ends)
-        self.limit_notes += [note for note in notes if note not in self.limit_notes]
+        found = limited_ends(name, self.limited, start, ends, self.met)
         return found if found != ends else None
 
     def _limit(self, end: End, shift: float) -> Limit:

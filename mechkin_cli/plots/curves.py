@@ -74,7 +74,9 @@ def curve_of(analysis: Readable, name: str) -> PlotCurve:
 def _column_curve(column: TableColumn) -> PlotCurve:
     if isinstance(column.values, Words):
         raise _not_numbers(column.label)
-    return PlotCurve(column.label, column.unit, column.values)
+    # what is rounding of zero would fill a picture of its own
+    values = np.where(np.abs(column.values) <= column.rounding, 0.0, column.values)
+    return PlotCurve(column.label, column.unit, values)
 
 
 def parameter_curve(analysis: Readable) -> PlotCurve:

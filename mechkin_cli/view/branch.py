@@ -203,6 +203,7 @@ class BranchScene:
                     "label": column.label,
                     "unit": column.unit,
                     "table": table,
+                    "rounding": float(column.rounding),
                     "values": packed("f64", column.values[self.rows]),
                 }
 

@@ -160,3 +160,8 @@ CABLES = [
     HOIST.replace("PATH", OVER),
     SPACE,
 ]
+
+
+def test_check_counts_loops_of_the_file_alone(mechkin, write) -> None:
+    """Neither couplings nor what a cable is made of."""
+    assert "(0 loops, " in mechkin("check", write("tackle.yaml", CABLES[0])).out

@@ -343,3 +343,35 @@ def test_limits_that_are_none_are_refused(limits: str, code: str) -> None:
     with pytest.raises(mk.InvalidFile) as refused:
         mk.loads(SLIDE + f"limits: {limits}\n")
     assert [d.code for d in refused.value.diagnostics] == [code]
+
+
+CRANK = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {crank: {}, rod: {}, slider: {}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0]}
+  B: {type: R, links: [crank, rod], point: [40, 0]}
+  C: {type: R, links: [rod, slider], point: [140, 0]}
+  S: {type: P, links: [ground, slider], point: [140, 0], axis: [1, 0]}
+motion: {inputs: {A.theta: {from: 0, to: 10, step: 10}}}
+"""
+
+
+def test_one_note_tells_of_all_modes_at_a_limit() -> None:
+    """The crank is stopped in both modes; the slide alone in that in which it stands there."""
+    found = mk.loads(CRANK + "limits: {A.theta: [-30, 120]}\n").ranges()
+    notes = [d.message for d in found.diagnostics if d.code == "range-at-limit"]
+    assert notes == ["a limit of A.theta ends the ranges of modes A and B below and above"]
+    found = mk.loads(CRANK + "limits: {S.s: {min: -20}}\n").ranges()
+    notes = sorted(d.message for d in found.diagnostics if d.code == "range-at-limit")
+    own = mk.loads(CRANK).modes().picked
+    other = {"A": "B", "B": "A"}[str(own)]
+    assert notes == sorted(
+        [
+            f"a limit of S.s ends the range of mode {own} below and above",
+            f"a limit of S.s: mode {other} stands beyond it, its range is the nearest one within "
+            "all limits",
+        ]
+    )

@@ -197,7 +197,7 @@ def test_more_turns_of_a_thread_are_more_modes() -> None:
     assert max(abs(mode.coordinates["J5.theta"]) for mode in few.modes) <= 180
     assert max(abs(mode.coordinates["J5.theta"]) for mode in more.modes) <= 540
     assert 1 <= len(few.modes) < len(more.modes)
-    assert "threads within 1.5 turns" in more.sentence
+    assert "counts its turns within 1.5 of them" in more.sentence
 
 
 def test_rows_of_an_assembled_drawing_carry_the_letter_of_their_mode() -> None:
@@ -290,3 +290,9 @@ motion: {{inputs: {{A.theta: {{values: [{angle!r}]}}}}}}
     found = sorted(mode.coordinates["S.s"] / size + 4 for mode in modes)
     root = math.sqrt(9 - math.sin(angle) ** 2)
     assert found == pytest.approx([math.cos(angle) - root, math.cos(angle) + root], rel=1e-9)
+
+
+def test_inputs_that_are_tied_by_a_negative_factor_begin_at_zero() -> None:
+    """-3/14 of nothing, not -0."""
+    inputs = mk.load(FILE_OF["planetary_gear"]).modes().inputs
+    assert [str(value) for value in inputs.values()] == ["0.0", "0.0"]

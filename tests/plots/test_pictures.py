@@ -9,10 +9,10 @@ import sys
 import numpy as np
 import pytest
 import yaml
-from references import RCSR
+from references import FILE_OF, RCSR
 
 import mechkin_cli as mk
-from mechkin_cli.plots.curves import PlotCurve, drawn, image, picture
+from mechkin_cli.plots.curves import PlotCurve, curve_of, drawn, image, picture
 
 FOUR_BAR = """\
 format: 1
@@ -226,3 +226,12 @@ def test_titles_and_labels_are_no_formulas(text, ending, recwarn):
 def test_the_vector_is_named_as_the_vector(analysis, order):
     with pytest.raises(mk.UsageError, match=r"^tip\.position is a vector.* without A\.theta;"):
         analysis.picture(["A.theta", "tip.position"][::order])
+
+
+def test_what_is_rounding_of_zero_is_drawn_as_zero() -> None:
+    """A locked wheel does not tremble by 1e-14 deg over the whole height of its picture."""
+    analysis = mk.load(FILE_OF["geneva_lock"]).analyze()
+    assert np.abs(np.asarray(analysis["B.theta"])).max() > 0.0
+    for label in ("wheel", "rate"):
+        assert (curve_of(analysis, label).values == 0.0).all()
+    np.testing.assert_allclose(curve_of(analysis, "disc").values, 56.568542, rtol=1e-7)

@@ -60,7 +60,9 @@ BRANCH = _object(
     marks=_list(
         _object(x=NUMBER, kind={"enum": ["dead-centre", "branch-point", "event"]}, text=TEXT)
     ),
-    columns=_list(_object(label=TEXT, unit=TEXT, table=TEXT, values=_packed("f64"))),
+    columns=_list(
+        _object(label=TEXT, unit=TEXT, table=TEXT, rounding=NUMBER, values=_packed("f64"))
+    ),
     arrows=_list(
         _object(
             name=TEXT,

@@ -186,6 +186,19 @@ def test_rounding_is_read_as_zero(show: Show) -> None:
     assert "psi 50 deg" in browser.evaluate("document.querySelector('#curves').innerText")
 
 
+def test_a_column_of_rounding_alone_is_a_line_at_zero(show: Show) -> None:
+    data = four_bar()
+    own = data["runs"][0]["branches"][0]
+    values = 1e-14 * np.sin(np.radians(np.arange(0, 361, 5)))
+    column = {**own["columns"][0], "rounding": 1e-12, "values": packed("f64", values)}
+    own["columns"] = [column]
+    browser = show(data)
+    browser.evaluate("window.mechkin.seek(6)")
+    assert "psi 0 deg" in browser.evaluate("document.querySelector('#curves').innerText")
+    labels = browser.evaluate("window.mechkin.curves.plots[0].data[1].every((each) => each === 0)")
+    assert labels is True
+
+
 def test_a_path_through_few_rows_of_a_circle_is_round(show: Show) -> None:
     angle = np.linspace(0.0, 2.0 * np.pi, 11)
     circle = 20.0 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)

@@ -102,7 +102,13 @@ def without_links_or_size() -> dict[str, Any]:
 def to_and_fro() -> dict[str, Any]:
     data = slider()
     poses = np.tile(at_rest(2), (6, 1, 1))
-    column = {"label": "s", "unit": "mm", "table": "t", "values": packed("f64", np.arange(6.0))}
+    column = {
+        "label": "s",
+        "unit": "mm",
+        "table": "t",
+        "rounding": 0.0,
+        "values": packed("f64", np.arange(6.0)),
+    }
     data["runs"][0]["branches"] = [
         branch("mode 1", np.array([0.0, 1, 2, 1, 0, 0]), poses, columns=[column])
     ]
@@ -112,7 +118,13 @@ def to_and_fro() -> dict[str, Any]:
 def falling() -> dict[str, Any]:
     data = slider()
     poses = np.tile(at_rest(2), (4, 1, 1))
-    column = {"label": "s", "unit": "mm", "table": "t", "values": packed("f64", np.arange(4.0))}
+    column = {
+        "label": "s",
+        "unit": "mm",
+        "table": "t",
+        "rounding": 0.0,
+        "values": packed("f64", np.arange(4.0)),
+    }
     data["runs"][0]["branches"] = [
         branch("mode 1", np.array([9.0, 5, 2, 1]), poses, columns=[column])
     ]

@@ -81,13 +81,13 @@ export class Curves {
     const curves = columns.map((column) => ({
       column,
       series: { label: column.label, stroke: colours.get(keyOf(column)), width: 1.8, points: { show: branch.rows < 2 } },
-      values: this.axis.sorted(numbers(column.values)),
+      values: this.axis.sorted(rounded(column)),
     }));
     for (const other of this.#others()) {
       for (const column of columns) {
         const match = other.branch.columns.find((each) => keyOf(each) === keyOf(column));
         if (!match) continue;
-        const values = other.axis.onto(this.axis, numbers(match.values));
+        const values = other.axis.onto(this.axis, rounded(match));
         curves.push({
           column,
           series: { label: `${column.label}, ${other.branch.name}`, stroke: colours.get(keyOf(column)), width: 1, dash: DASHES[other.index % DASHES.length], points: { show: false } },
@@ -183,7 +183,7 @@ export class Curves {
     for (const plot of this.plots) this.#moveLine(plot);
     this.choice.tell((key) => {
       const column = this.state.branch.columns.find((each) => keyOf(each) === key);
-      return column ? told(numbers(column.values)[this.state.row], 6, largest(numbers(column.values))) : "";
+      return column ? told(rounded(column)[this.state.row], 6, largest(numbers(column.values))) : "";
     });
   }
 
@@ -247,6 +247,8 @@ class RowAxis {
   }
 }
 
+/** The numbers of a column, those that are rounding of zero as zero. */
+const rounded = ({ values, rounding }) => numbers(values).map((each) => (Math.abs(each) <= rounding ? 0 : each));
 const largest = (values) => values.reduce((most, each) => (Math.abs(each) > most ? Math.abs(each) : most), 0);
 const finite = (value) => (Number.isFinite(value) ? value : null);
 const keyOf = (column) => `${column.table ?? ""}\u0000${column.label}`;
