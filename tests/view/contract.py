@@ -135,7 +135,7 @@ DATA = _object(
             places=_list(VECTOR, minItems=2),
             beside=_list(NUMBER, minItems=2),
             axes=_list(VECTOR, minItems=2),
-            swivels=_list({"enum": [-1, 0, 1]}, minItems=2),
+            swivels=_list({"enum": [-1, 0, 1, 2]}, minItems=2),
         )
     ),
     belts=_list(_object(link=INDEX, line=_list(VECTOR, minItems=3), axis=VECTOR, width=LENGTH)),
