@@ -5,7 +5,9 @@ In a plane all pulleys turn about z. In space each has its axis; a stretch leave
 that, so its other end lies in the pulley's plane. A swivelling pulley turns its plane to where its
 cable leads: on one side the cable runs along the line about which it swivels, on the other to a
 point, in the plane of that line and the point. With A the point of the line level with the centre,
-r the radius and u the unit vector from the line square towards the point, its centre is A + r u.
+r the radius and u the unit vector from the line square towards the point, its centre is A + r u. A
+free pulley hangs on its centre, in the plane of that and the points before and after it, which it
+has in front.
 """
 
 from __future__ import annotations
@@ -48,7 +50,7 @@ class Swivel(NamedTuple):
 class Place(NamedTuple):
     """A place that a cable passes: a point of a link, about which it runs at a radius (m), on its
     left (1) or right (-1) seen along the way against `axis`; 0: through it. `is_drum`: it ends
-    there. A swivelling pulley has its centre and axis as drawn."""
+    there. A swivelling pulley, or one that `is_free`, has its centre and axis as drawn."""
 
     centre: Attached
     radius: float = 0.0
@@ -56,6 +58,7 @@ class Place(NamedTuple):
     is_drum: bool = False
     axis: Vector = GROUND.z
     swivel: Swivel | None = None
+    is_free: bool = False
 
     @property
     def is_round(self) -> bool:
@@ -182,7 +185,7 @@ def _read(
     axis, swivel = _axis(fields, path, part, centre, axis, is_joint)
     if fields.error_count > errors:
         return None
-    if swivel is not None and not between:
+    if (swivel is not None or part.free) and not between:
         text = f"the path ends at the swivelling pulley at {name}"
         hint = "lead the cable on to a point, a pulley or a drum on the line about which it swivels"
         fields.error("swivel-end", path, text, hint)
@@ -192,14 +195,18 @@ def _read(
         fields.error("no-wheel", (*path, "radius"), text, limit="more than 0")
         return None
     side = -1.0 if part.side == "right" else 1.0
-    return Place(centre, radius, side, part.drum is not None, axis, swivel)
+    return Place(centre, radius, side, part.drum is not None, axis, swivel, part.free)
 
 
 def _axis(
     fields: Fields, path: Path, part: PathPart, centre: Attached, axis: Vector, is_joint: bool
 ) -> tuple[Vector, Swivel | None]:
     """The axis of a pulley, and how it swivels; what is wrong is noted."""
-    for key, given in (("axis", part.axis), ("swivel", part.swivel)):
+    for key, given in (
+        ("axis", part.axis),
+        ("swivel", part.swivel),
+        ("free", part.free or None),
+    ):
         if given is not None and fields.plane:
             text = "in a plane pulleys turn about z"
             fields.error("pulley-axis", (*path, key), text, f"leave out {key}")
@@ -211,7 +218,7 @@ def _axis(
         return axis, Swivel(centre, fields.direction((*path, "swivel"), part.swivel))
     if part.axis is not None:
         return fields.direction((*path, "axis"), part.axis), None
-    if not (fields.plane or is_joint):
+    if not (fields.plane or is_joint or part.free):
         text = f"the pulley at the point {part.pulley} has no axis"
         hint = (
             "add axis: [0, 1, 0], name an R joint instead of the point, or let it swivel about a "
@@ -230,8 +237,9 @@ def _turned(fields: Fields, path: Path, places: list[Place]) -> bool:
             fields.error("two-swivels", (*path, i + 1), text, "lead it through a point between")
             return False
     for i, place in enumerate(places):
-        if place.swivel is not None:
-            found = _swivelled(fields, (*path, i), place, places[i - 1], places[i + 1])
+        if place.swivel is not None or place.is_free:
+            turned = _hung if place.is_free else _swivelled
+            found = turned(fields, (*path, i), place, places[i - 1], places[i + 1])
             if found is None:
                 return False
             places[i] = found
@@ -311,6 +319,24 @@ def _swivelled(
     return place._replace(
         centre=centre, axis=axis, side=float(way), swivel=Swivel(swivel.entry, along, way)
     )
+
+
+def _hung(fields: Fields, path: Path, place: Place, before: Place, after: Place) -> Place | None:
+    """A free pulley with its axis as drawn; None where errors are noted."""
+    if before.is_round or after.is_round:
+        text = "the cable comes to this free pulley from another pulley, or leaves to one"
+        hint = "lead it through a point between, or give axis instead of free"
+        fields.error("two-swivels", path, text, hint)
+        return None
+    centre = place.centre.vector
+    one, other = (subtract(each.centre.vector, centre) for each in (before, after))
+    # with both places in front, the cable passes it on the left
+    normal = cross(one, other)
+    if not norm(normal) > tolerances.FLEET * norm(one) * norm(other):
+        text = "the centre of this free pulley lies in line with the places before and after it"
+        fields.error("swivel-line", path, text, "draw it beside that line")
+        return None
+    return place._replace(axis=unit(normal), side=1.0)
 
 
 def _off_line(place: Place, entry: Place, along: Vector) -> float:

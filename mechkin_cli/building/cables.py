@@ -17,7 +17,8 @@ At a drum the cable ends on its rim, which turns with the drum's link: the turn 
 In space a telescope turns about the axis of its pulley alone, and what its other end does beside
 that plane is left free and measured: a slide along the axis, and the tilt of another pulley's axis.
 These are zero as long as the cable runs in the grooves. A swivelling pulley hangs on a fork that
-turns about its line, so that its telescope reaches any point.
+turns about its line, so that its telescope reaches any point. On a free one the telescopes on both
+sides hang, one by a ball about its centre, the other on the first, turning about its axis.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from mechkin_cli.building.fields import Fields
 from mechkin_cli.building.joints import Halves, parts_of
 from mechkin_cli.mechanism import (
     GROUND,
+    Arm,
     Attached,
     Extent,
     Fleet,
@@ -54,6 +56,7 @@ from mechkin_cli.mechanism import (
     perpendicular,
     scale,
     subtract,
+    unit,
     upright,
 )
 from mechkin_cli.record import NamedTuple
@@ -100,7 +103,7 @@ class DrawnCable(NamedTuple):
     their links, how far it runs to the left of each (m), seen along its way, and the axes of its
     pulleys. One that swivels has its place and axis on the line about which it does, along the
     cable as it runs onto the pulley; `swivels` is 1 where it comes along that line, -1 where it
-    leaves along it, else 0."""
+    leaves along it, 2 of a free pulley, else 0."""
 
     places: tuple[Attached, ...]
     beside: tuple[float, ...]
@@ -124,7 +127,7 @@ def drawn_cables(
 def _drawn(place: Place) -> tuple[Attached, float, Vector, int]:
     """What a drawn cable knows of a place."""
     if place.swivel is None:
-        return place.centre, float(place.beside), place.axis, 0
+        return place.centre, float(place.beside), place.axis, 2 if place.is_free else 0
     return place.swivel.entry, float(place.beside), place.swivel.along, place.swivel.way
 
 
@@ -155,7 +158,10 @@ class _Cable:
         for i, way in enumerate(ways):
             is_straight = not (places[i].is_round or places[i + 1].is_round)
             count = float(counts[way]) if is_straight else 1.0
-            if not self.moves[i] or (is_straight and way in ways[:i]):
+            if any(place.is_free for place in places[i : i + 2]):
+                if places[i].is_free and any(self.moves[i - 1 : i + 1]):
+                    self._add_free(i)
+            elif not self.moves[i] or (is_straight and way in ways[:i]):
                 behind = None
             elif plane:
                 behind = self._add(i, count, behind)
@@ -248,6 +254,36 @@ class _Cable:
         self._wind(at, back, other.beside)
         self._joint(f"{name} end", "W", far, hub, GROUND)
 
+    def _add_free(self, i: int) -> None:
+        """The telescopes from a free pulley to the points before and after it: the first turns
+        about the centre as a ball does, the second against it in its plane."""
+        place = self.places[i]
+        at = place.centre.vector
+        link, arms = place.centre.link, []
+        for k, mount, end in ((i, place.reversed, i - 1), (i + 1, place, i + 1)):
+            name, near, other = f"{self.name}.{k}", f"{self.name}.{k} near", self.places[end]
+            is_first = end < i
+            frame = upright(at) if is_first else _about(place.axis, at)
+            turn = self._joint(f"{name} turn", "S" if is_first else "R", link, near, frame)
+            if not is_first:
+                self._wind(i, turn, -place.beside)
+            length, along = stretch(mount, other)
+            far = self._slide(k - 1, near, mount, length, along, 1.0)
+            self._joint(f"{name} end", "S", far, other.centre.link, upright(other.centre.vector))
+            arms.append((subtract(other.centre.vector, at), along))
+            link = near
+        out = unit(arms[0][0])
+        beside = cross(place.axis, out)
+        (first, by_first), (second, by_second) = (
+            ((dot(arm, out), dot(arm, beside)), (dot(along, out), dot(along, beside)))
+            for arm, along in arms
+        )
+        slides = [Term(self.joints[f"{self.name}.{k} slide"], "s", 1.0) for k in (i, i + 1)]
+        turned = Term(self.joints[f"{self.name}.{i + 1} turn"], "theta", 1.0)
+        words = "has behind a free pulley a point to which it leads"
+        ends = Arm(first, by_first, slides[0]), Arm(second, by_second, slides[1])
+        self.extents.append(Swing(words, f"at {self.names[i]}", second[1], 0.0, *ends, turned))
+
     def _slide(
         self, i: int, near: str, one: Place, length: float, along: Vector, count: float
     ) -> str:
@@ -278,8 +314,12 @@ class _Cable:
         slide, turn = (self.joints[f"{self.name}.{i + 1} {word}"] for word in ("slide", "turn"))
         words = "has behind its line the point to which a pulley swivels"
         arm, way = ((dot(each, out), dot(each, beside)) for each in (apart, along))
-        terms = Term(slide, "s", 1.0), Term(turn, "theta", 1.0)
-        self.extents.append(Swing(words, self._between(i), one.radius + arm[0], arm, way, *terms))
+        end = Arm(arm, way, Term(slide, "s", 1.0))
+        # against its line, run down
+        line = Arm((0.0, -1.0), (0.0, 0.0), None)
+        turned = Term(turn, "theta", 1.0)
+        drawn = one.radius + arm[0]
+        self.extents.append(Swing(words, self._between(i), drawn, one.radius, line, end, turned))
 
     def _stray(
         self,

@@ -66,7 +66,7 @@ __getattr__, __dir__ = lazy_names(
         "quantities": "ACTUATION BEARING_KINDS REACTION_LEVEL SELF_LOCKING TIME_OF_ROW "
         "bearing_load coordinate_quantities effort_quantity friction_states read_for "
         "response_quantities strands_of",
-        "relation": "Extent Fleet Follower Mesh Relation Swing Tension Term",
+        "relation": "Arm Extent Fleet Follower Mesh Relation Swing Tension Term",
         "response": "AnyBalance CrossingEnd Cycle DeadCentreEnd Flywheel Harmonics LoadWork "
         "ResponseProblem SlopeEnd StartValue Stop TurnsEnd",
         "track": "Track",

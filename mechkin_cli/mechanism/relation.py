@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import Joint
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
@@ -75,32 +77,41 @@ class Extent(NamedTuple):
         return float(self.drawn) + sum(read(term) for term in self.terms)
 
 
-class Swing(NamedTuple):
-    """How far the point to which a pulley swivels is from the line about which it does (m), as
-    `drawn`: on the side of the pulley, else the pulley would swing round, which `words` say, at
-    `place`.
+class Arm(NamedTuple):
+    """From a pulley's centre to the end of a stretch in its plane: two components (m), as drawn,
+    and the direction in which a `slide` moves it, if one does."""
 
-    From the centre the point lies by `arm` away from the line and beside that, in the pulley's
-    plane. Its `slide` moves it in the direction `along`, then the `turn` of the stretch turns it.
-    """
+    drawn: tuple[float, float]
+    along: tuple[float, float]
+    slide: Term | None
+
+    def value(self, read: Callable[[Term], Floats]) -> list[Floats | float]:
+        """Its components at the states at which `read` finds the terms (states,)."""
+        by = 0.0 if self.slide is None else read(self.slide)
+        return [float(a) + by * float(b) for a, b in zip(self.drawn, self.along, strict=True)]
+
+
+class Swing(NamedTuple):
+    """How far the `end` to which a pulley turns is on its right side (m), as `drawn`: to the left
+    of another arm, its `base`, beyond the centre by an `offset`; else the pulley would swing round,
+    which `words` say, at `place`. The end's arm turns in the pulley's plane by `turn`."""
 
     words: str
     place: str
     drawn: float
-    arm: tuple[float, float]
-    along: tuple[float, float]
-    slide: Term
+    offset: float
+    base: Arm
+    end: Arm
     turn: Term
     most: None = None
 
     def value(self, read: Callable[[Term], Floats]) -> Floats:
         """At the states at which `read` finds the terms (states,)."""
-        slide, turn = read(self.slide), read(self.turn)
-        out, beside = (
-            float(a) + slide * float(b) for a, b in zip(self.arm, self.along, strict=True)
-        )
-        found: Floats = float(self.drawn - self.arm[0]) + out * cos(turn) - beside * sin(turn)
-        return found
+        turn = read(self.turn)
+        (x, y), (out, beside) = self.base.value(read), self.end.value(read)
+        across = out * cos(turn) - beside * sin(turn), out * sin(turn) + beside * cos(turn)
+        aside: Floats = (x * across[1] - y * across[0]) / np.sqrt(x * x + y * y)
+        return float(self.offset) + aside
 
 
 class Fleet(NamedTuple):

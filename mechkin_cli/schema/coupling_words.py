@@ -202,10 +202,11 @@ PATH_KEYS: Final = {
         "the axis of a pulley in space is axis: [0, 1, 0], or that of the joint that it names",
     ),
     **dict.fromkeys(
-        ("caster", "swivels", "swivelling", "swiveling", "pan", "free"),
+        ("caster", "swivels", "swivelling", "swiveling", "pan"),
         "a pulley that turns to where its cable leads has the line about which it does: swivel: "
-        "[0, 0, 1]",
+        "[0, 0, 1]; one that hangs on its centre is free: true",
     ),
+    **dict.fromkeys(("ball", "hangs", "hook", "hung"), "write free: true"),
     **dict.fromkeys(("joint", "centre", "center"), "write pulley: A, its R joint or its centre"),
     **dict.fromkeys(("r", "diameter", "d"), "radius: 50 mm reaches to the middle of the cable"),
 }

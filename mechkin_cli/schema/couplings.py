@@ -406,24 +406,31 @@ class PathPart(Section):
     """In space, along the line about which a pulley swivels to where its cable leads. On its other
     side the cable runs along this line, which touches the pulley at the named point; left out, it
     does not swivel."""
+    free: Truth = False
+    """In space, whether a pulley hangs on its centre, a named point, as by a ball, so that it turns
+    its plane to the points before and after it; left out, no."""
 
     def check(self) -> None:
         """One place, with what it needs."""
         if sum(key is not None for key in (self.point, self.pulley, self.drum)) != 1:
             text = "a place of a cable is a point, a pulley or a drum"
             raise refuse("two-choices", text, "give one of point, pulley and drum")
-        if self.swivel is not None and self.pulley is None:
+        turns = "swivel" if self.swivel is not None else "free" if self.free else None
+        if turns is not None and self.pulley is None:
             text = "points and drums do not swivel"
-            raise refuse("two-choices", text, "write pulley, or leave out swivel", "swivel")
+            raise refuse("two-choices", text, f"write pulley, or leave out {turns}", turns)
+        if turns == "swivel" and self.free:
+            text = "a pulley turns about a line or is free"
+            raise refuse("two-choices", text, "leave out swivel or free", "free")
         for key in ("side", "axis"):
-            if self.swivel is not None and getattr(self, key) is not None:
+            if turns is not None and getattr(self, key) is not None:
                 text = f"a pulley that swivels has no {key}: it turns to where its cable leads"
                 raise refuse("two-choices", text, f"leave out {key}", key)
         for key, value in (("radius", self.radius), ("side", self.side)):
             if self.point is not None and value is not None:
                 text = f"a point has no {key}"
                 raise refuse("two-choices", text, "write pulley instead of point", key)
-            if self.point is None and value is None and (self.swivel is None or key == "radius"):
+            if self.point is None and value is None and (turns is None or key == "radius"):
                 text = f"a pulley needs its {key}"
                 raise refuse("missing-key", text, "add radius: 50 mm, side: left")
         if self.point is not None and self.axis is not None:

@@ -324,6 +324,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("CableCoupling", "path"): ["P", {"pulley": "A", "radius": "50 mm", "side": "left"}, "Q"],
     ("PathPart", "axis"): [0, 1, 0],
     ("PathPart", "drum"): "D",
+    ("PathPart", "free"): True,
     ("PathPart", "point"): "P",
     ("PathPart", "pulley"): "A",
     ("PathPart", "radius"): "50 mm",

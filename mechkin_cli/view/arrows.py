@@ -167,9 +167,12 @@ def _along_joint(
 
 def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
     result = analysis.result
-    loads = result.problem.mechanism.loads
+    mechanism = result.problem.mechanism
+    loads = mechanism.loads
     if not loads:
         return
+    pulling = (relation for relation in mechanism.couplings.values() if relation.pulls)
+    carriers = {relation.mesh.carrier for relation in pulling if relation.mesh is not None}
     poses = link_poses(result, links)
     dimensions = {KINDS[0]: FORCE, KINDS[1]: MOMENT}
 
@@ -185,7 +188,7 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
             kind = KINDS[0] if load.kind == "force" else KINDS[1]
             place = Attached(load.link, load.point)
             if load.kind == "torque":
-                link = result.problem.mechanism.links.get(load.link)
+                link = mechanism.links.get(load.link)
                 place = Attached(load.link, link.center_of_mass if link else load.point)
             yield f"{load.kind} on {load.link}", kind, place, own(vector, kind)
         elif isinstance(load, JointLoad):
@@ -204,8 +207,12 @@ def _loads(analysis: Readable, links: Sequence[str]) -> Iterator[Arrow]:
             pull = load.preload + load.stiffness * (length - load.free)
             with np.errstate(invalid="ignore", divide="ignore"):
                 force = own(apart * (pull / length)[:, None], KINDS[0])
+            is_pull = load in mechanism.pretensions
+            word = "pretension" if is_pull else "spring"
             for end, vector in zip(load.between, (force, -force), strict=True):
-                yield f"spring on {end.link}", KINDS[0], end, vector
+                # what pulls of one belt do to its carrier is together nothing
+                if not (is_pull and end.link in carriers):
+                    yield f"{word} on {end.link}", KINDS[0], end, vector
 
 
 def _amount(analysis: Readable, amount: Amount) -> Floats:

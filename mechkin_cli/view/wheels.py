@@ -127,10 +127,13 @@ def cable_pulleys(
 ) -> tuple[Floats, Floats]:
     """Centres (n, 3) and axes of the pulleys at a cable's places (m), and the places of what is
     none. One that swivels turns about its line to the place after it, or before it where the cable
-    leaves along the line (`DrawnCable`)."""
+    leaves along the line; a free one to both (`DrawnCable`)."""
     centres, turned = np.array(places), np.array(axes)
     for k, way in enumerate(swivels):
-        if way:
+        if way == 2:
+            normal = np.cross(places[k - 1] - places[k], places[k + 1] - places[k])
+            turned[k] = normal / np.linalg.norm(normal)
+        elif way:
             apart = places[k + way] - places[k]
             out = apart - (apart @ axes[k]) * axes[k]
             out = out / np.linalg.norm(out)

@@ -283,6 +283,84 @@ def test_every_quantity_can_be_asked_for() -> None:
         assert set(result["row.status"]) == {"ok"}
 
 
+ROPEWAY = """
+format: 1
+units: {length: m, angle: deg, mass: kg, force: N}
+links: {beam: {}, cart: {}, car: {mass: 3, center_of_mass: [1.5, 0.2, -1]}, mast: {}}
+joints:
+  X: {type: P, links: [ground, beam], point: [0, 0, 0], axis: [1, 0, 0]}
+  Y: {type: P, links: [beam, cart], point: [0, 0, 0], axis: [0, 1, 0]}
+  Z: {type: P, links: [cart, car], point: [0, 0, 0], axis: [0, 0, 1]}
+  M: {type: P, links: [ground, mast], point: [4, 1, 0.5], axis: [0, 1, 0]}
+points:
+  c: {link: car, at: [1.5, 0.2, -1]}
+  a: {link: ground, at: [0, 0, 0]}
+  b: {link: mast, at: [4, 1, 0.5]}
+couplings: {K: {type: cable, path: [a, {pulley: c, radius: 0.2, free: true}, b]}}
+motion:
+  inputs:
+    X.s: {from: -0.5, to: 1, count: 4, rate: 0.8 m/s, acceleration: -0.5 m/s^2}
+    Y.s: {with: X.s/2}
+    M.s: {with: X.s/5}
+loads: [{type: gravity, g: [0, 0, -10 m/s^2]}]
+"""
+
+
+def under_pulley(x: mpmath.mpf, y: mpmath.mpf, z: mpmath.mpf, m: mpmath.mpf) -> mpmath.mpf:
+    """Both tangents, and the arc beneath, in the plane of the centre and both ends."""
+    radius, centre = mpmath.mpf("0.2"), [mpmath.mpf("1.5") + x, mpmath.mpf("0.2") + y, z - 1]
+    ends = [[0, 0, 0], [4, 1 + m, mpmath.mpf("0.5")]]
+    arms = [[e - c for e, c in zip(end, centre, strict=True)] for end in ends]
+    one, other = (mpmath.sqrt(sum(c * c for c in arm)) for arm in arms)
+    between = mpmath.acos(sum(a * b for a, b in zip(*arms, strict=True)) / (one * other))
+    touch = mpmath.acos(radius / one) + mpmath.acos(radius / other)
+    straight = sum(mpmath.sqrt(d * d - radius * radius) for d in (one, other))
+    return straight + radius * (2 * mpmath.pi - between - touch)
+
+
+def test_a_free_pulley_runs_on_its_cable() -> None:
+    """A ropeway's car between a mast that stands and one that moves: its height by the length, the
+    pull and the efforts of the slides by virtual work."""
+    model = mk.loads(ROPEWAY)
+    result = model.analyze()
+    assert set(result["row.status"]) == {"ok"}
+    with mpmath.workdps(40):
+        drawn = under_pulley(0, 0, 0, 0)
+        for row in range(4):
+            x, y, z, m = at = [float(result[f"{n}.s"][row]) for n in "XYZM"]
+            place = mpmath.findroot(lambda h, x=x, y=y, m=m: under_pulley(x, y, h, m) - drawn, z)
+            assert abs(z - place) < 1e-13
+            slopes = [
+                mpmath.diff(under_pulley, tuple(at), tuple(int(k == n) for n in range(4)))
+                for k in range(4)
+            ]
+            rates = [float(result[f"{n}.s_dot"][row]) for n in "XYZM"]
+            assert abs(sum(s * r for s, r in zip(slopes, rates, strict=True))) < 1e-13
+            speeding = [float(result[f"{n}.s_ddot"][row]) for n in "XYZ"]
+            pull = -3.0 * (10.0 + speeding[2]) / slopes[2]
+            assert abs(result["K.tension"][row] / pull - 1) < 1e-11
+            for name, slope, mass, quick in zip(
+                "XYM", (slopes[0], slopes[1], slopes[3]), (3, 3, 0), (*speeding[:2], 0), strict=True
+            ):
+                effort = mass * quick + pull * slope
+                assert abs(result[f"{name}.effort"][row] - effort) < 1e-10
+    assert np.nanmax(result["row.power_error"]) < 1e-12
+    assert set(model.certify().status) == {"proven"}
+
+
+def test_no_strands_of_a_free_pulley_cross() -> None:
+    """Below the line of both ends the car hangs, above it stands; with a loop of the cable round
+    the pulley, whose strands cross, each would have a place more."""
+    deep = mk.loads(ROPEWAY.replace("1.5, 0.2, -1]", "1.5, 0.2, -3]"))
+    modes = deep.modes().modes
+    assert len(modes) == 2
+    with mpmath.workdps(30):
+        drawn = under_pulley(0, 0, -2, 0)
+        for mode in modes:
+            x, y, z, m = (mode.coordinates[f"{n}.s"] for n in "XYZM")
+            assert abs(under_pulley(x, y, z - 2, m) - drawn) < 1e-9
+
+
 LEAVES = """
 format: 1
 units: {length: mm, angle: deg, mass: kg, force: N}
@@ -334,6 +412,13 @@ WRONG = {
         "leaves the plane of a pulley",
     ),
     "two": (f"[b1, {SWIVEL}", f"[b1, {SWIVEL}, {SWIVEL}", "one swivelling pulley to another"),
+    "free": (SWIVEL, SWIVEL.replace("]}", "], free: true}"), "about a line or is free"),
+    "free end": ("[b1, " + SWIVEL, "[{pulley: a1, radius: 0.1, free: true}", "ends at the"),
+    "in line": (
+        f"[b1, {SWIVEL}, p]",
+        "[b1, {pulley: a1, radius: 0.1, free: true}, b1]",
+        "lies in line with",
+    ),
     "point": (SWIVEL, "{point: a1, swivel: [0, 0, 1]}", "points and drums do not swivel"),
 }
 

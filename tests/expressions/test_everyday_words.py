@@ -111,7 +111,7 @@ def test_python_says_the_same(name: str) -> None:
 
 FEATURES = {
     "a cable over points and pulleys is a coupling": ("rope", "cable", "ropes", "tendon", "winch"),
-    "belts and chains over two pulleys are couplings": ("sprocket", "belt", "timing_belt"),
+    "belts and chains over pulleys are couplings": ("sprocket", "belt", "timing_belt"),
     "the wheel's angle is a function of the crank's": ("geneva", "maltese", "geneva_drive"),
     "whose curve: is a line": ("curved_groove", "curved_slot", "guide_curve"),
     "an oil film is a law of friction": ("hydrodynamic", "lubrication", "oil_film"),
@@ -187,7 +187,7 @@ def test_the_curved_slot_that_is_advised_runs() -> None:
 def test_a_chain_is_a_coupling() -> None:
     """In space the key chain: is there, for rows of Denavit and Hartenberg."""
     for text in FILES.values():
-        assert "belts and chains over two pulleys are couplings" in hint(
+        assert "belts and chains over pulleys are couplings" in hint(
             text.replace("D: {type: P", "D: {type: chain")
         )
     assert "a chain over two wheels is a coupling" in hint(f"{PLANE}chain: 3\n")

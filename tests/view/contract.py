@@ -139,7 +139,7 @@ DATA = _object(
             places=_list(VECTOR, minItems=2),
             beside=_list(NUMBER, minItems=2),
             axes=_list(VECTOR, minItems=2),
-            swivels=_list({"enum": [-1, 0, 1]}, minItems=2),
+            swivels=_list({"enum": [-1, 0, 1, 2]}, minItems=2),
         )
     ),
     screws=_list(

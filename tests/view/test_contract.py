@@ -180,3 +180,33 @@ def test_loads_are_arrows_where_they_act() -> None:
         np.testing.assert_allclose(found, values, rtol=1e-6, atol=1e-4, err_msg=name)
     assert arrows["force on arm"]["place"] == [100.0, 0.0, 0.0]
     assert arrows["spring on ground"]["place"] == [0.0, 300.0, 0.0]
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_pretension_is_an_arrow_on_each_pulley(count: int) -> None:
+    """200 N in both strands at equal pulleys: 400 N, or by an angle of 60 degrees 200 sqrt(3) N."""
+    text = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg, mass: kg, force: N}
+links: {a: {}, b: {}, c: {}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [100, 0]}
+  C: {type: R, links: [ground, c], point: [50, 50 mm*sqrt(3)]}
+couplings: {K: {type: belt, joints: JOINTS, pretension: 200}}
+motion: {inputs: {A.theta: {from: 0, to: 40, step: 10}}}
+loads: [{type: torque, joint: B, value: 1}]
+"""
+    if count == 2:
+        text = text.replace("JOINTS", "[A, B], radii: [9, 9]")
+        text = text.replace("inputs: {", "inputs: {C.theta: {with: A.theta}, ")
+    else:
+        text = text.replace("JOINTS", "[A, B, C], radii: [9, 9, 9], tensioner: C")
+    (branch, *_) = data(mk.loads(text), modes=False)["runs"][0]["branches"]
+    arrows = {one["name"]: one for one in branch["arrows"]}
+    for link in "abc"[:count]:
+        found = array(arrows[f"pretension on {link}"]["values"]).reshape(-1, 3)
+        expected = 400.0 if count == 2 else 200.0 * np.sqrt(3.0)
+        np.testing.assert_allclose(np.linalg.norm(found, axis=1), expected, rtol=1e-6)
+    assert not any(word in name for name in arrows for word in ("spring", "pretension on ground"))

@@ -10,11 +10,12 @@ const ALONG = new Vector3(0, 0, 1);
 const [WIRE, PULLEY] = [0.14, 0.5]; // radius of a cable and half the width of a pulley, in joint sizes
 
 /** Centres and axes of the pulleys at a cable's places, as `cable_pulleys` of the small pictures: one that swivels turns to
- * the place after it, or before it where the cable leaves along its line. */
+ * the place after it, or before it where the cable leaves along its line; a free one (2) to both. */
 function pulleys(places, beside, axes, swivels) {
   const [centres, turned] = [[...places], [...axes]];
   swivels.forEach((way, k) => {
-    if (way === 0) return;
+    if (way === 2) turned[k] = places[k - 1].clone().sub(places[k]).cross(places[k + 1].clone().sub(places[k])).normalize();
+    if (way === 0 || way === 2) return;
     const out = squared(places[k + way].clone().sub(places[k]), axes[k]).normalize();
     centres[k] = places[k].clone().addScaledVector(out, Math.abs(beside[k]));
     turned[k] = out.cross(axes[k]);
