@@ -49,7 +49,8 @@ _NAMES = {
 def impact_table(session: Session, run: str, rebounds: Sequence[Rebound]) -> Columns:
     """Columns time, event, the impulse of each limit along its coordinate, and the impulses that
     joints and couplings transmit and drives give, by components in the ground's axes; angular ones
-    about the joint's point. A line for each impact, in the file's units.
+    about the joint's point. A line for each impact, in the file's units; shares that are not unique
+    (redundant constraints, limits that end one freedom) are nan.
 
     Args:
         session: of the free motion.

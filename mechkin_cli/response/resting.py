@@ -276,15 +276,22 @@ class RestingMotion:
 
 
 FAR = 1e3
-"""How far the stop of a limit is put away while its coordinate rests, in sizes."""
+"""How far the stop of a limit is put away while its coordinate rests, in parts of the mechanism's
+size or of a radian: rounding never meets it."""
 
 SAMPLES = 16
 """Parts of a step from row to row, and of each bracket, at which forces are looked at."""
 
 
 def along(tangents: Floats, columns: Sequence[int]) -> Floats:
-    """Combinations of tangents (freedoms, columns) that leave some columns at rest, as many as are
-    independent: each column takes the tangent that moves it most."""
+    """The basis of free rates (freedoms, columns) with some columns at rest: as many rows less, of
+    which each takes from the others what moves its column (elimination, the largest entry as
+    pivot).
+
+    Args:
+        tangents: a basis of free rates (freedoms, columns).
+        columns: to be left at rest, independent of one another.
+    """
     left = [row.copy() for row in tangents]
     for column in columns:
         most = max(range(len(left)), key=lambda k: abs(float(left[k][column])))
@@ -308,7 +315,8 @@ def _widened(moved: MotionRows, width: int) -> MotionRows:
 
 
 def repeated(moved: MotionRows) -> MotionRows:
-    """With the first row twice."""
+    """A motion with its first row twice: as the place where it begins, and as the row of the
+    response at that moment."""
     more = _each(moved, lambda array: np.concatenate([array[..., :1], array], axis=-1))
     return replace(more, report=moved.report._replace(rows=moved.report.rows + 1))
 
@@ -337,8 +345,15 @@ def with_contacts(
     response: ResponseProblem, contacts: Sequence[Contact], times: Floats, other: int | None = None
 ) -> ResponseProblem:
     """The response with the forces of limits among its efforts: laws that have their values at the
-    rows' moments, 0 where nothing rests. With the number of `other` forces, those where there are
-    so many."""
+    rows' moments, 0 where nothing rests.
+
+    Args:
+        response: the file's.
+        contacts: the rests at limits.
+        times: moments of the rows (rows,), s.
+        other: the number of the forces to take from those that are as good; of a contact without
+            so many its own.
+    """
     for limit in dict.fromkeys(one.limit for one in contacts):
         values = np.zeros(times.size)
         for one in contacts:
