@@ -21,7 +21,7 @@ from math import pi
 
 from mechkin_cli import tolerances
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.wheels import Turning, against, on_one_carrier, turning_and_sliding
+from mechkin_cli.building.wheels import Turning, against, turning_and_sliding, wheels_on_one_carrier
 from mechkin_cli.mechanism import (
     Attached,
     Joint,
@@ -51,22 +51,10 @@ def belt_relation(
     joints: Mapping[str, Joint],
 ) -> Relation | None:
     """The relation of two pulleys, or of two chain wheels; None where errors are noted."""
-    pulleys = belt_joints(fields, path, section, joints)
-    if pulleys is None:
-        return None
     radii = belt_radii(fields, path, section)
     pretension = belt_pretension(fields, path, section)
-    pair = on_one_carrier(pulleys[0], pulleys[1], joints)
+    pair = wheels_on_one_carrier(fields, path, section.joints, joints, "pulley")
     if pair is None:
-        one, other = (joint.name for joint in pulleys)
-        fields.error(
-            "no-carrier",
-            (*path, "joints"),
-            f"the pulleys at {one} and {other} turn on no common link, nor on links that a joint "
-            "about the axis of one of them joins",
-            "put both pulleys on one link, or join the links that they turn on by an R joint about "
-            "the axis of one pulley",
-        )
         return None
     _, first, second = pair
     if radii is None or pretension is None:
@@ -88,23 +76,6 @@ def belt_relation(
     return _strands(
         Relation(terms, length=False), pair, radii, distance, crossed, pretension, joints
     )
-
-
-def belt_joints(
-    fields: Fields,
-    path: Path,
-    section: BeltCoupling | ChainCoupling,
-    joints: Mapping[str, Joint],
-) -> list[Joint] | None:
-    """The joints that pulleys turn on; None where errors are noted."""
-    pulleys = [joints[name] for name in section.joints]
-    for i, joint in enumerate(pulleys):
-        if not joint.type.is_bearing:
-            text = f"{joint.name} is of type {joint.letter}: a pulley turns on an R or C joint"
-            hint = "name the joint that it turns on"
-            fields.error("wheel-joint", (*path, "joints", i), text, hint)
-            return None
-    return pulleys
 
 
 def belt_radii(

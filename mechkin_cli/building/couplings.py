@@ -92,7 +92,14 @@ def build_couplings(
     joints: Mapping[str, Joint],
     cables: Mapping[str, Relation],
 ) -> dict[str, Relation]:
-    """The relations of a file's couplings, `cables` among them; errors are noted in `fields`."""
+    """The relations of a file's couplings, by name, with the losses of those that have some.
+
+    Args:
+        fields: where errors are noted; a coupling with one is left out.
+        couplings: the file's sections.
+        joints: those of the file, of which the coupled ones count their turns (`coupled_joints`).
+        cables: the relations of cables, which have links and joints of their own.
+    """
     found: dict[str, Relation | None] = {}
     drawn = not fields.error_count  # else axes may be none
     for name, section in couplings.items():
@@ -123,8 +130,8 @@ def build_couplings(
 
 
 def refuse_tied_friction(fields: Fields, loads: Sequence[object], problem: Problem) -> None:
-    """Notes friction at inputs that are tied: it depends on what transmits the tie, which is not
-    said."""
+    """Notes friction at inputs that are tied (`{with: ..., drive: tie}`): it depends on what
+    transmits the tie, which no file says."""
     for i, load in enumerate(loads):
         if isinstance(load, FrictionAtJoint) and load.joint in problem.tied:
             tie, cure = problem.tied[load.joint]

@@ -38,8 +38,10 @@ SLIDE = "s"
 
 
 def define_cylinders(fields: Fields, file: MechanismFile) -> None:
-    """Puts what is told of cylinders into `fields.definitions`: `C.length`, `C.force`, which pushes
-    the eyes apart, and `C.pressure`, that on the rod's side negative."""
+    """Puts the quantities of cylinders into `fields.definitions`, as expressions of the slide and
+    its effort: `C.length`, `C.force`, positive where it pushes the eyes apart, and `C.pressure`,
+    the force by the area on whose side the oil is: positive on that of the piston, negative on the
+    ring about the rod."""
     for name, section in file.cylinders.items():
         texts = {"length": f"{name}.{SLIDE}", "force": f"{name}.{SLIDE}.effort"}
         if section.bore is not None:
@@ -65,7 +67,8 @@ def build_cylinders(
     cylinders: Mapping[str, Cylinder],
     points: Mapping[str, Attached],
 ) -> tuple[dict[str, RigidLink], dict[str, Joint]]:
-    """Links and joints of all cylinders; errors are noted in `fields`."""
+    """Links and joints of all cylinders, by name, drawn between their named points (m); errors are
+    noted in `fields`, and the names of such cylinders in `fields.refused`."""
     links: dict[str, RigidLink] = {}
     joints: dict[str, Joint] = {}
     for name, section in cylinders.items():

@@ -87,13 +87,14 @@ _ORDERS = range(4)
 
 
 class Over(NamedTuple):
-    """The variable of a law.
+    """What a law runs over: its variable, time or a coordinate.
 
     Attributes:
         dimension: what it measures.
         first: its first value, in the units of the law.
         last: its last value, at which a rise without a duration ends; None where there is none.
-        met: the least and the largest of its values that are met, where they are known.
+        met: the least and the largest value at rows, where they are known: a table has to reach
+            them, and jumps beyond them are not told.
         in_si: whether the law is in SI, else in the file's units.
         name: its name in expressions.
     """
@@ -107,7 +108,7 @@ class Over(NamedTuple):
 
 
 def over_moments(clock: Clock) -> Over:
-    """Over the moments of the rows."""
+    """What a law over time runs over: the moments of the rows, in the file's unit of time."""
     written = clock.time.written
     return Over(TIME, clock.first, clock.last, (float(written[0]), float(written[-1])))
 

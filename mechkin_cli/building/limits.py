@@ -19,21 +19,22 @@ def build_limits(
     joints: Mapping[str, Joint],
     couplings: Mapping[str, Relation],
 ) -> tuple[Limit, ...]:
-    """Where coordinates end, by `limits:`, the strokes of cylinders, the ends of curves and of
-    surfaces and the tables of couplings; errors are noted in `fields`."""
-    every: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
-        name: (("limits", name), written) for name, written in file.limits.items()
+    """Where coordinates end (rad, m): by `limits:`, the strokes of cylinders, the ends of curves
+    and of surfaces and the tables of couplings; of two for one coordinate what both leave. Errors
+    are noted in `fields`."""
+    written: dict[str, tuple[Path, tuple[str, ...] | LimitSection]] = {
+        name: (("limits", name), section) for name, section in file.limits.items()
     }
     for cylinder, section in file.cylinders.items():
         name = f"{cylinder}.{SLIDE}"
         if section.stroke is None or cylinder not in joints:
             continue
-        if name in every:
+        if name in written:
             text = f"the limits of {name} are its stroke"
             fields.key_error("two-choices", ("limits", name), text, "keep one of the two")
             continue
-        every[name] = ("cylinders", cylinder, "stroke"), section.stroke
-    limits = {limit.name: limit for limit in _limits(fields, every, joints)}
+        written[name] = ("cylinders", cylinder, "stroke"), section.stroke
+    limits = {limit.name: limit for limit in _written(fields, written, joints)}
     for limit in (*_of_tracks(fields, file, joints), *_of_tables(fields, couplings)):
         other = limits.get(limit.name, limit)
         ends = max(limit.low, other.low), min(limit.high, other.high)
@@ -61,7 +62,7 @@ def _of_tracks(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint])
 
 
 def _of_tables(fields: Fields, couplings: Mapping[str, Relation]) -> Iterator[Limit]:
-    """The ends of tables that do not repeat themselves."""
+    """The ends of the tables of couplings, but of those that hold for every turn."""
     for name, relation in couplings.items():
         for term in relation.terms:
             if term.law is not None and term.law.curve is not None and term.law.period == 0.0:
@@ -69,12 +70,13 @@ def _of_tables(fields: Fields, couplings: Mapping[str, Relation]) -> Iterator[Li
                 yield Limit(term.joint.name, term.coordinate, curve.first, curve.last, place)
 
 
-def _limits(
+def _written(
     fields: Fields,
-    every: Mapping[str, tuple[Path, tuple[str, ...] | LimitSection]],
+    sections: Mapping[str, tuple[Path, tuple[str, ...] | LimitSection]],
     joints: Mapping[str, Joint],
 ) -> Iterator[Limit]:
-    for name, (path, written) in every.items():
+    """The limits that a file writes as numbers: by coordinate the place and what stands there."""
+    for name, (path, written) in sections.items():
         if not is_coordinate(fields, path, name, joints):
             continue
         joint, _, coordinate = name.rpartition(".")

@@ -64,13 +64,13 @@ def with_losses(
     if isinstance(section, GearCoupling) and section.friction is not None:
         at = (*path, "friction")
         coefficient = _friction(fields, at, section.friction)
-        loss = _flanks(fields, at, relation, wheels, joints)
+        loss = _along_flanks(fields, at, relation, wheels, joints)
     else:
         assert section.efficiency is not None
         at = (*path, "efficiency")
         share = _share(fields, at, section.efficiency)
         coefficient = None if share is None else 2.0 * (1.0 - share) / (1.0 + share)
-        loss = _wheel(carrier, relation, wheels, joints)
+        loss = _about_axis(carrier, relation, wheels, joints)
     if loss is None or coefficient is None:
         return relation
     place = fields.document.place(at)
@@ -118,18 +118,18 @@ def _number(fields: Fields, path: Path, text: str) -> float | None:
     return number if fields.error_count == errors else None
 
 
-def _wheel(
+def _about_axis(
     carrier: str, relation: Relation, wheels: tuple[Turning, ...], joints: Mapping[str, Joint]
 ) -> Loss:
-    """What rubs against the turn of a wheel that turns on the carrier itself."""
+    """A loss of moment: what rubs against the turn of a wheel that turns on the carrier itself."""
     wheel = next(each for each in wheels if len(each.terms) == 1)
     place = carrier, carrier, _link(wheel, joints), wheel.axis.o, wheel.axis.z
     at_first = 1.0 if wheel is wheels[0] else 0.0
-    return Loss(*place, True, _per_turn(relation, wheel), _leading(wheels[0]), at_first)
+    return Loss(*place, True, _moment_of(relation, wheel), _turns_of(wheels[0]), at_first)
 
 
-def _per_turn(relation: Relation, wheel: Turning) -> float:
-    """The moment on a wheel, about its axis, by a unit of the multiplier."""
+def _moment_of(relation: Relation, wheel: Turning) -> float:
+    """The moment on a wheel, about its axis, by a unit of the relation's multiplier."""
     own = wheel.terms[0]
     return next(
         term.factor * own.factor
@@ -138,8 +138,9 @@ def _per_turn(relation: Relation, wheel: Turning) -> float:
     )
 
 
-def _leading(wheel: Turning) -> tuple[tuple[str, int], ...]:
-    """Its coordinates, and whether they count as the first of them does."""
+def _turns_of(wheel: Turning) -> tuple[tuple[str, int], ...]:
+    """The coordinates of a wheel's turn, and whether they count as the first of them does (1) or
+    backwards (-1)."""
     is_forward = wheel.terms[0].factor > 0.0
     return tuple(
         (f"{term.joint.name}.{term.coordinate}", 1 if (term.factor > 0.0) == is_forward else -1)
@@ -147,14 +148,14 @@ def _leading(wheel: Turning) -> tuple[tuple[str, int], ...]:
     )
 
 
-def _flanks(
+def _along_flanks(
     fields: Fields,
     path: Path,
     relation: Relation,
     wheels: tuple[Turning, ...],
     joints: Mapping[str, Joint],
 ) -> Loss | None:
-    """What rubs along the flanks of crossed helical wheels."""
+    """What rubs along the flanks of crossed helical wheels; None where an error is noted."""
     one, other = (wheel.axis for wheel in wheels)
     normal = cross(one.z, other.z)
     apart = subtract(other.o, one.o)
@@ -172,9 +173,9 @@ def _flanks(
     place = mesh.carrier, *mesh.ends(joints), mesh.point, flank
     # how fast the pitch point of each moves along the flank when the first turns by a unit
     speeds = [dot(cross(axis.z, subtract(mesh.point, axis.o)), flank) for axis in (one, other)]
-    speeds[1] = -speeds[1] / _per_turn(relation, wheels[1])
+    speeds[1] = -speeds[1] / _moment_of(relation, wheels[1])
     at_first = plain(speeds[0] / (speeds[0] - speeds[1]))
-    return Loss(*place, False, press, _leading(wheels[0]), at_first)
+    return Loss(*place, False, press, _turns_of(wheels[0]), at_first)
 
 
 def _link(wheel: Turning, joints: Mapping[str, Joint]) -> str:

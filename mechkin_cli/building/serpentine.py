@@ -18,10 +18,10 @@ from collections.abc import Mapping, Sequence
 from math import pi
 
 from mechkin_cli import tolerances
-from mechkin_cli.building.belts import belt_joints, belt_pretension, belt_radii, on_wheel
+from mechkin_cli.building.belts import belt_pretension, belt_radii, on_wheel
 from mechkin_cli.building.cable_places import Place, stretch
 from mechkin_cli.building.fields import Fields, Path
-from mechkin_cli.building.wheels import Turning, against
+from mechkin_cli.building.wheels import Turning, against, wheel_bearings
 from mechkin_cli.mechanism import (
     ZERO,
     Attached,
@@ -141,7 +141,7 @@ def belt_loop(
     joints: Mapping[str, Joint],
 ) -> BeltLoop | None:
     """A belt over more than two pulleys as drawn; None where errors are noted."""
-    pulleys = belt_joints(fields, path, section, joints)
+    pulleys = wheel_bearings(fields, path, section.joints, joints, "pulley")
     if pulleys is None:
         return None
     shared = [

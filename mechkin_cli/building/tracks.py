@@ -65,8 +65,14 @@ def is_carried(section: object) -> bool:
 
 
 def carried_joint(fields: Fields, name: str, section: Any, points: tuple[Vector, Vector]) -> Joint:
-    """The joint, drawn at its point on either link; one that stands still where an error was
-    noted."""
+    """A joint on a curve that is not straight, or on a surface.
+
+    Args:
+        fields: where errors are noted; the joint then stands still at its point.
+        name: of the joint.
+        section: the file's, with a `curve` or a `surface` on the second link.
+        points: of the joint on its first link and on its second, as drawn (m).
+    """
     path: Path = ("joints", name)
     surface, errors = getattr(section, "surface", None), fields.error_count
     if surface is not None:
@@ -105,7 +111,8 @@ TrackEnds = Mapping[tuple[str, str], tuple[Path, float, float]]
 
 
 def track_ends(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint]) -> TrackEnds:
-    """Where curves and surfaces end, by joint and coordinate, with the place in the file."""
+    """Where curves and surfaces end, by joint and coordinate: the place in the file, and the least
+    and the largest parameter (rad, m or a number), of a straight curve the slide (m)."""
     found: dict[tuple[str, str], tuple[Path, float, float]] = {}
     for name, section in file.joints.items():
         if name not in joints:
@@ -129,13 +136,14 @@ def track_ends(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint])
 
 
 def along_line(fields: Fields, path: Path, section: Any) -> Vector:
-    """The direction of a straight curve."""
+    """The direction (unit vector, as drawn) of a straight curve, from its first place to its last;
+    x where an error is noted."""
     ends = line_ends(fields, (*path, "curve"), section.curve)
     return (1.0, 0.0, 0.0) if ends is None else unit(subtract(ends[1], ends[0]))
 
 
 def line_ends(fields: Fields, path: Path, section: Curve) -> tuple[Vector, Vector] | None:
-    """The ends of a straight line; None where an error was noted."""
+    """The ends of a straight line as drawn (m); None where an error was noted."""
     assert section.line is not None
     errors = fields.error_count
     first, last = (
@@ -159,23 +167,23 @@ def _curve(fields: Fields, path: Path, section: Curve, point: Vector) -> Track |
     assert section.at is not None
     assert section.first is not None
     assert section.last is not None
-    ends, dimension = _range(fields, path, ("from", "to"), (section.first, section.last))
-    return _formula(fields, path, section.at, {"u": dimension}, (ends,), (section.closed,))
+    ends, dimension = _parameter_ends(fields, path, ("from", "to"), (section.first, section.last))
+    return _by_expressions(fields, path, section.at, {"u": dimension}, (ends,), (section.closed,))
 
 
-def _round(
+def _center_and_axis(
     fields: Fields, path: Path, section: Curve | Surface, place: Any, key: str
 ) -> tuple[Vector, Vector]:
-    """Centre and axis of what is round."""
+    """The centre (m) and the axis (unit vector) of what is round, as drawn."""
     center = place_at(fields, (*path, key), place)
     axis = _Z if section.axis is None else fields.direction((*path, "axis"), section.axis)
     return center, axis
 
 
-def _across(
+def _radial(
     fields: Fields, path: Path, center: Vector, axis: Vector, point: Vector
 ) -> tuple[Vector, float]:
-    """The direction from an axis to the joint's point, and how far that is."""
+    """The unit vector square to an axis towards the joint's point, and how far off that is (m)."""
     off = subtract(point, center)
     off = subtract(off, scale(dot(off, axis), axis))
     far = norm(off)
@@ -195,27 +203,29 @@ def _radius(fields: Fields, path: Path, text: str | None, drawn: float) -> float
 
 
 def _circle(fields: Fields, path: Path, section: Curve, point: Vector) -> Track:
-    center, axis = _round(fields, path, section, section.center, "center")
-    x, drawn = _across(fields, path, center, axis, point)
+    center, axis = _center_and_axis(fields, path, section, section.center, "center")
+    x, drawn = _radial(fields, path, center, axis, point)
     radius = _radius(fields, path, section.radius, drawn)
-    numbers = _round_numbers(center, x, cross(axis, x), radius)
+    numbers = _circle_numbers(center, x, cross(axis, x), radius)
     return Track(((-pi, pi),), (True,), _on_circle, numbers=numbers)
 
 
-def _round_numbers(center: Vector, x: Vector, y: Vector, radius: float) -> tuple[Any, ...]:
-    """The centre, and the radii across and along."""
+def _circle_numbers(center: Vector, x: Vector, y: Vector, radius: float) -> tuple[Any, ...]:
+    """A circle: its centre, and the vectors from it to the places at 0 and at a quarter turn."""
     return (*center, *scale(radius, x), *scale(radius, y))
 
 
 def _on_circle(*given: Any) -> list[Any]:
+    """The place at the angle u of `_circle_numbers`."""
     center, across, along, (u,) = given[:3], given[3:6], given[6:9], given[9:]
     c, s = cos(u), sin(u)
     return [c * across[k] + s * along[k] + center[k] for k in range(3)]
 
 
 def _on_cylinder(*given: Any) -> list[Any]:
-    *round_numbers, ax, ay, az, u, v = given
-    around = _on_circle(*round_numbers, u)
+    """The place at the angle u of `_circle_numbers`, and v along an axis."""
+    *circle, ax, ay, az, u, v = given
+    around = _on_circle(*circle, u)
     return [at + v * a for at, a in zip(around, (ax, ay, az), strict=True)]
 
 
@@ -261,7 +271,7 @@ def _arc(fields: Fields, path: Path, section: Sequence[Any]) -> Track | None:
     last = subtract(c, center)
     end = float(functions.atan2(as_recorded(dot(last, y)), as_recorded(dot(last, x))))
     turn = end if end > 0.0 else end + 2.0 * pi
-    numbers = _round_numbers(center, x, y, radius)
+    numbers = _circle_numbers(center, x, y, radius)
     return Track(((0.0, turn),), (False,), _on_circle, numbers=numbers)
 
 
@@ -289,8 +299,8 @@ def _spline(fields: Fields, path: Path, section: Curve) -> Track | None:
 
 
 def _prolonged(curve: Spline, by: float) -> Spline:
-    """A curve that goes straight on beyond its ends, so that what is solved for beyond them is
-    found there and said to be."""
+    """A curve that goes straight on beyond its ends, by a length (m): a place beyond an end is
+    found, and told to be beyond its limit, where the spline's last cubic would turn away."""
     (y, b, *_), (y_end, b_end, *_) = curve.coefficients[:, 0], curve.coefficients[:, -1]
     first, last = curve.first, curve.last
     before = [y - b * by, b, 0.0, 0.0]
@@ -300,7 +310,7 @@ def _prolonged(curve: Spline, by: float) -> Spline:
     return Spline(of_numbers(x), np.array(pieces).T.copy())
 
 
-def _range(
+def _parameter_ends(
     fields: Fields, path: Path, keys: Sequence[str | int], texts: Sequence[str]
 ) -> tuple[tuple[float, float], Dimension]:
     """Begin and end of a parameter in SI, and what it is; a bare zero is of any dimension."""
@@ -368,7 +378,7 @@ class _Formula:
         return [value - off for value, off in zip(values, self.origin, strict=True)]
 
 
-def _formula(
+def _by_expressions(
     fields: Fields,
     path: Path,
     texts: Sequence[str],
@@ -421,23 +431,23 @@ def _surface(fields: Fields, path: Path, section: Surface, point: Vector) -> Tra
         assert section.u is not None
         assert section.v is not None
         ranges = [
-            _range(fields, (*path, key), (0, 1), texts)
+            _parameter_ends(fields, (*path, key), (0, 1), texts)
             for key, texts in (("u", section.u), ("v", section.v))
         ]
         (u, of_u), (v, of_v) = ranges
         dimensions = {"u": of_u, "v": of_v}
-        return _formula(fields, path, section.at, dimensions, (u, v), (False, False))
+        return _by_expressions(fields, path, section.at, dimensions, (u, v), (False, False))
     if section.sphere is not None:
         return _sphere(fields, path, section, point)
     key = "cylinder" if section.cylinder is not None else "torus"
-    center, axis = _round(fields, path, section, getattr(section, key), key)
-    x, drawn = _across(fields, path, center, axis, point)
+    center, axis = _center_and_axis(fields, path, section, getattr(section, key), key)
+    x, drawn = _radial(fields, path, center, axis, point)
     y = cross(axis, x)
     radius = _radius(fields, path, section.radius, drawn)
     if section.cylinder is not None:
         # along its axis it has no end; searches start about as far off as the drawing is
         reach = 10.0 * as_recorded(radius + abs(dot(subtract(point, center), axis)))
-        numbers = (*_round_numbers(center, x, y, radius), *axis)
+        numbers = (*_circle_numbers(center, x, y, radius), *axis)
         ends = ((-pi, pi), (-reach, reach))
         return Track(ends, (True, False), _on_cylinder, endless=("v",), numbers=numbers)
     assert section.tube is not None
@@ -460,7 +470,7 @@ def _sphere(fields: Fields, path: Path, section: Surface, point: Vector) -> Trac
         axis = perpendicular(unit(off)) if norm(off) > 0.0 else _Z
     else:
         axis = fields.direction((*path, "axis"), section.axis)
-    x, _ = _across(fields, path, center, axis, point)
+    x, _ = _radial(fields, path, center, axis, point)
     y = cross(axis, x)
 
     # beyond a pole it goes on along the other side

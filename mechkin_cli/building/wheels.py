@@ -65,25 +65,9 @@ def gear_relation(
     fields: Fields, path: Path, section: GearCoupling, joints: Mapping[str, Joint]
 ) -> Relation | None:
     """The relation of two wheels; None where errors are noted in `fields`."""
-    wheels = [joints[name] for name in section.joints]
-    for i, joint in enumerate(wheels):
-        if not joint.type.is_bearing:
-            text = f"{joint.name} is of type {joint.letter}: a wheel turns on an R or C joint"
-            hint = "name the joint that it turns on"
-            fields.error("wheel-joint", (*path, "joints", i), text, hint)
-            return None
     numbers = _ratio(fields, path, section)
-    pair = on_one_carrier(wheels[0], wheels[1], joints)
+    pair = wheels_on_one_carrier(fields, path, section.joints, joints, "wheel")
     if pair is None:
-        one, other = (joint.name for joint in wheels)
-        fields.error(
-            "no-carrier",
-            (*path, "joints"),
-            f"the wheels at {one} and {other} turn on no common link, nor on links that a joint "
-            "about the axis of one of them joins",
-            "put both wheels on one link, or join the links that they turn on by an R joint about "
-            "the axis of one wheel",
-        )
         return None
     carrier, first, second = pair
     teeth = _teeth(fields, path, section)
@@ -105,7 +89,7 @@ def gear_relation(
     if is_ring:
         mesh = mesh._replace(apart=scale(-1.0, mesh.apart))
     # along the axis a wheel gives way by its helix
-    by = teeth.lead / radius
+    by = teeth.helix_tangent / radius
     slides = (
         *(t._replace(factor=-by * t.factor) for t in first.slides),
         *(t._replace(factor=(by if same else -by) * t.factor) for t in second.slides),
@@ -114,12 +98,12 @@ def gear_relation(
 
 
 class _Teeth(NamedTuple):
-    """Tangents of the pressure angle in the section square to the axis, and of the helix angle;
-    `cosine` of that."""
+    """Tangents of the pressure angle in the section square to the axis, and of the helix angle,
+    with the cosine of the latter."""
 
-    pressure: float
-    lead: float
-    cosine: float
+    pressure_tangent: float
+    helix_tangent: float
+    helix_cosine: float
 
 
 def _teeth(fields: Fields, path: Path, section: GearCoupling | RackCoupling) -> _Teeth | None:
@@ -184,21 +168,25 @@ def _pitch_circles(
             return None
     elif section.module is not None:
         module = fields.number((*path, "module"), section.module, LENGTH)
-        wanted = module * total / (2.0 * teeth.cosine)
-    if wanted is not None and abs(distance - wanted) > tolerances.PARALLEL * distance:
-        measured, limit = (fields.units.text(float(x), LENGTH) for x in (distance, wanted))
-        fields.error(
-            "centre-distance",
-            (*path, "radii" if section.radii is not None else "module"),
-            "the wheels do not mesh where they are drawn",
-            "draw the axes at the sum of the pitch radii, of a ring and its pinion at the "
-            "difference",
-            measured=f"axes {measured} apart, by the wheels {limit}",
-        )
+        wanted = module * total / (2.0 * teeth.helix_cosine)
+    key = "module" if section.radii is None else "radii"
+    hint = "draw the axes at the sum of the pitch radii, of a ring and its pinion at the difference"
+    if wanted is not None and not _fits(fields, (*path, key), distance, wanted, hint):
         return None
     # a ring and its pinion have their pitch point beyond the pinion's axis, seen from the ring's
     beyond = -1.0 if section.internal and not is_ring else 1.0
     return numbers[0] * distance / total, scale(beyond / distance, across), is_ring
+
+
+def _fits(fields: Fields, path: Path, distance: float, wanted: float, hint: str) -> bool:
+    """Whether axes are drawn as far apart (m) as their wheels need; else an error is noted."""
+    if abs(distance - wanted) <= tolerances.PARALLEL * distance:
+        return True
+    drawn, needed = (fields.units.text(float(x), LENGTH) for x in (distance, wanted))
+    measured = f"axes {drawn} apart, by the wheels {needed}"
+    text = "the wheels do not mesh where they are drawn"
+    fields.error("centre-distance", path, text, hint, measured=measured)
+    return False
 
 
 def _oblique(
@@ -279,7 +267,7 @@ def _bevel(
     """Teeth of pitch cones with one apex, which lie on the side of their joints' points."""
     first, second = wheels
     apex, _, radius = place
-    if teeth.lead != 0.0 and not section.ideal:
+    if teeth.helix_tangent != 0.0 and not section.ideal:
         text = "these axes meet: forces of spiral teeth are not computed"
         fields.error(
             "spiral-bevel", (*path, "helix"), text, "leave out helix, or write ideal: true"
@@ -301,7 +289,7 @@ def _bevel(
     point = add(apex, scale(radius / sine, line))
     along = scale(-1.0 / radius, cross(first.axis.z, outward))
     push = add(scale(-sine, one), scale(cosine, outward))
-    apart = scale(teeth.pressure / radius, push)
+    apart = scale(teeth.pressure_tangent / radius, push)
     return Mesh("", point, along, apart, (*first.way, *second.back))
 
 
@@ -325,15 +313,8 @@ def _crossed(
     distance = norm(gap)
     if section.radii is not None:
         total = radius + fields.number((*path, "radii", 1), section.radii[1], LENGTH)
-        if abs(total - distance) > tolerances.PARALLEL * distance:
-            measured, limit = (fields.units.text(float(x), LENGTH) for x in (distance, total))
-            fields.error(
-                "centre-distance",
-                (*path, "radii"),
-                "the wheels do not mesh where they are drawn",
-                "draw the axes at the sum of the pitch radii",
-                measured=f"axes {measured} apart, by the wheels {limit}",
-            )
+        hint = "draw the axes at the sum of the pitch radii"
+        if not _fits(fields, (*path, "radii"), distance, total, hint):
             return None
     else:
         radius = 0.5 * distance  # which way the second wheel turns does not depend on it
@@ -354,9 +335,9 @@ def _mesh(
     that, and away from it."""
     z = first.axis.z
     around = cross(z, outward)
-    along = add(scale(-1.0, around), scale(teeth.lead, z))
+    along = add(scale(-1.0, around), scale(teeth.helix_tangent, z))
     point = add(first.axis.o, scale(radius, outward))
-    forces = scale(1.0 / radius, along), scale(teeth.pressure / radius, outward)
+    forces = scale(1.0 / radius, along), scale(teeth.pressure_tangent / radius, outward)
     return Mesh(carrier, point, *forces, way)
 
 
@@ -375,6 +356,42 @@ def _ratio(fields: Fields, path: Path, section: GearCoupling) -> tuple[float, fl
                 hint = "give positive numbers; internal: true is for a ring with its teeth inside"
                 fields.error("no-wheel", (*path, key, i), text, hint, limit="more than 0")
     return (one, other) if fields.error_count == errors else None
+
+
+def wheel_bearings(
+    fields: Fields, path: Path, names: tuple[str, ...], joints: Mapping[str, Joint], word: str
+) -> list[Joint] | None:
+    """The joints that wheels turn on, which a coupling names; None where errors are noted."""
+    for i, name in enumerate(names):
+        joint = joints[name]
+        if not joint.type.is_bearing:
+            text = f"{joint.name} is of type {joint.letter}: a {word} turns on an R or C joint"
+            hint = "name the joint that it turns on"
+            fields.error("wheel-joint", (*path, "joints", i), text, hint)
+            return None
+    return [joints[name] for name in names]
+
+
+def wheels_on_one_carrier(
+    fields: Fields, path: Path, names: tuple[str, ...], joints: Mapping[str, Joint], word: str
+) -> tuple[str, Turning, Turning] | None:
+    """As `on_one_carrier`, of the joints that a coupling names; None where errors are noted. `word`
+    says what turns there: wheel or pulley."""
+    bearings = wheel_bearings(fields, path, names, joints, word)
+    if bearings is None:
+        return None
+    one, other = bearings
+    pair = on_one_carrier(one, other, joints)
+    if pair is None:
+        fields.error(
+            "no-carrier",
+            (*path, "joints"),
+            f"the {word}s at {one.name} and {other.name} turn on no common link, nor on links that "
+            "a joint about the axis of one of them joins",
+            f"put both {word}s on one link, or join the links that they turn on by an R joint "
+            f"about the axis of one {word}",
+        )
+    return pair
 
 
 def on_one_carrier(
@@ -516,6 +533,6 @@ def rack_relation(
         return None
     way = (*wheel.way, (rack.name, 1 if rack.first == carrier else -1))
     mesh = _mesh(carrier, wheel, way, radius, outward, teeth)
-    by = teeth.lead / radius
+    by = teeth.helix_tangent / radius
     slides = tuple(t._replace(factor=-by * t.factor) for t in wheel.slides if by != 0.0)
     return Relation((*terms, *slides), length=False, mesh=mesh)

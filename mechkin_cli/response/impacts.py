@@ -9,7 +9,9 @@ the loops ask for; their friction takes none.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from math import isfinite, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,10 +51,12 @@ class _Touch(NamedTuple):
 
 class Resting(NamedTuple):
     """Stops, by their numbers, of limits at which coordinates do not come off again: those that an
-    impact has to `settle` first, and those that then are `held`."""
+    impact has to `settle` first, and those that then are `held`; others `beside` them end the same
+    freedoms, and may stand for one that is held."""
 
     settles: list[int]
     held: list[int]
+    beside: dict[int, int]
 
 
 def touched_limit(response: ResponseProblem, moved: MotionRows) -> int | None:
@@ -151,7 +155,10 @@ class ImpactAt:
         What settles may be on its way back: one that another throws off by less than what is still
         at its limit.
         """
-        if not self.is_moved:
+        if not self.is_moved or any(
+            touch.limit.restitution is None and rate > still
+            for touch, rate, still in zip(self.touches, self.outward, self._still, strict=True)
+        ):
             return None
         right = [
             rate + (bounce * rate if rate > 0.0 else 0.0)
@@ -159,9 +166,9 @@ class ImpactAt:
         ]
         always = [k for k, touch in enumerate(self.touches) if touch.stop in settling]
         solved = complementary(self.matrix, self.outward, right, always)
-        if solved is None:
+        if solved is None or (solved.others and self.session.problem.mechanism.frictions):
             return None
-        numbers, pushes = solved
+        numbers, pushes, _ = solved
         if not numbers:
             numbers, pushes = [0], [0.0]  # it stands there, and may rest
         after = self.before.copy()
@@ -174,29 +181,33 @@ class ImpactAt:
             lost += 0.5 * push * (self.outward[number] + float(outward[number, 0]))
         work = float(energy[0]) - self.energy + lost
         unit = self.session.layout.length * self.session.layout.length
+        met = dict(zip(numbers, pushes, strict=True)) | dict.fromkeys(solved.shared, nan)
         impact = Impact(
             self.time,
-            tuple(self.touches[number].limit for number in numbers),
-            tuple(self.outward[number] for number in numbers),
-            tuple(pushes),
+            tuple(self.touches[number].limit for number in met),
+            tuple(self.outward[number] for number in met),
+            tuple(met.values()),
         )
-        if any(self.touches[number].limit.restitution is None for number in numbers):
-            return None
         rows = self._rows(np.zeros((self.charts, 1)), (after - self.before)[:, None])
         none = None if rows.rates is None else np.zeros(rows.rates.shape)
-        given: dict[tuple[str, str], float] = {}
-        for number, push in zip(numbers, pushes, strict=True):
-            touch = self.touches[number]
-            at = touch.limit.joint, touch.limit.coordinate
-            given[at] = given.get(at, 0.0) - touch.side * push
         return Rebound(
             impact,
             self._begun(columns[:, 0]),
             (work / unit, lost / unit),
             rows._replace(rates=none, accelerations=none),
-            given,
+            self._given(dict(zip(numbers, pushes, strict=True))),
             self.words,
+            [self._given(other) for other in solved.others],
         )
+
+    def _given(self, pushes: Mapping[int, float]) -> dict[tuple[str, str], float]:
+        """The impulses of touches by their numbers, along coordinates (joint, coordinate)."""
+        given: dict[tuple[str, str], float] = {}
+        for number, push in pushes.items():
+            touch = self.touches[number]
+            at = touch.limit.joint, touch.limit.coordinate
+            given[at] = given.get(at, 0.0) - touch.side * push
+        return given
 
     @property
     def time(self) -> float:
@@ -213,8 +224,8 @@ class ImpactAt:
         )
 
     def resting(self, chart: Chart, left: Sequence[int]) -> Resting | None:
-        """Which coordinates stay at their limits behind the impact; None where the forces of
-        limits are not determined, as those of two that end one freedom.
+        """Which coordinates stay at their limits behind the impact; None where no forces of limits
+        are found, or friction goes by some that are not unique.
 
         Those that are still there do where the limits' forces push: the outward accelerations
         without them, less what they take, are at most zero, and zero where one pushes. One that
@@ -236,20 +247,23 @@ class ImpactAt:
         matrix = [[self.matrix[i][j] for j in still] for i in still]
         own = [pushed[k] for k in still]
         solved = complementary(matrix, own, own)
-        if solved is None:
+        if solved is None or (solved.others and self.session.problem.mechanism.frictions):
             return None
-        held = [still[number] for number in solved[0]]
+        held = [still[number] for number in solved.numbers]
+        beside = {still[k]: still[own] for k, own in solved.replaced.items()}
         settles = []
         for k in able:
             row = [self.matrix[k][j] for j in held]
-            coming = pushed[k] - _dot(row, solved[1])
+            coming = pushed[k] - _dot(row, solved.sizes)
             if k not in still and coming > 0.0:
                 off = 2.0 * coming * tolerances.AT_LIMIT * self._units[k]
                 if rates[k] * rates[k] <= off:
                     settles.append(self.touches[k].stop)
         if settles:
-            settles += [self.touches[k].stop for k in held]
-        return Resting(settles, [self.touches[k].stop for k in held])
+            settles += [self.touches[k].stop for k in (*held, *beside)]
+        stops = [touch.stop for touch in self.touches]
+        stand_ins = {stops[k]: stops[own] for k, own in beside.items()}
+        return Resting(settles, [stops[k] for k in held], stand_ins)
 
     def limits(self, stops: Sequence[int]) -> tuple[Limit, ...]:
         """Those of some stops."""
@@ -343,36 +357,135 @@ class ImpactAt:
         return found[: len(names)], found[len(names) :]
 
 
+class Pushes(NamedTuple):
+    """Which limits push, by their numbers, and how; and each other one that might push in their
+    place, since it ends a freedom that they end, with all pushes that then are as good."""
+
+    numbers: list[int]
+    sizes: list[float]
+    others: list[dict[int, float]]
+
+    @property
+    def shared(self) -> set[int]:
+        """Those whose pushes are not unique."""
+        own = dict(zip(self.numbers, self.sizes, strict=True))
+        return {k for other in self.others for k in other if other[k] != own.get(k)}
+
+    @property
+    def replaced(self) -> dict[int, int]:
+        """Each that might push in place of others, and the one whose push it takes most of."""
+        own = dict(zip(self.numbers, self.sizes, strict=True))
+        return {
+            next(k for k in other if k not in own): max(own, key=lambda k: abs(own[k] - other[k]))
+            for other in self.others
+        }
+
+
 def complementary(
     matrix: Sequence[Sequence[float]],
     outward: Sequence[float],
     right: Sequence[float],
     always: Sequence[int] = (),
-) -> tuple[list[int], list[float]] | None:
+) -> Pushes | None:
     """Which limits push, and how: those that coordinates would go beyond by `outward`, such that
     the `matrix` takes away `right` of it where one pushes, and none is left where none does; None
-    where no choice is found. Some `always` act, whichever way."""
+    where no choice is found. Some `always` act, whichever way.
+
+    Limits that end one freedom together share what it takes, in whatever parts: as many push as are
+    independent.
+    """
     rounding = tolerances.KINK_ROUNDING * max((abs(one) for one in outward), default=0.0)
     active = [k for k, one in enumerate(outward) if one > 0.0 or k in always]
     tried: list[list[int]] = []
     while active not in tried:
         tried.append(active)
-        inner = [[matrix[i][j] for j in active] for i in active]
-        pushes = eliminated(inner, [right[k] for k in active], tolerances.RANK_ROUNDING)
-        if pushes is None:
-            return None
+        sizes = _pushed(matrix, active, [right[k] for k in active])
+        if sizes is None:
+            break
         pulling = [
-            k for k, push in zip(active, pushes, strict=True) if push < 0.0 and k not in always
+            k for k, push in zip(active, sizes, strict=True) if push < 0.0 and k not in always
         ]
         beyond = [
             k
             for k, one in enumerate(outward)
-            if k not in active and one - _dot([matrix[k][j] for j in active], pushes) > rounding
+            if k not in active and one - _dot([matrix[k][j] for j in active], sizes) > rounding
         ]
         if not pulling and not beyond:
-            return active, pushes
+            return Pushes(active, sizes, _others(matrix, right, active, sizes, rounding))
         active = sorted({*active, *beyond}.difference(pulling))
+    if len(outward) > MOST_TOGETHER:
+        return None
+    for count in range(len(outward) + 1):
+        for chosen in map(list, combinations(range(len(outward)), count)):
+            sizes = _pushed(matrix, chosen, [right[k] for k in chosen])
+            if sizes is None or any(
+                push < 0.0 and k not in always for k, push in zip(chosen, sizes, strict=True)
+            ):
+                continue
+            left = [
+                one - _dot([row[j] for j in chosen], sizes)
+                for one, row in zip(right, matrix, strict=True)
+            ]
+            if all(
+                k in chosen or (abs(one) if k in always else one) <= rounding
+                for k, one in enumerate(left)
+            ):
+                return Pushes(chosen, sizes, _others(matrix, right, chosen, sizes, rounding))
     return None
+
+
+MOST_TOGETHER = 10
+"""Limits touched at once of which all sets are tried, where some end one freedom together."""
+
+
+def _pushed(
+    matrix: Sequence[Sequence[float]], active: Sequence[int], right: Sequence[float]
+) -> list[float] | None:
+    """How some limits push that take away all of `right`; None where they are not independent."""
+    own = [matrix[k][k] for k in active]
+    if not all(size > 0.0 for size in own):
+        return None
+    roots = [sqrt(size) for size in own]
+    inner = [[matrix[i][j] for j in active] for i in active]
+    scaled = [
+        [x / (a * b) for x, b in zip(row, roots, strict=True)]
+        for row, a in zip(inner, roots, strict=True)
+    ]
+    if eliminated(scaled, right, tolerances.ONE_FREEDOM) is None:
+        return None
+    return eliminated(inner, right, tolerances.RANK_ROUNDING)
+
+
+def _others(
+    matrix: Sequence[Sequence[float]],
+    right: Sequence[float],
+    active: Sequence[int],
+    sizes: Sequence[float],
+    rounding: float,
+) -> list[dict[int, float]]:
+    """Other pushes with the same effect, of which each lets one limit more push, half as much as it
+    may."""
+    found = []
+    for k, row in enumerate(matrix):
+        left = right[k] - _dot([row[j] for j in active], sizes)
+        if k in active or abs(left) > rounding or not any(sizes):
+            continue
+        own = [matrix[j][k] for j in active]
+        per = _pushed(matrix, active, own)
+        if per is None or abs(row[k] - _dot(own, per)) > tolerances.ONE_FREEDOM * row[k]:
+            continue  # it would move what they do not
+        # of those that move what it moves; what is smaller is rounding
+        least = tolerances.ONE_FREEDOM * sqrt(row[k])
+        per = [
+            part if abs(part) * sqrt(matrix[j][j]) > least else 0.0
+            for j, part in zip(active, per, strict=True)
+        ]
+        most = [size / part for size, part in zip(sizes, per, strict=True) if part > 0.0]
+        amount = 0.5 * min(most, default=max(sizes))
+        if amount > 0.0:
+            shares = [size - amount * part for size, part in zip(sizes, per, strict=True)]
+            found.append({**dict(zip(active, shares, strict=True)), k: amount})
+    return found
 
 
 def _dot(one: Sequence[float], other: Sequence[float]) -> float:
@@ -428,6 +541,7 @@ def impact_notes(
         own = [impact for impact in impacts if limit in impact.limits]
         at = [units.text(impact.time, TIME) for impact in own]
         pushes = [impact.impulses[impact.limits.index(limit)] for impact in own]
+        known = [push for push in pushes if isfinite(push)]
         dimension = (MOMENT if is_angle(limit.coordinate) else FORCE) * TIME
         times = "once" if len(own) == 1 else f"{len(own)} times, first"
         text = f"{limit.name} comes to its limit {times} at {at[0]}"
@@ -441,9 +555,11 @@ def impact_notes(
         name = units.label(dimension)
         numbers = tuple(
             Number(f"impulse at {limit.name}", float(units.from_si(push, dimension)), name)
-            for push in pushes[:MOST_TOLD]
+            for push in known[:MOST_TOLD]
         )
-        measured = f"largest impulse {units.text(max(pushes), dimension)}"
+        measured = f"largest impulse {units.text(max(known), dimension)}" if known else None
+        if len(known) < len(pushes):
+            text += "; another limit ends the same freedom, and how they share it is not unique"
         notes.append(
             Diagnostic(
                 "rests" if rests else "rebounds",

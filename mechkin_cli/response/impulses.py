@@ -29,7 +29,7 @@ from mechkin_cli.tables import (
 from mechkin_cli.units import FORCE, MOMENT, TIME
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.response.integration import Rebound
@@ -49,7 +49,8 @@ _NAMES = {
 def impact_table(session: Session, run: str, rebounds: Sequence[Rebound]) -> Columns:
     """Columns time, event, the impulse of each limit along its coordinate, and the impulses that
     joints and couplings transmit and drives give, by components in the ground's axes; angular ones
-    about the joint's point. A line for each impact, in the file's units.
+    about the joint's point. A line for each impact, in the file's units; shares that are not unique
+    (redundant constraints, limits that end one freedom) are nan.
 
     Args:
         session: of the free motion.
@@ -66,17 +67,28 @@ def impact_table(session: Session, run: str, rebounds: Sequence[Rebound]) -> Col
         TableColumn("time", units.label(TIME), np.array(units.from_si(times, TIME))),
         TableColumn("event", "", words_of(events)),
     ]
-    given = list(dict.fromkeys(at for one in rebounds for at in one.pushes))
+    # first those of the motion, then others that are as good
+    pushed = [
+        [one.others[number] if 0 <= number < len(one.others) else one.pushes for one in rebounds]
+        for number in range(-1, max(len(one.others) for one in rebounds))
+    ]
+    given = list(dict.fromkeys(at for each in pushed for one in each for at in one))
     for joint, coordinate in given:
         dimension = effort_quantity(joint, coordinate).dimension * TIME
-        pushes = np.array([one.pushes.get((joint, coordinate), 0.0) for one in rebounds])
+        at = joint, coordinate
+        own, *others = (np.array([one.get(at, 0.0) for one in each]) for each in pushed)
+        pushes = unique_cells(own, others)
         name = f"{joint}.{coordinate}.impulse"
         columns.append(
             column_of_numbers(name, units.label(dimension), units.from_si(pushes, dimension))
         )
     wanted = list(_transmitted(session.problem))
     read = [
-        [_read(_struck(session, one), wanted, one, shift) for one in rebounds]
+        [
+            _read(_struck(session, own), wanted, one, shift)
+            for one, own in zip(rebounds, each, strict=True)
+        ]
+        for each in pushed
         for shift in (0, *(SHIFTS if session.is_redundant else ()))
     ]
     for number, quantity in enumerate(wanted):
@@ -106,13 +118,13 @@ def _transmitted(problem: Problem) -> Iterator[Wanted]:
             yield quantity
 
 
-def _struck(session: Session, rebound: Rebound) -> Session:
+def _struck(session: Session, pushes: Mapping[tuple[str, str], float]) -> Session:
     """The session in which nothing acts but the impulses of limits, as forces."""
     problem = session.problem
     couplings = {
         name: relation._replace(pulls=()) for name, relation in problem.mechanism.couplings.items()
     }
-    loads = tuple(JointLoad(*at, push) for at, push in rebound.pushes.items())
+    loads = tuple(JointLoad(*at, push) for at, push in pushes.items())
     mechanism = replace(
         problem.mechanism, loads=loads, gravity=ZERO, frictions=(), couplings=couplings
     )

@@ -84,7 +84,8 @@ class Impact(NamedTuple):
 class Rebound(NamedTuple):
     """An impact, how the motion begins behind it, and what it put in and lost in kg, length units
     and s; the place at rest with the jumps of the rates as accelerations, the impulses along
-    coordinates (joint, coordinate), and what the row says of it."""
+    coordinates (joint, coordinate), and what the row says of it; `others`: impulses that are as
+    good, where limits share one freedom."""
 
     impact: Impact
     begun: Beginning
@@ -92,6 +93,7 @@ class Rebound(NamedTuple):
     rows: RowInputs
     pushes: Mapping[tuple[str, str], float]
     words: str
+    others: Sequence[Mapping[tuple[str, str], float]] = ()
 
 
 class MotionEnd(IntEnum):

@@ -36,7 +36,7 @@ from mechkin_cli.session import Ask, Chart, KernelInputs
 from mechkin_cli.structure import holding
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -48,11 +48,44 @@ if TYPE_CHECKING:
 
 
 class Contact(NamedTuple):
-    """A rest at a limit: its force along the coordinate (N*m, N) at the moments of rows (s)."""
+    """A rest at a limit: its force along the coordinate (N*m, N) at the moments of rows (s), and
+    forces that are as good, where several limits end one freedom."""
 
     limit: Limit
     times: Floats
     forces: Floats
+    others: tuple[Floats, ...] = ()
+
+
+class _Held(NamedTuple):
+    """Limits, the session in which their coordinates are inputs, and the laws of its inputs."""
+
+    limits: list[Limit]
+    session: Session
+    laws: DrivenLaws | None
+
+
+def _held_at(
+    free: Session, response: ResponseProblem, begun: Beginning, stops: Sequence[int]
+) -> _Held:
+    """The free session with the coordinates of some stops at rest where a motion begins."""
+    limits = [
+        end.limit
+        for end in (response.stops[k] for k in stops)
+        if isinstance(end, CrossingEnd) and end.limit is not None
+    ]
+    places = [_place(free, limit) for limit in limits]
+    names = [(limit.joint, limit.coordinate) for limit in limits]
+    session = free.exchanged(holding(free.graph, len(response.driven), places, names))
+    at = [float(begun.state[free.layout.state(*place)]) for place in places]
+    return _Held(limits, session, driven_laws(session, response, at))
+
+
+def _place(free: Session, limit: Limit) -> tuple[int, int]:
+    """The edge and the freedom of a limited coordinate."""
+    layout = free.layout
+    joint = layout.mechanism.joints[limit.joint]
+    return layout.edge_number[limit.joint], joint.freedom_number(limit.coordinate)
 
 
 class RestingMotion:
@@ -62,6 +95,8 @@ class RestingMotion:
         free: the session of the free motion.
         response: the file's.
         stops: the limits at which they rest, by the numbers of the response's stops.
+        beside: other limits that end the same freedoms, whose coordinates rest with those, and the
+            one of `stops` that each may stand for.
         begun: how it begins, at their limits and along them.
         friction: what the free motion tells of frictions there (numbers,).
         packing: how rows are packed.
@@ -72,31 +107,21 @@ class RestingMotion:
         free: Session,
         response: ResponseProblem,
         stops: Sequence[int],
+        beside: Mapping[int, int],
         begun: Beginning,
         friction: Floats,
         packing: Packing,
     ) -> None:
-        self.free, self.response, self.packing, self.stops = free, response, packing, list(stops)
-        self.as_free = friction
-        ends = [response.stops[k] for k in stops]
-        found = [
-            (end.limit, 1.0 if end.direction == "up" else -1.0)
-            for end in ends
-            if isinstance(end, CrossingEnd) and end.limit is not None
+        self.free, self.response, self.packing = free, response, packing
+        self.stops, self.beside, self.as_free = list(stops), dict(beside), friction
+        self.held = _held_at(free, response, begun, self.stops)
+        self.others = [
+            _held_at(free, response, begun, [one if k == own else k for k in self.stops])
+            for one, own in self.beside.items()
         ]
-        self.limits = [limit for limit, _ in found]
-        self.sides = [side for _, side in found]
-        layout = free.layout
-        names = [(limit.joint, limit.coordinate) for limit in self.limits]
-        places = [
-            (layout.edge_number[joint], layout.mechanism.joints[joint].freedom_number(coordinate))
-            for joint, coordinate in names
-        ]
-        graph = holding(free.graph, len(response.driven), places, names)
-        self.session = free.exchanged(graph)
-        self.columns = [layout.column(*place) for place in places]
-        at = [float(begun.state[layout.state(*place)]) for place in places]
-        self.laws: DrivenLaws | None = driven_laws(self.session, response, at)
+        ends = [response.stops[k] for k in self.stops]
+        self.sides = [1.0 if getattr(end, "direction", "") == "up" else -1.0 for end in ends]
+        self.columns = [free.layout.column(*_place(free, limit)) for limit in self.held.limits]
         first = begun.first.copy()
         first[self.columns] = 0.0
         self.begun = Beginning(begun.state, first, along(begun.tangents, self.columns))
@@ -114,28 +139,42 @@ class RestingMotion:
         forces = self._forces(moved, own)
         if at is not None:
             moved = _left(moved, reached.size + 1, own.size - 1, *at)
-        told = own[: 1 + min(reached.size, moved.report.rows - 1)]
-        contacts = [
-            Contact(limit, told, force[: told.size])
-            for limit, force in zip(self.limits, forces, strict=True)
-        ]
+        count = 1 + min(reached.size, moved.report.rows - 1)
+        contacts = self._contacts(own[:count], [one[:, :count] for one in forces])
         if moved.report.end is MotionEnd.STOPPED and at is None:
-            place = moved.report.rows
-            last = self._forces(moved, np.array([moved.report.time]), [place])
-            contacts += [
-                Contact(limit, np.array([moved.report.time]), force)
-                for limit, force in zip(self.limits, last, strict=True)
-            ]
+            last = np.array([moved.report.time])
+            contacts += self._contacts(last, self._forces(moved, last, [moved.report.rows]))
         return self._as_free(moved), contacts
+
+    def _contacts(self, times: Floats, forces: Sequence[Floats]) -> list[Contact]:
+        """The rests at all limits, by forces of the limits that push and of each that others may
+        stand for."""
+        limits = list(
+            dict.fromkeys(each for one in (self.held, *self.others) for each in one.limits)
+        )
+        none = np.zeros(times.size)
+        told = [
+            dict(zip(one.limits, each, strict=True))
+            for one, each in zip((self.held, *self.others), forces, strict=True)
+        ]
+        return [
+            Contact(
+                limit,
+                times,
+                told[0].get(limit, none),
+                tuple(each.get(limit, none) for each in told[1:]),
+            )
+            for limit in limits
+        ]
 
     def _moved(self, times: Floats) -> MotionRows:
         """The motion from the first of some moments on."""
         (moved,) = integrate(
-            [(self.session.plan, self.begun)],
+            [(self.held.session.plan, self.begun)],
             float(times[0]),
             times,
             stops=[self._watched(number) for number in range(len(self.response.stops))],
-            driven=self.laws,
+            driven=self.held.laws,
             tolerance=self.response.tolerance,
             fixed_step=self.response.fixed_step,
             straight=self.free.problem.assembly.straight,
@@ -144,40 +183,49 @@ class RestingMotion:
         return moved
 
     def _watched(self, number: int) -> WatchedStop:
-        """A stop; that of a limit at which a coordinate rests is out of reach."""
-        stop = self.response.stops[number]
+        """A stop; that of a limit at which a coordinate rests is out of reach, of one beside it as
+        far beyond as is still at the limit."""
+        kind, direction, count, at, lengths, rates = watched_stop(self.response.stops[number])
+        length, beyond = self.free.layout.length, 0.0
         if number in self.stops:
-            kind, direction, count, at, lengths, rates = watched_stop(stop)
-            beyond = FAR * max(1.0, abs(at), self.free.layout.length)
-            return kind, direction, count, at + direction * beyond, lengths, rates
-        return watched_stop(stop)
+            beyond = FAR * max(1.0, abs(at), length)
+        elif number in self.beside:
+            beyond = tolerances.AT_LIMIT * (length if lengths else 1.0)
+        return kind, direction, count, at + direction * beyond, lengths, rates
 
     def _forces(
         self, moved: MotionRows, times: Floats, places: Sequence[int] | None = None
     ) -> list[Floats]:
-        """The forces of the limits along their coordinates at rows of a motion (rows,)."""
-        wanted = [effort_quantity(one.joint, one.coordinate) for one in self.limits]
-        problem = self.session.problem
+        """The forces of the limits along their coordinates at rows of a motion (limits, rows); then
+        those of each set of others that may push instead."""
+        return [self._efforts(one, moved, times, places) for one in (self.held, *self.others)]
+
+    def _efforts(
+        self, held: _Held, moved: MotionRows, times: Floats, places: Sequence[int] | None
+    ) -> Floats:
+        """What holds the coordinates of some limits (limits, rows)."""
+        wanted = [effort_quantity(one.joint, one.coordinate) for one in held.limits]
+        session, laws, problem = held.session, held.laws, held.session.problem
         rows = np.arange(times.size) if places is None else np.array(places)
         reached = np.isfinite(moved.states[:, rows]).all(axis=0)
-        rows, found = rows[reached], [np.full(times.size, np.nan) for _ in wanted]
+        rows, found = rows[reached], np.full((len(wanted), times.size), np.nan)
         if not rows.size:
             return found
-        orders = np.zeros((3, len(self.session.graph.inputs), rows.size))
-        for column, time in enumerate(times[reached].tolist() if self.laws else ()):
-            assert self.laws is not None
-            orders[:, :, column] = np.array(self.laws.at(time)).T
+        orders = np.zeros((3, len(session.graph.inputs), rows.size))
+        for column, time in enumerate(times[reached].tolist() if laws else ()):
+            assert laws is not None
+            orders[:, :, column] = np.array(laws.at(time)).T
         inputs = KernelInputs.of(
             problem, orders[0], orders[1], orders[2], np.zeros(orders[0].shape)
         )
-        tree = np.zeros((len(self.session.structure.tree_slots), rows.size))
+        tree = np.zeros((len(session.structure.tree_slots), rows.size))
         turned = np.concatenate([moved.turns[:, rows], tree])
         given = inputs.at(moved.states[:, rows], turned, times[reached])
-        readout = self.session.readout(wanted)
+        readout = session.readout(wanted)
         ask = Ask(demand_of(problem.mechanism, wanted), readout, iterations=0)
         chart = moved.chart.at(rows)
         chart = chart._replace(friction=self._friction(chart.friction))
-        batch = self.session.run(given._replace(chart=chart), ask)
+        batch = session.run(given._replace(chart=chart), ask)
         assert batch.outputs is not None
         for own, quantity in zip(found, wanted, strict=True):
             own[reached] = batch.outputs[readout.slots[quantity.name].start]
@@ -186,7 +234,7 @@ class RestingMotion:
     def _pushes(self, times: Floats) -> Floats:
         """How the limits push at moments from the first on (limits, moments); nan beyond its
         end."""
-        forces = self._forces(self._moved(times), times)
+        forces = self._efforts(self.held, self._moved(times), times, None)
         return np.array([-side * one for side, one in zip(self.sides, forces, strict=True)])
 
     def _leaves(self, begin: float, times: Floats) -> tuple[float, int] | None:
@@ -248,15 +296,22 @@ WRENCH = 6
 """Numbers of a moment and a force."""
 
 FAR = 1e3
-"""How far the stop of a limit is put away while its coordinate rests, in sizes."""
+"""How far the stop of a limit is put away while its coordinate rests, in parts of the mechanism's
+size or of a radian: rounding never meets it."""
 
 SAMPLES = 16
 """Parts of a step from row to row, and of each bracket, at which forces are looked at."""
 
 
 def along(tangents: Floats, columns: Sequence[int]) -> Floats:
-    """Combinations of tangents (freedoms, columns) that leave some columns at rest, as many as are
-    independent: each column takes the tangent that moves it most."""
+    """The basis of free rates (freedoms, columns) with some columns at rest: as many rows less, of
+    which each takes from the others what moves its column (elimination, the largest entry as
+    pivot).
+
+    Args:
+        tangents: a basis of free rates (freedoms, columns).
+        columns: to be left at rest, independent of one another.
+    """
     left = [row.copy() for row in tangents]
     for column in columns:
         most = max(range(len(left)), key=lambda k: abs(float(left[k][column])))
@@ -280,7 +335,8 @@ def _widened(moved: MotionRows, width: int) -> MotionRows:
 
 
 def repeated(moved: MotionRows) -> MotionRows:
-    """With the first row twice."""
+    """A motion with its first row twice: as the place where it begins, and as the row of the
+    response at that moment."""
     more = _each(moved, lambda array: np.concatenate([array[..., :1], array], axis=-1))
     return replace(more, report=moved.report._replace(rows=moved.report.rows + 1))
 
@@ -306,16 +362,25 @@ def _each(moved: MotionRows, change: Any) -> MotionRows:
 
 
 def with_contacts(
-    response: ResponseProblem, contacts: list[Contact], times: Floats
+    response: ResponseProblem, contacts: Sequence[Contact], times: Floats, other: int | None = None
 ) -> ResponseProblem:
     """The response with the forces of limits among its efforts: laws that have their values at the
-    rows' moments, 0 where nothing rests."""
+    rows' moments, 0 where nothing rests.
+
+    Args:
+        response: the file's.
+        contacts: the rests at limits.
+        times: moments of the rows (rows,), s.
+        other: the number of the forces to take from those that are as good; of a contact without
+            so many its own.
+    """
     for limit in dict.fromkeys(one.limit for one in contacts):
         values = np.zeros(times.size)
         for one in contacts:
             if one.limit == limit:
-                here = np.isin(times, one.times)
-                values[here] = one.forces[np.isin(one.times, times)]
+                is_other = other is not None and other < len(one.others)
+                forces = one.others[other] if is_other else one.forces  # type: ignore[index]
+                values[np.isin(times, one.times)] = forces[np.isin(one.times, times)]
         curve = joined_curve(times.tolist(), values.tolist(), "linear", "natural")
         law = LoadLaw(("time",), limit.place, curve=curve)
         load = JointLoad(limit.joint, limit.coordinate, Varying(len(response.load_laws)))

@@ -21,6 +21,7 @@ from mechkin_cli.mechanism import (
     law_value,
     response_quantities,
 )
+from mechkin_cli.plan import Demand
 from mechkin_cli.record import replace
 from mechkin_cli.response.impulses import impact_table
 from mechkin_cli.session import RowInputs
@@ -52,6 +53,13 @@ def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenIn
     )
     return DrivenInput(joint, coordinate, values, rates, accelerations, jerks, written)
 
+
+OtherLoads = tuple["Session", "ResponseProblem"]
+"""The free motion's session and its response with loads that differ from those of the rows in
+nothing but reactions."""
+
+OTHER_LOADS = 100
+"""The first shift that stands for other loads; those before it are parts of the null space."""
 
 ENERGIES = ("row.kinetic_energy", "row.potential_energy")
 
@@ -89,6 +97,29 @@ class ResponseResult(Result):
         self.chosen, self.chart, self.exchanged = chosen, chart, work
         self.events, self.response, self.report = tuple(events), response, report
         self.rebounds = tuple(rebounds)
+        self.other_loads: tuple[OtherLoads, ...] = ()
+
+    def take_others(self, others: Sequence[OtherLoads]) -> None:
+        """Takes loads that are as good as those of the rows, as of limits that share a freedom:
+        reactions which they change are not unique."""
+        self.other_loads = tuple(others)
+        self.shifts = (*self.shifts, *range(OTHER_LOADS, OTHER_LOADS + len(others)))
+        self._shifted = tuple({} for _ in self.shifts)
+
+    def evaluated(
+        self,
+        wanted: Sequence[Wanted],
+        *,
+        session: Session | None = None,
+        inputs: KernelInputs | None = None,
+        demand: Demand = Demand.POSITION,
+        shift: int = 0,
+    ) -> dict[str, Floats]:
+        """As of a sweep; a shift may stand for other loads, of which another session has none."""
+        if shift >= OTHER_LOADS:
+            session = session or self.other_loads[shift - OTHER_LOADS][0]
+            shift = 0
+        return super().evaluated(wanted, session=session, inputs=inputs, demand=demand, shift=shift)
 
     @property
     def impacts(self) -> tuple[Impact, ...]:
@@ -231,16 +262,22 @@ class ResponseResult(Result):
         error: Floats = np.maximum(np.abs(missing) - rounding, 0.0) / largest
         return error
 
+    @property
+    def _loads(self) -> ResponseProblem:
+        """The response with the rows' loads, or with the others of an alternative."""
+        shift = 0 if self._alternative is None else self.shifts[self._alternative]
+        return self.response if shift < OTHER_LOADS else self.other_loads[shift - OTHER_LOADS][1]
+
     def _amounts(self, wanted: Wanted) -> list[Amount]:
         at = (wanted.owner, wanted.coordinate)
-        return [e.amount for e in self.response.efforts if e.acts_at == at]
+        return [e.amount for e in self._loads.efforts if e.acts_at == at]
 
     def _effort(self, wanted: Wanted) -> Floats:
         """The sum of the response's efforts along a coordinate over the rows."""
         total = np.zeros(self.rows)
         for amount in self._amounts(wanted):
             if isinstance(amount, Varying):
-                law = self.problem.load_laws[amount.number]
+                law = self._loads.load_laws[amount.number]
                 total = total + law_value(law, self.quantity, self.rows)
             else:
                 total = total + amount

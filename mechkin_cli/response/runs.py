@@ -440,12 +440,14 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         if resting is None or (struck is None and not left):
             break
         if struck is not None:
-            impact = struck.impact._replace(held=touch.limits(resting.held))
+            held = touch.limits([*resting.held, *resting.beside])
+            impact = struck.impact._replace(held=held)
             rebounds.append(struck._replace(impact=impact))
         before, was, left, at_last = moved, left, [], touch.limits(resting.held)
         if resting.held:
             friction = later.chart.friction[:, 0]
-            motion = RestingMotion(one.free, one.response, resting.held, begun, friction, packing)
+            own_rest = resting.held, resting.beside
+            motion = RestingMotion(one.free, one.response, *own_rest, begun, friction, packing)
             later, own = motion.onward(begin, times)
             contacts += own
             if later.report.end is MotionEnd.STOPPED and later.report.stop in resting.held:
@@ -459,25 +461,30 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
     if contacts:
         moving = result.problem.motion.time
         assert moving is not None
-        response = with_contacts(one.response, contacts, moving.values)
-        problem = replace(
-            one.free.problem,
-            mechanism=replace(
-                one.free.problem.mechanism,
-                loads=(
-                    *one.free.problem.mechanism.loads,
-                    *response.efforts[len(one.response.efforts) :],
-                ),
-            ),
-            load_laws=response.load_laws,
-            response=response,
+        result, *others = (
+            rows_of(
+                _loaded(one, with_contacts(one.response, contacts, moving.values, number)), moved
+            )
+            for number in (None, *range(max(len(each.others) for each in contacts)))
         )
-        held = with_loads(one.free, problem)
-        result = rows_of(replace(one, response=response, free=held), moved)
+        result.take_others([(each.session, each.response) for each in others])
     if rebounds:
         result.rebounds = tuple(rebounds)
         result.row_states.diagnostics += impact_notes(result, result.impacts, at_last)
     return result
+
+
+def _loaded(one: Prepared, response: ResponseProblem) -> Prepared:
+    """With the forces of limits that a response has among its efforts."""
+    problem, mechanism = one.free.problem, one.free.problem.mechanism
+    loads = (*mechanism.loads, *response.efforts[len(one.response.efforts) :])
+    problem = replace(
+        problem,
+        mechanism=replace(mechanism, loads=loads),
+        load_laws=response.load_laws,
+        response=response,
+    )
+    return replace(one, response=response, free=with_loads(one.free, problem))
 
 
 def _onward(

@@ -193,6 +193,10 @@ KINK_ROUNDING: Final = 1e-12
 """What a load takes the sign of, in SI, is rounding if it never was above: loops are closed to
 1e-14 of the size."""
 
+ONE_FREEDOM: Final = 1e-9
+"""What others leave of how a limit's push moves its coordinate, in parts of it, up to which it ends
+a freedom that they end: inertias and rates are right to about 1e-13 of the largest."""
+
 MANY_KINKS: Final = 0.2
 """Parts of all steps that end at one kink from which on a response is said to run out of steps by
 it."""

@@ -7,9 +7,11 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
 import mechkin_cli as mk
 from mechkin_cli.response import ResponseResult
+from mechkin_cli.response.impacts import complementary
 
 CROSS = """
 format: 1
@@ -429,25 +431,121 @@ def test_a_carriage_rubs_by_what_lies_on_its_limit() -> None:
     assert set(rows["row.status"]) == {"ok"}
 
 
-def test_limits_that_end_one_freedom_together_end_the_response() -> None:
-    # the force of neither is determined
-    text = """
+TOGETHER = """
 format: 1
 plane: xy
-units: {length: m, angle: rad, mass: kg, force: N}
+units: {{length: m, angle: rad, mass: kg, force: N}}
 links:
-  wheel: {mass: 1, center_of_mass: [0, 0], inertia: 0.1}
-  slide: {mass: 2, center_of_mass: [0, 1]}
+  bed: {{mass: 1, center_of_mass: [0, 0]}}
+  a: {{mass: 2, center_of_mass: [0, 0]}}
+  b: {{mass: 3, center_of_mass: [1, 0]}}
 joints:
-  A: {type: R, links: [ground, wheel], point: [0, 0]}
-  S: {type: P, links: [ground, slide], point: [0, 1], axis: [1, 0]}
-couplings: {K: {type: linear, terms: {A.theta: 1, S.s: -1 rad/m}}}
-limits: {A.theta: {max: 1, restitution: 0.5}, S.s: {max: 1, restitution: 0.5}}
-responses: {r: {start: {A.theta: 0, A.theta_dot: 1}, time: {from: 0, to: 3, step: 0.5}}}
+  X: {{type: P, links: [ground, bed], point: [0, 0], axis: [1, 0]}}
+  S: {{type: P, links: [bed, a], point: [0, 0], axis: [0, 1]}}
+  T: {{type: P, links: [bed, b], point: [1, 0], axis: [0, 1]}}
+couplings: {{K: {{type: linear, terms: {{S.s: 1, T.s: -1}}}}}}
+loads: [{{type: gravity, g: [0, -10]}}MORE]
+limits: {{S.s: {{min: -2{one}}}, T.s: {{min: -2{other}}}}}
+responses:
+  fall:
+    start: {{S.s: 0, X.s: 0, X.s_dot: 0.5}}
+    efforts: {{S.s: "20 N*max(0, time/(1 s) - 4)"}}
+    time: {{from: 0, to: 8, step: 0.1}}
 """
-    rows = mk.loads(text).respond("r")
-    assert rows["time"][-1] == pytest.approx(1.0, rel=1e-12)
+
+
+def together(one: float | None, other: float | None, more: str = "") -> mk.Analysis:
+    """Two blocks that a coupling lets fall as one, each to a limit of its own at the same place."""
+    words = ["" if e is None else f", restitution: {e}" for e in (one, other)]
+    text = TOGETHER.format(one=words[0], other=words[1]).replace("MORE", more)
+    return mk.loads(text).respond("fall")
+
+
+@pytest.mark.parametrize(("one", "other"), [(0.0, 0.0), (0.5, 0.5), (0.5, 0.2), (0.2, 0.5)])
+def test_limits_that_end_one_freedom_share_their_force(one: float, other: float) -> None:
+    """Both stop 5 kg; the one that throws off faster gives the impulse, equal ones share it in
+    parts that nothing determines. At rest either may bear them, until a force of 50 N lifts."""
+    rows = together(one, other)
+    time, e = rows["time"], max(one, other)
+    falls = sqrt(0.4)
+    rests = falls * (1.0 + 2.0 * e / (1.0 - e))
+    up = falls * (1.0 + 2.0 * e)
+    expected = -5.0 * time**2
+    first = (time > falls) & (time < up)
+    since = time - falls
+    expected[first] = -2.0 + (e * sqrt(40.0) * since - 5.0 * since**2)[first]
+    held = (time > rests + 1e-3) & (time < 6.5)
+    expected[held] = -2.0
+    lifted = time > 6.5 + 1e-9
+    expected[lifted] = -2.0 + (4.0 * (time - 6.5) ** 3 / 6.0)[lifted]
+    sure = (time < up) | held | lifted
+    for name in ("S.s", "T.s"):
+        np.testing.assert_allclose(rows[name][sure], expected[sure], atol=1e-9)
+    np.testing.assert_allclose(rows["X.s"], 0.5 * time, atol=1e-11)
+    for name in ("S.effort", "T.effort", "K.force"):
+        assert np.isnan(rows[name][held]).all()
+        assert np.isfinite(rows[name][time < falls]).all()
+    # what the bed bears does not depend on who bears the blocks
+    np.testing.assert_allclose(rows["X.force"][held, 1], 60.0, rtol=1e-11)
+    np.testing.assert_allclose(rows["S.effort"][lifted], 20.0 * (time[lifted] - 4.0), rtol=1e-12)
+    assert set(rows["row.status"]) == {"ok"}
+    assert np.nanmax(rows["row.energy_error"]) < 1e-9
+    table = rows.impacts
+    assert table is not None
+    columns = {column.label: column.values for column in table.columns}
+    own, its = (np.asarray(columns[f"{name}.s.impulse"])[0] for name in "ST")
+    if one == other:
+        assert np.isnan([own, its]).all()
+    else:
+        impulse = 5.0 * sqrt(40.0) * (1.0 + e)
+        assert [own, its] == pytest.approx([impulse, 0.0] if one > other else [0.0, impulse])
+    assert any("how they share it is not unique" in d.message for d in rows.diagnostics)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "more"),
+    [
+        (0.5, None, ""),
+        (None, 0.5, ""),
+        (0.0, 0.0, ", {type: friction, joint: S, coefficient: 0.1}"),
+    ],
+)
+def test_shared_limits_that_end_the_response(
+    one: float | None, other: float | None, more: str
+) -> None:
+    """One of them has no restitution; or friction goes by forces that are not unique."""
+    rows = together(one, other, more)
+    assert rows["time"][-1] == pytest.approx(sqrt(0.4), rel=1e-9)
     assert "at its limit" in rows["row.event"][-1]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_which_limits_push_where_some_end_one_freedom(seed: int) -> None:
+    """The change of the rates is that of least energy without an outward one, by a solver for least
+    squares with signs."""
+    random = np.random.default_rng(seed)
+    freedoms, limits = int(random.integers(1, 4)), int(random.integers(1, 6))
+    normals = random.normal(size=(limits, freedoms))
+    for k in range(1, limits):
+        if random.random() < 0.5:
+            normals[k] = random.uniform(0.5, 2.0) * normals[k - 1] * random.choice([1.0, 1.0, -1.0])
+    rates = random.normal(size=freedoms)
+    matrix, outward = normals @ normals.T, normals @ rates
+    found = complementary(matrix.tolist(), outward.tolist(), outward.tolist())
+    wanted, _ = nnls(normals.T, rates)
+    assert found is not None
+    own = dict(zip(found.numbers, found.sizes, strict=True))
+    for pushes in (own, *found.others):
+        every = np.array([pushes.get(k, 0.0) for k in range(limits)])
+        assert every.min() >= 0.0
+        np.testing.assert_allclose(normals.T @ every, normals.T @ wanted, atol=1e-9)
+    # those that a push of another one moves, too, are not unique
+    pushing = [k for k in range(limits) if abs(outward - matrix @ wanted)[k] < 1e-9]
+    rank = np.linalg.matrix_rank(normals[pushing], tol=1e-9) if pushing else 0
+    if own and rank < len(pushing):
+        assert found.others
+    if rank == len(pushing):
+        assert not found.others
 
 
 def test_rests_are_the_same_bits_in_any_lanes() -> None:
