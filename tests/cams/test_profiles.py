@@ -167,6 +167,31 @@ def test_undercut_is_named_with_its_place() -> None:
         assert bool(cam(RISE, changed).cam().undercut) == is_cut
 
 
+@pytest.mark.parametrize("at", [-0.3, 0.3, -2.4, 2.5])
+@pytest.mark.parametrize("clear", [0.5, -1e-4])
+def test_extremes_beside_the_seam_of_the_turn(at: float, clear: float) -> None:
+    """A flat face over s = f(theta) - f(0), f = cos(2 (theta - at)) + cos(3 (theta - at)), whose
+    radius R + s + s'' = R - f(0) - 3 cos(...) - 8 cos(...) is least at the turn `at`."""
+    with mp.workdps(30):
+        begin = mp.cos(2 * mp.radians(at)) + mp.cos(3 * mp.radians(at))
+    size = float(begin) + 11.0 + clear
+    law = f'value: "1 mm*(cos(2*(theta - {at} deg)) + cos(3*(theta - {at} deg))) - {begin} mm"'
+    follower = f"{{type: translating, contact: flat, base_radius: {size!r} mm}}"
+    found = cam(law, follower).cam(points=72)
+    if clear > 0.0:
+        least = found.least_radius
+        assert least is not None
+        assert least.value == pytest.approx(clear, rel=1e-10)
+        assert least.turn == pytest.approx(at % 360.0, abs=1e-4)
+        assert found.undercut == ()
+    else:  # about the turn, as wide as the parabola below zero: 84 x^2/2 = 1e-4
+        half = np.degrees(np.sqrt(-2.0 * clear / 84.0))
+        assert len(found.undercut) == 1
+        assert found.undercut[0] == pytest.approx(
+            (at % 360.0 - half, at % 360.0 + half), abs=1e-4 * half
+        )
+
+
 def test_lift_off_is_told_in_the_rows_of_the_sweep() -> None:
     """m s'' w^2 + spring < 0, as the follower is held down by a constant force alone."""
     more = """
