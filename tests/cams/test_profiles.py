@@ -142,6 +142,18 @@ def test_pressure_angle_and_curvature_of_a_roller(offset: int) -> None:
     assert found.greatest_pressure_angle.turn == pytest.approx(float(mp.degrees(most)), rel=1e-6)
 
 
+def test_a_cam_of_other_parameters_needs_no_sweep() -> None:
+    """R + s + s'' = R + 10 mm under a flat face with s = 10 mm (1 - cos(theta))."""
+    law = 'value: "10 mm*(1 - cos(theta))"'
+    model = cam(law, "{type: translating, contact: flat, base_radius: R}")
+    for size in (40.0, 35.0):
+        varied = model.with_parameters({"R": size})
+        np.testing.assert_allclose(varied.cam().radius, size + 10.0, rtol=1e-12)
+        assert varied.mobility().mobility == 1
+    with pytest.raises(InvalidFile, match="is not driven"):
+        varied.analyze()
+
+
 def test_undercut_is_named_with_its_place() -> None:
     """A flat face over too small a base: R + s + s'' falls below zero."""
     found = cam(RISE, "{type: translating, contact: flat, base_radius: 30 mm}").cam()
