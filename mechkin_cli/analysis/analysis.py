@@ -228,7 +228,7 @@ class Analysis(Listed):
     def keys(self) -> tuple[str, ...]:
         """Names of all quantities of this run, inputs first."""
         words = (name for name in row_texts(self.run) if name != ROW_PROOF)
-        quantities = self.result.problem.quantities()
+        quantities = self.result.problem.told_quantities
         return tuple(dict.fromkeys((*self.result.inputs, *quantities, *words, *ROW_NUMBERS)))
 
     def __iter__(self) -> Iterator[str]:

@@ -190,7 +190,8 @@ def _named_in(session: Session, text: str) -> list[str]:
     found = [name for name in names if name not in problem.parameters]
     for name in found:
         if name not in known:
-            hint = problem.why_not(name) or nearest_hint(name, known) or QUANTITIES
+            near = nearest_hint(name, problem.told_quantities)
+            hint = problem.why_not(name) or near or QUANTITIES
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
     return found
 

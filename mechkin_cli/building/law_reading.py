@@ -75,7 +75,7 @@ from mechkin_cli.schema import (
     Sine,
     TableLaw,
 )
-from mechkin_cli.tape import JetNumber, as_recorded, is_traced, orders_of
+from mechkin_cli.tape import JetNumber, is_traced, orders_of
 from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME, SMALLEST_DIVISOR
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, TIME, Conversion, Dimension, conversion
 
@@ -351,7 +351,7 @@ def _sequence(reading: _Reading, law: Sequence) -> tuple[list[Piece], float | No
             pieces += risen(segment.law, start, length, at, to, scales)
             at = to
         start = start + length
-    period = _turn(reading, law, as_recorded(start - begin), as_recorded(at - first))
+    period = _turn(reading, law, start - begin, at - first)
     if period is None:
         pieces.append(rest(at, start))
     return pieces, period
@@ -504,7 +504,7 @@ def _table(reading: _Reading, law: TableLaw) -> list[Piece]:
     if curve is None:
         return [rest(0.0)]
     for at in over.met:
-        if not as_recorded(curve.first) <= at <= as_recorded(curve.last):
+        if not (curve.first <= at and curve.last >= at):
             unit = reading.fields.units.label(over.dimension)
             reading.fields.error(
                 "table-range",

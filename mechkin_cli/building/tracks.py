@@ -24,7 +24,6 @@ from mechkin_cli.expressions import (
     number_of,
     scalar,
 )
-from mechkin_cli.kernel import functions
 from mechkin_cli.mechanism import (
     ELEMENTARY,
     ZERO,
@@ -48,7 +47,17 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.record import dataclass, replace
 from mechkin_cli.schema import Curve, MechanismFile, Surface
-from mechkin_cli.tape import JetNumber, Recorded, as_recorded, cos, is_traced, of_numbers, sin
+from mechkin_cli.tape import (
+    JetNumber,
+    Recorded,
+    as_recorded,
+    cos,
+    is_traced,
+    of_numbers,
+    of_two,
+    plain,
+    sin,
+)
 from mechkin_cli.tolerances import PARALLEL
 from mechkin_cli.units import ANGLE, DIMENSIONLESS, LENGTH, Dimension, UnitSystem
 
@@ -99,7 +108,7 @@ def carried_joint(fields: Fields, name: str, section: Any, points: tuple[Vector,
 def _drawn_at(track: Track, point: Vector) -> tuple[float, ...]:
     """The parameters as drawn; of recorded numbers, from which nothing starts, some between the
     ends."""
-    middle = tuple(0.5 * (low + high) for low, high in track.ends)
+    middle = tuple(as_recorded(0.5 * (low + high)) for low, high in track.ends)
     numbers: list[Any] = [*middle, *point]
     numbers += [] if track.knots else track.orders(middle)[0]
     if any(isinstance(number, Recorded) for number in numbers):
@@ -124,7 +133,7 @@ def track_ends(fields: Fields, file: MechanismFile, joints: Mapping[str, Joint])
             ends = line_ends(fields, path, curve)
             assert ends is not None
             along = unit(subtract(ends[1], ends[0]))
-            low, high = (as_recorded(dot(subtract(e, joint.on_second.o), along)) for e in ends)
+            low, high = (dot(subtract(e, joint.on_second.o), along) for e in ends)
             found[name, "s"] = path, low, high
         for part in joint.parts:
             if part.track is not None:
@@ -253,7 +262,7 @@ def _arc(fields: Fields, path: Path, section: Sequence[Any]) -> Track | None:
     ab, ac = subtract(b, a), subtract(c, a)
     normal = cross(ab, ac)
     twice = dot(normal, normal)
-    if not as_recorded(twice) > PARALLEL**2 * as_recorded(dot(ab, ab) * dot(ac, ac)):
+    if not twice > PARALLEL**2 * (dot(ab, ab) * dot(ac, ac)):
         text, hint = "the three places of an arc lie on a line", "write line: with two of them"
         fields.error("straight-arc", (*path, "arc"), text, hint)
         return None
@@ -269,7 +278,7 @@ def _arc(fields: Fields, path: Path, section: Sequence[Any]) -> Track | None:
     x = scale(-1.0 / radius, to_center)
     y = cross(axis, x)
     last = subtract(c, center)
-    end = float(functions.atan2(as_recorded(dot(last, y)), as_recorded(dot(last, x))))
+    end = plain(of_two("ATAN2", dot(last, y), dot(last, x)))
     turn = end if end > 0.0 else end + 2.0 * pi
     numbers = _circle_numbers(center, x, y, radius)
     return Track(((0.0, turn),), (False,), _on_circle, numbers=numbers)
@@ -330,8 +339,8 @@ def _parameter_ends(
             fields.expression_error((*path, key), error)
             value = Quantity(0.0, DIMENSIONLESS)
         found.append(value)
-    first, last = (float(as_recorded(one.value)) for one in found)
-    dimensions = [one.dimension for one in found if as_recorded(one.value) != 0.0]
+    first, last = (plain(one.value) for one in found)
+    dimensions = [one.dimension for one in found if one.value != 0.0]
     dimension = dimensions[0] if dimensions else DIMENSIONLESS
     if any(other != dimension for other in dimensions):
         words = " and ".join(dict.fromkeys(d.phrase for d in dimensions))
@@ -395,7 +404,7 @@ def _by_expressions(
             bare = number_of(text)
             if bare is None:
                 sample = {
-                    name: Quantity(0.5 * (low + high), dimension)
+                    name: Quantity(as_recorded(0.5 * (low + high)), dimension)
                     for (name, dimension), (low, high) in zip(dimensions.items(), ends, strict=True)
                 }
                 known = {n: _sampled(q) for n, q in parameters.items()} | sample
@@ -452,7 +461,7 @@ def _surface(fields: Fields, path: Path, section: Surface, point: Vector) -> Tra
         return Track(ends, (True, False), _on_cylinder, endless=("v",), numbers=numbers)
     assert section.tube is not None
     tube = fields.number((*path, "tube"), section.tube, LENGTH)
-    if not 0.0 < as_recorded(tube) < as_recorded(radius):
+    if not (tube > 0.0 and tube < radius):
         text = "the tube of a torus is thinner than its circle"
         fields.error("no-torus", (*path, "tube"), text, "give a smaller positive radius")
 

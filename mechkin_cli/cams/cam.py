@@ -16,7 +16,7 @@ from mechkin_cli.mechanism import Follower, Joint, Term, dot, frame_on
 from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables import Columns, column_of_numbers, csv_bytes
-from mechkin_cli.tolerances import CAM_CLOSED
+from mechkin_cli.tolerances import CAM_CLOSED, CAM_SAME
 from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
@@ -331,7 +331,12 @@ class _Seek:
         best = int(np.argmax(known))
         if not np.isfinite(known[best]):
             return None
-        return self._zoomed(best, float(known[best]), of)
+        found = self._zoomed(best, float(known[best]), of)
+        for row in self._peaks(known, found.value + CAM_SAME * abs(found.value)):
+            other = self._zoomed(row, float(known[row]), of)
+            if other.value > found.value + CAM_SAME * abs(found.value):
+                found = other
+        return found
 
     def _zoomed(self, row: int, value: float, of: Callable[[Profile], Floats]) -> At:
         """The largest value around a row that has one."""
@@ -363,14 +368,22 @@ class _Seek:
 
     def _dips(self, roundness: Floats) -> list[float]:
         """Turns of the least roundness next to rows where it may fall below zero."""
-        found = []
-        for k in range(1, roundness.size - 1):
-            before, here, after = (float(x) for x in roundness[k - 1 : k + 2])
-            # a parabola through the three falls by less than the larger step between them
-            if 0.0 < here <= min(before, after) and here <= max(before, after) - here:
-                dip = self._zoomed(k, -here, lambda p: -p.roundness)
-                found.append(dip.turn)
-        return found
+        rows = [row for row in self._peaks(-roundness, 0.0) if roundness[row] > 0.0]
+        return [
+            self._zoomed(row, -float(roundness[row]), lambda p: -p.roundness).turn for row in rows
+        ]
+
+    def _peaks(self, values: Floats, level: float) -> list[int]:
+        """Rows next to which a largest value may lie above a level, the first and last ones
+        included."""
+        known = np.where(np.isfinite(values), values, -np.inf)
+        # an end has one neighbour: the one behind that stands in for the other
+        around = np.concatenate([known[2:3], known, known[-3:-2]])
+        before, after = around[:-2], around[2:]
+        # a parabola through three rows rises by less than the larger step between them
+        with np.errstate(invalid="ignore"):
+            reach = known + (known - np.minimum(before, after))
+        return np.flatnonzero((known >= np.maximum(before, after)) & (reach >= level)).tolist()
 
     def _edge(self, outside: float, inside: float) -> float:
         for _ in range(_HALVINGS):

@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import typer
 
 from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
-from mechkin_cli.cli.messages import ExitCode, discard, put, say
+from mechkin_cli.cli.messages import ExitCode, discard, put, say, tell_notes
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.verdict import __version__
 
@@ -273,6 +273,7 @@ def _add(command: Command) -> None:
     """Tells typer of a command."""
 
     def call(**given: Any) -> None:
+        tell_notes(not given.get("quiet"))
         code = command.call(given)
         if code:
             raise typer.Exit(code)

@@ -126,6 +126,8 @@ FORMS = ("text", "github")
 
 _form = FORMS[0]
 
+_tells_notes = True
+
 
 def tell_as(form: str | None) -> None:
     """Chooses the form of the diagnostics from here on; None: text.
@@ -139,6 +141,12 @@ def tell_as(form: str | None) -> None:
     if form not in FORMS:
         raise UsageError(f"--messages {form}: forms are {' and '.join(FORMS)}")
     _form = form
+
+
+def tell_notes(wanted: bool) -> None:
+    """Chooses whether diagnostics that are notes are told from here on; warnings and errors are."""
+    global _tells_notes
+    _tells_notes = wanted
 
 
 def put(text: str) -> None:
@@ -242,6 +250,8 @@ def fitted(text: str, stream: TextIO | None, indent: int = 4) -> str:
 def say_diagnostics(diagnostics: Iterable[Diagnostic], file: str | None = None) -> None:
     """Diagnostics on stderr; those without a place of their own are put at the file."""
     for diagnostic in diagnostics:
+        if diagnostic.severity == "note" and not _tells_notes:
+            continue
         if _form == "github":
             _say(annotation(diagnostic, file))
             continue

@@ -13,7 +13,15 @@ from pathlib import Path
 
 from mechkin_cli.cli.commands import COMMANDS, Command, Word
 from mechkin_cli.cli.interrupts import said
-from mechkin_cli.cli.messages import ExitCode, put, say, say_diagnostics, stdout_failed, tell_as
+from mechkin_cli.cli.messages import (
+    ExitCode,
+    put,
+    say,
+    say_diagnostics,
+    stdout_failed,
+    tell_as,
+    tell_notes,
+)
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 from mechkin_cli.verdict import __version__
 
@@ -76,6 +84,7 @@ def _put(given: dict[str, Any], word: Word, text: str) -> bool:
 def run() -> int:
     """Runs the command line of the process; its exit code."""
     tell_as(None)
+    tell_notes(True)
     code = _run()
     if code == ExitCode.INTERRUPTED:
         said()
@@ -90,6 +99,7 @@ def _run() -> int:
         plain = plain_line(sys.argv[1:])
         if plain is not None:
             command, given = plain
+            tell_notes(not given.get("quiet"))
             return command.call(given)
         from mechkin_cli.cli.app import run
 

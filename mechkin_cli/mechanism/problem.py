@@ -30,7 +30,7 @@ from mechkin_cli.mechanism.derived import (
     ledger_catalogue,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
-from mechkin_cli.mechanism.joint import GROUND_NAME
+from mechkin_cli.mechanism.joint import GROUND_NAME, is_told
 from mechkin_cli.mechanism.model import Mechanism, without_effort
 from mechkin_cli.mechanism.motion import Assembly, DrivenInput, Limit, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
@@ -150,6 +150,11 @@ class Problem:
     def quantities(self) -> Mapping[str, Wanted]:
         """The quantities that the mechanism has, by name."""
         return self._quantities
+
+    @property
+    def told_quantities(self) -> tuple[str, ...]:
+        """The names among them that users see: not those of a cable's stretches."""
+        return tuple(name for name in self.quantities() if is_told(name))
 
     def why_not(self, name: str) -> str | None:
         """Why there is no quantity of a name, and what there is; None where that is not known."""

@@ -150,7 +150,7 @@ class Model(Listed):
     @cached_property
     def quantities(self) -> frozenset[str]:
         """Names of all quantities that columns and `Analysis` can use."""
-        return frozenset(self.problem.quantities())
+        return frozenset(self.problem.told_quantities)
 
     @property
     def listing(self) -> Listing:

@@ -190,7 +190,7 @@ def _wanted(design: Design, names: tuple[str, ...]) -> list[Wanted]:
     found = []
     for name in names:
         if name not in known:
-            hint = problem.why_not(name) or nearest_hint(name, known)
+            hint = problem.why_not(name) or nearest_hint(name, problem.told_quantities)
             hint = hint or "quantities are names such as J.theta; analyze takes expressions"
             raise UsageError(f"there is no quantity {name[:LONGEST_NAME]}; {hint}")
         quantity = known[name]

@@ -316,7 +316,7 @@ class Result:
             return Quantity(self._verdict(ROW_NUMBERS[name]), DIMENSIONLESS)
         wanted = problem.quantities().get(name)
         if wanted is None:
-            raise UnknownName(name, problem.quantities(), problem.why_not(name))
+            raise UnknownName(name, problem.told_quantities, problem.why_not(name))
         if wanted.kind in BEARING_KINDS:
             return bearing_load(wanted, self.quantity)
         if (values := self._prescribed(name)) is not None:

@@ -376,3 +376,7 @@ nearer than this look alike in a list of six digits."""
 CAM_CLOSED: Final = 1e-9
 """Both ends of a cam's profile that are nearer than this part of its size are one point: rounding
 leaves 1e-15, a follower that does not come back a thousandth."""
+
+CAM_SAME: Final = 1e-12
+"""Extremes of a cam that differ by less than this part are one value that is taken several times,
+as on a rise and its return; the first is told."""

@@ -168,6 +168,8 @@ class Base:
             return None  # which loops are followed depends on what is asked
         if SWEEP not in self.design.built.runs:
             return None  # there is no first row to continue
+        if isinstance(self.design.built.graph, Diagnostic):
+            return None  # nothing is solved of what is not driven: a cam, or mobility
         session, start = first_assembly(self.design.session)
         if start.state is None or session.size is None:
             return None

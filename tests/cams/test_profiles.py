@@ -142,6 +142,18 @@ def test_pressure_angle_and_curvature_of_a_roller(offset: int) -> None:
     assert found.greatest_pressure_angle.turn == pytest.approx(float(mp.degrees(most)), rel=1e-6)
 
 
+def test_a_cam_of_other_parameters_needs_no_sweep() -> None:
+    """R + s + s'' = R + 10 mm under a flat face with s = 10 mm (1 - cos(theta))."""
+    law = 'value: "10 mm*(1 - cos(theta))"'
+    model = cam(law, "{type: translating, contact: flat, base_radius: R}")
+    for size in (40.0, 35.0):
+        varied = model.with_parameters({"R": size})
+        np.testing.assert_allclose(varied.cam().radius, size + 10.0, rtol=1e-12)
+        assert varied.mobility().mobility == 1
+    with pytest.raises(InvalidFile, match="is not driven"):
+        varied.analyze()
+
+
 def test_undercut_is_named_with_its_place() -> None:
     """A flat face over too small a base: R + s + s'' falls below zero."""
     found = cam(RISE, "{type: translating, contact: flat, base_radius: 30 mm}").cam()
@@ -165,6 +177,31 @@ def test_undercut_is_named_with_its_place() -> None:
         changed = roller.replace("radius: 35 mm}", f"radius: {radius}}}")
         changed = changed.replace("base_radius: 35 mm", f"base_radius: 70 mm - {radius}")
         assert bool(cam(RISE, changed).cam().undercut) == is_cut
+
+
+@pytest.mark.parametrize("at", [-0.3, 0.3, -2.4, 2.5])
+@pytest.mark.parametrize("clear", [0.5, -1e-4])
+def test_extremes_beside_the_seam_of_the_turn(at: float, clear: float) -> None:
+    """A flat face over s = f(theta) - f(0), f = cos(2 (theta - at)) + cos(3 (theta - at)), whose
+    radius R + s + s'' = R - f(0) - 3 cos(...) - 8 cos(...) is least at the turn `at`."""
+    with mp.workdps(30):
+        begin = mp.cos(2 * mp.radians(at)) + mp.cos(3 * mp.radians(at))
+    size = float(begin) + 11.0 + clear
+    law = f'value: "1 mm*(cos(2*(theta - {at} deg)) + cos(3*(theta - {at} deg))) - {begin} mm"'
+    follower = f"{{type: translating, contact: flat, base_radius: {size!r} mm}}"
+    found = cam(law, follower).cam(points=72)
+    if clear > 0.0:
+        least = found.least_radius
+        assert least is not None
+        assert least.value == pytest.approx(clear, rel=1e-10)
+        assert least.turn == pytest.approx(at % 360.0, abs=1e-4)
+        assert found.undercut == ()
+    else:  # about the turn, as wide as the parabola below zero: 84 x^2/2 = 1e-4
+        half = np.degrees(np.sqrt(-2.0 * clear / 84.0))
+        assert len(found.undercut) == 1
+        assert found.undercut[0] == pytest.approx(
+            (at % 360.0 - half, at % 360.0 + half), abs=1e-4 * half
+        )
 
 
 def test_lift_off_is_told_in_the_rows_of_the_sweep() -> None:

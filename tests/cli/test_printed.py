@@ -84,6 +84,34 @@ def test_quiet_keeps_warnings_only(mechkin, write) -> None:
     assert run.err.count("\n") == 1
 
 
+STRUCK = """\
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {m: {mass: 1, center_of_mass: [0, 0]}}
+joints: {S: {type: P, links: [ground, m], point: [0, 0], axis: [1, 0]}}
+limits: {S.s: {max: 0.5, restitution: 1}}
+responses: {r: {start: {S.s: 0, S.s_dot: 1}, time: {from: 0, to: 0.75, count: 4}}}
+"""
+"""A slider without forces: it comes to its limit once, of which a note tells."""
+
+
+@pytest.mark.parametrize("out", [("--out", "out"), ("--out=out",)], ids=["plain", "typer"])
+@pytest.mark.parametrize("command", ["analyze", "view"])
+def test_quiet_leaves_notes_to_the_record(mechkin, write, command, out) -> None:
+    file = write("struck.yaml", STRUCK)
+    if command == "view":
+        out = tuple(word.replace("=out", "=out/page.html") for word in out)
+    assert "note: S.s comes to its limit once" in mechkin(command, file, *out).err
+    run = mechkin(command, file, "--quiet", *out)
+    assert (run.code, run.err) == (0, "")
+    if command == "analyze":
+        run = mechkin(command, file, "--quiet", "--json", *out)
+        assert run.err == ""
+        (response,) = run.json["responses"]
+        assert [one["severity"] for one in response["diagnostics"]] == ["note"]
+
+
 @pytest.mark.parametrize("columns", [80, 200])
 def test_tables_fit_the_width(mechkin, monkeypatch, columns) -> None:
     monkeypatch.setenv("COLUMNS", str(columns))

@@ -49,6 +49,11 @@ def test_a_tackle_of_four_strands() -> None:
     # nothing of the stretches is told
     assert set(modes.modes[0].coordinates) == {"G.s", "C.s"}
     assert set(model.problem.mechanism.coordinates) == {"G.s", "C.s"}
+    assert {name.split(".")[0] for name in model.quantities} == {
+        *("G", "C", "K", "a", "b", "c", "e", "block", "cart", "ground", "row")
+    }
+    for name in result:
+        assert len(result[name]) == 3
 
 
 def test_a_cable_does_not_push() -> None:

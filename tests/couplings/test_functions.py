@@ -458,3 +458,36 @@ def test_rows_beyond_a_table_are_named_as_beyond_its_ends(tmp_path: Path) -> Non
     assert "A.theta" in told[0]
     assert "(limit 0 rad)" in told[0]
     assert "(limit 5 rad)" in told[1]
+
+
+@pytest.mark.parametrize("to", ["theta", "s"])
+@pytest.mark.parametrize("by", ["theta", "s"])
+def test_what_is_transmitted_is_told_at_the_follower(by: str, to: str) -> None:
+    """b = f(a), f = sin(2 a)/2, with an effort of -2 on B: K holds it with Q = 2 there, and puts
+    in Q f' a'; on A it applies -f' Q, which the drive there holds."""
+    joints = {
+        "theta": "{type: R, links: [ground, LINK], point: [0, 0]}",
+        "s": "{type: P, links: [ground, LINK], point: [0, 0], axis: [1, 0]}",
+    }
+    one = {"theta": "1 rad", "s": "1 m"}
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{a: {{}}, b: {{}}}}
+joints:
+  A: {joints[by].replace("LINK", "a")}
+  B: {joints[to].replace("LINK", "b")}
+couplings:
+  K: {{type: function, of: A.{by}, gives: B.{to}, value: "{one[to]}*sin({by}/({one[by]})*2 rad)/2"}}
+motion: {{inputs: {{A.{by}: {{from: 0.2, to: 0.4, count: 3, rate: 3}}}}}}
+loads: [{{type: {"torque" if to == "theta" else "force"}, joint: B, value: -2}}]
+"""
+    result = mk.loads(text).analyze()
+    slope = np.cos(2.0 * result[f"A.{by}"])
+    words = {"theta": "K.torque", "s": "K.force"}
+    np.testing.assert_allclose(result[words[to]], 2.0, rtol=1e-13)
+    np.testing.assert_allclose(result["K.power"], 2.0 * slope * 3.0, rtol=1e-13)
+    np.testing.assert_allclose(result["A.effort"], 2.0 * slope, rtol=1e-13)
+    if by != to:
+        np.testing.assert_allclose(result[words[by]], -2.0 * slope, rtol=1e-13)

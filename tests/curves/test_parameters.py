@@ -100,3 +100,108 @@ def test_a_power_that_is_no_whole_number_has_its_slopes_at_zero() -> None:
     np.testing.assert_allclose(result["B.theta"], x**2.5, atol=1e-15)
     np.testing.assert_allclose(result["B.theta_dot"], 2.5 * x**1.5 * w, atol=1e-14)
     np.testing.assert_allclose(result["B.theta_ddot"], 3.75 * x**0.5 * w * w, atol=1e-14)
+
+
+ON_LINE = (
+    HEAD.replace(", other: {}", "")
+    + """parameters: {e: 0.5}
+joints:
+  B: {type: P, links: [ground, one], point: [0, 0], axis: [1, 0]}
+  G: {type: Ps, links: [one, ground], point: [0, 0], curve: {line: [[-1, 0], ["1 m*e", 0]]}}
+motion: {inputs: {B.s: {from: 0, to: .4, count: 3}}}
+"""
+)
+ON_CIRCLE = (
+    HEAD
+    + """parameters: {e: 0.5}
+joints:
+  B: {type: R, links: [ground, one], point: [0, 0]}
+  S: {type: P, links: [one, other], point: [1, 0], axis: [1, 0]}
+  G: {type: Ps, links: [other, ground], point: [1, 0], curve: CURVE}
+motion: {inputs: {B.theta: {from: 0, to: .4, count: 3}}}
+"""
+)
+ENDED = {
+    "line": ON_LINE,
+    "arc": ON_CIRCLE.replace(
+        "CURVE",
+        '{arc: [[1, 0], ["1 m*cos(e*0.5 rad)", "1 m*sin(e*0.5 rad)"], '
+        '["1 m*cos(e*1 rad)", "1 m*sin(e*1 rad)"]]}',
+    ),
+    "formula": ON_CIRCLE.replace(
+        "CURVE", '{at: ["1 m*cos(u)", "1 m*sin(u)"], from: 0 rad, to: "e*1 rad"}'
+    ),
+}
+
+
+@pytest.mark.parametrize("word", ENDED)
+def test_the_ends_of_a_curve_move_with_a_parameter(word: str) -> None:
+    """It goes on to e, in m or rad: rows at 0, 0.2 and 0.4 beyond it have no place on it."""
+    model = mk.loads(ENDED[word])
+    ends = (0.5, 0.3, 0.1)
+    inside = [[at < end for at in (0.0, 0.2, 0.4)] for end in ends]
+    varied = model.vary({"e": ends}).status
+    for number, end in enumerate(ends):
+        again = model.with_parameters({"e": end}).analyze()["row.status"]
+        known = ["ok" if is_inside else "beyond-limit" for is_inside in inside[number]]
+        assert list(varied[number]) == known
+        assert list(again) == known
+
+
+TORUS = """
+format: 1
+units: {length: m, angle: rad}
+parameters: {ra: 0.1 m, tu: 0.05 m}
+links: {arm: {}, pin: {}}
+joints:
+  A: {type: P, links: [ground, arm], point: [0, 0, 0], axis: [1, 0, 0]}
+  B: {type: P, links: [arm, pin], point: [0, 0, 0], axis: [0, 0, 1]}
+  G:
+    type: Sp
+    links: [pin, ground]
+    point: [0.13, 0, 0.04]
+    surface: {torus: [0, 0, 0], radius: ra, tube: tu}
+motion: {inputs: {A.s: {from: 0, to: 0.005, count: 2}}}
+"""
+TURN = (
+    HEAD
+    + """parameters: {p: 2 rad, h: 0 rad}
+joints:
+  A: {type: R, links: [ground, other], point: [.3, 0]}
+  B: {type: R, links: [ground, one], point: [0, 0]}
+couplings:
+  K:
+    type: function
+    of: A.theta
+    gives: B.theta
+    law:
+      law: sequence
+      segments:
+        - {for: p, to: 0.5 rad, law: cycloidal}
+        - {for: 2*pi*(1 rad) - 2 rad, to: h, law: cycloidal}
+motion: {inputs: {A.theta: {from: 0, to: .2, count: 3}}}
+"""
+)
+REFUSED = {
+    "a thick tube": (TORUS, {"tu": 0.12}, "the tube of a torus is thinner"),
+    "a small circle": (TORUS, {"ra": 0.04}, "the tube of a torus is thinner"),
+    "an arc that is straight": (
+        ON_CIRCLE.replace("CURVE", "{arc: [[1, 0], [1 m + 0.1 m*(e - 1), .2], [1, .5]]}"),
+        {"e": 1.0},
+        "lie on a line",
+    ),
+    "more than a turn": (TURN, {"p": 2.5}, "span more than a turn"),
+    "a turn that does not come back": (TURN, {"h": 0.2}, "does not end where it began"),
+}
+
+
+@pytest.mark.parametrize("word", REFUSED)
+def test_a_variant_is_refused_as_its_file_is(word: str) -> None:
+    text, values, said = REFUSED[word]
+    model = mk.loads(text)
+    assert set(model.analyze()["row.status"]) == {"ok"}
+    with pytest.raises(mk.InvalidFile, match=said):
+        mk.loads(text, parameters=values)
+    with pytest.raises(mk.InvalidFile, match=said):
+        model.with_parameters(values).analyze()
+    assert said in str(model.vary({name: [value] for name, value in values.items()}).errors[0])
