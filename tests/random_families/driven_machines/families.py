@@ -10,6 +10,7 @@ from random_families.driven_machines import (
     cam_profiles,
     each_way,
     misread,
+    on_carriers,
     rebounds,
     rises,
     said_otherwise,
@@ -26,6 +27,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, Judged], None]] = {
     "tracks": tracks.judge,
     "cables": cables.judge,
     "cam_profiles": cam_profiles.judge,
+    "on_carriers": on_carriers.judge,
     "said_otherwise": said_otherwise.judge,
     "misread": misread.judge,
 }

@@ -17,6 +17,7 @@ SEEDS = {
     "tracks": 24,
     "cables": 24,
     "cam_profiles": 24,
+    "on_carriers": 12,
     "said_otherwise": 20,
     "misread": 80,
 }
