@@ -623,3 +623,70 @@ responses: {r: {start: {O.theta: 0}, time: {from: 0, to: 1, step: 0.02}}}
     assert rows["C.effort"][-1] == pytest.approx(force, rel=1e-10)
     assert set(rows["row.status"]) == {"ok"}
     assert np.nanmax(rows["row.energy_error"]) < 1e-9
+
+
+RUBBING = """
+format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{m: {{mass: 1, center_of_mass: [0, 0]}}{link}}}
+joints:
+  S: {{type: P, links: [ground, m], point: [0, 0], axis: [1, 0]}}
+{joint}loads:
+  - {{type: gravity, g: [0, -10]}}
+  - {{type: force, joint: S, value: "5 N - 10 N/s*time"}}
+  - {{type: friction, joint: S, coefficient: 0.1}}
+limits: {{S.s: {{max: 0.1, restitution: 0}}}}
+responses: {{r: {{start: {{S.s: 0{start}}}, time: {{from: 0, to: 1.2, count: 25}}}}}}
+"""
+BESIDE = {
+    "alone": {"link": "", "joint": "", "start": ""},
+    "beside a slide": {
+        "link": ", n: {mass: 2, center_of_mass: [0, 1]}",
+        "joint": "  Q: {type: P, links: [ground, n], point: [0, 1], axis: [1, 0]}\n",
+        "start": ", Q.s: 0, Q.s_dot: 1",
+    },
+}
+
+
+@pytest.mark.parametrize("words", BESIDE.values(), ids=BESIDE.keys())
+def test_a_limit_bears_what_presses_on_it_and_friction_holds_what_it_lets_go(
+    words: dict[str, str],
+) -> None:
+    """1 N of friction: off at once by 4 N - 10 t, at the limit where 2 t^2 - 5 t^3/3 = 0.1; let go
+    at 5 N = 10 t, and off it where that is less than -1 N, by 6 N - 10 t."""
+    rows = mk.loads(RUBBING.format(**words)).respond("r")
+    time, place = np.asarray(rows["time"]), np.asarray(rows["S.s"])
+    assert set(rows["row.status"]) == {"ok"}
+    comes = min(x.real for x in np.roots([-5 / 3, 2, 0, -0.1]) if x.real > 0)
+    before, after = time < comes, time > 0.6
+    np.testing.assert_allclose(
+        place[before], 2 * time[before] ** 2 - 5 * time[before] ** 3 / 3, atol=1e-9
+    )
+    rests = ~(before | after)
+    np.testing.assert_allclose(place[rests], 0.1, atol=1e-12)
+    np.testing.assert_allclose(place[after], 0.1 - 5 * (time[after] - 0.6) ** 3 / 3, atol=1e-8)
+    borne = rests & (time < 0.5)
+    np.testing.assert_allclose(rows["S.effort"][borne], 10 * time[borne] - 5, atol=1e-9)
+    held = rests & (time > 0.5)
+    np.testing.assert_allclose(rows["S.effort"][held], 0.0, atol=1e-12)
+
+
+def test_a_lossy_rack_rests_at_a_limit_of_its_slide() -> None:
+    """The load drives the pinion: 5 N - r F = I s../r, of which the teeth take a share 0.9 on."""
+    text = RUBBING.format(
+        link=", n: {mass: 1, center_of_mass: [0, 0.02], inertia: 0.0001}",
+        joint="  A: {type: R, links: [ground, n], point: [0, 0.02]}\n",
+        start="",
+    ).replace("limits:", "couplings: {K: {type: rack, joints: [A, S], radius: 0.02, EFF}}\nlimits:")
+    text = text.replace("EFF", "efficiency: 0.9").replace(' - 10 N/s*time"', '"')
+    text = text.replace("  - {type: friction, joint: S, coefficient: 0.1}\n", "")
+    rows = mk.loads(text).respond("r")
+    time = np.asarray(rows["time"])
+    assert set(rows["row.status"]) == {"ok"}
+    rate = 5.0 / (1.0 + 0.0001 / 0.02**2 / 0.9)
+    comes = sqrt(0.2 / rate)
+    before = time < comes
+    np.testing.assert_allclose(rows["S.s"][before], 0.5 * rate * time[before] ** 2, atol=1e-9)
+    np.testing.assert_allclose(rows["S.s"][~before], 0.1, atol=1e-12)
+    np.testing.assert_allclose(rows["S.effort"][~before], -5.0, rtol=1e-12)
