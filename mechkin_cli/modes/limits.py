@@ -20,6 +20,8 @@ from mechkin_cli.plan import Demand
 from mechkin_cli.session import Ask, RowInputs
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mechkin_cli.mechanism import Limit, Problem
     from mechkin_cli.modes.circuits import Passage, Walker
     from mechkin_cli.show import Floats
@@ -81,14 +83,14 @@ class LimitedWalk:
         value = float(self._read(np.array([start[0]]), start[1][:, None])[0, 0])
         return admitted(self.session.problem, self.limit, value, self.session.layout.length)
 
-    def reached(self, start: Passage, end: float) -> float | None:
+    def reached(self, start: Passage, end: float, turns: int = 1) -> float | None:
         """The input at the first place on the way to an end, from one within the limits, at which
-        the coordinate comes to a limit and goes beyond."""
+        the coordinate comes to a limit and goes beyond. The way may be some full turns."""
         first, state = start
         before = self.begin(start)
         if before is None or first == end or not isfinite(end):
             return None
-        count = tolerances.RANGE_SAMPLES
+        count = tolerances.RANGE_SAMPLES * turns
         parts = np.linspace(0.0, 1.0, count + 1)[:-1]
         # towards a dead centre the coordinate may go as the root of the distance
         near = [1.0 - ldexp(1.0, -2 * k) / count for k in range(1, NEAR_END)]
@@ -105,6 +107,27 @@ class LimitedWalk:
                 return self._refined(followed.guess[:, here], steps[here], steps[k], before, at)
             before = now
         return None
+
+    def reached_later(self, start: Passage, end: float) -> float | None:
+        """The same beyond a full turn of the input, which leads to `end`: where a coordinate that
+        goes on with every turn comes to its limit; None where it comes back, or has no limit
+        there."""
+        before, turned = self.begin(start), end - start[0]
+        if before is None or not isfinite(turned):
+            return None
+        steps = start[0] + turned * np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)
+        followed = self.walker.follow(steps, start[1])
+        if followed.reached < steps.size:
+            return None
+        last = before
+        for value in self._read(steps, followed.guess)[0]:
+            last = self._beside(float(value), last)
+        advance = last - before
+        limit = self.limit.high if advance > 0.0 else self.limit.low
+        if abs(advance) <= tolerances.AT_LIMIT or not isfinite(limit):
+            return None
+        turns = min(ceil((limit - before) / advance) + 1, tolerances.MOST_COUPLED_TURNS)
+        return self.reached(start, start[0] + turns * turned, turns)
 
     def _beside(self, value: float, before: float) -> float:
         """The angle in the turn in which it is next to the one before."""
@@ -143,3 +166,15 @@ class LimitedWalk:
 
 NEAR_END = 13
 """Places beside the last sample that come nearer to an end by quarters."""
+
+
+def first_limit(
+    walks: Sequence[LimitedWalk], start: Passage, end: float, *, goes_on: bool
+) -> tuple[float, LimitedWalk] | None:
+    """The input at the first limit on the way to an end, and what comes to it; where the way goes
+    on, as behind a full turn, also beyond the end. None where there is none."""
+    found = [(at, walk) for walk in walks if (at := walk.reached(start, end)) is not None]
+    if not found and goes_on:
+        later = [(walk.reached_later(start, end), walk) for walk in walks]
+        found = [(at, walk) for at, walk in later if at is not None]
+    return min(found, key=lambda one: abs(one[0] - start[0]), default=None)

@@ -43,7 +43,7 @@ from mechkin_cli.modes.circuits import (
     joined,
     undecided,
 )
-from mechkin_cli.modes.limits import LimitedWalk, beyond_notes
+from mechkin_cli.modes.limits import LimitedWalk, beyond_notes, first_limit
 from mechkin_cli.plan import TrackEnd
 from mechkin_cli.proofs import ModeProofs, prove_modes
 from mechkin_cli.record import NamedTuple, dataclass, replace
@@ -604,11 +604,11 @@ class _Survey:
             for walk in self.limited:
                 if walk.begin(start) is None:
                     self._say(name, walk, "stands beyond it: its range is that without it")
-                    continue
-                at = walk.reached(start, end.value)
-                if at is not None:
-                    end = End("limit", at)
-                    self._say(name, walk, f"ends the range {word}")
+            first = first_limit(self.limited, start, end.value, goes_on=end.kind == "far")
+            if first is not None:
+                at, walk = first
+                end = End("limit", at)
+                self._say(name, walk, f"ends the range {word}")
             found.append(end)
         return (found[0], found[1]) if any(end.kind == "limit" for end in found) else None
 
