@@ -139,13 +139,13 @@ class LimitedWalk:
         value = float(self._read(np.array([start[0]]), start[1][:, None])[0, 0])
         return admitted(self.session.problem, self.limit, value, self.session.layout.length)
 
-    def reached(self, start: Passage, end: float) -> float | None:
+    def reached(self, start: Passage, end: float, turns: int = 1) -> float | None:
         """The input at the first place on the way to an end, from one within the limits, at which
-        the coordinate comes to a limit and goes beyond."""
+        the coordinate comes to a limit and goes beyond. The way may be some full turns."""
         before = self.begin(start)
         if before is None or start[0] == end or not isfinite(end):
             return None
-        course = self._course(start, end, before)
+        course = self._course(start, end, before, turns)
         off = self.limit.beyond(course.values, self.session.layout.length)
         beyond = np.flatnonzero(off)
         if not beyond.size:
@@ -168,10 +168,10 @@ class LimitedWalk:
             places += sorted(own, reverse=end < start[0])
         return places
 
-    def _course(self, start: Passage, end: float, value: float) -> _Course:
+    def _course(self, start: Passage, end: float, value: float, turns: int = 1) -> _Course:
         """The coordinate from a place, where it has a value, on the way to an end."""
         first, state = start
-        count = tolerances.RANGE_SAMPLES
+        count = tolerances.RANGE_SAMPLES * turns
         parts = np.linspace(0.0, 1.0, count + 1)[:-1]
         # towards a dead centre the coordinate may go as the root of the distance
         near = [1.0 - ldexp(1.0, -2 * k) / count for k in range(1, NEAR_END)]
@@ -226,6 +226,27 @@ class LimitedWalk:
         value = float(course.values[before])
         rising = bool(course.values[k] > at)
         return self._refined(course.states[:, before], one, other, value, at, rising)
+
+    def reached_later(self, start: Passage, end: float) -> float | None:
+        """The same beyond a full turn of the input, which leads to `end`: where a coordinate that
+        goes on with every turn comes to its limit; None where it comes back, or has no limit
+        there."""
+        before, turned = self.begin(start), end - start[0]
+        if before is None or not isfinite(turned):
+            return None
+        steps = start[0] + turned * np.linspace(0.0, 1.0, tolerances.RANGE_SAMPLES + 1)
+        followed = self.walker.follow(steps, start[1])
+        if followed.reached < steps.size:
+            return None
+        last = before
+        for value in self._read(steps, followed.guess)[0]:
+            last = self._beside(float(value), last)
+        advance = last - before
+        limit = self.limit.high if advance > 0.0 else self.limit.low
+        if abs(advance) <= tolerances.AT_LIMIT or not isfinite(limit):
+            return None
+        turns = min(ceil((limit - before) / advance) + 1, tolerances.MOST_COUPLED_TURNS)
+        return self.reached(start, start[0] + turns * turned, turns)
 
     def _beside(self, value: float, before: float) -> float:
         """The angle in the turn in which it is next to the one before."""
@@ -295,12 +316,12 @@ def limited_ends(
         return nowhere, nowhere
     found: list[End] = []
     for end, side in zip(ends, (BELOW, ABOVE), strict=True):
-        for walk in walks:
-            at = walk.reached(inner, end.value)
-            if at is not None:
-                end = End("limit", at)
-                if walk.limit not in left:
-                    met.add(walk.limit, side, name)
+        first = first_limit(walks, inner, end.value, goes_on=end.kind == "far")
+        if first is not None:
+            at, walk = first
+            end = End("limit", at)
+            if walk.limit not in left:
+                met.add(walk.limit, side, name)
         found.append(end)
     return found[0], found[1]
 
@@ -331,3 +352,15 @@ def _nearest_within(
 
 NEAR_END = 13
 """Places beside the last sample that come nearer to an end by quarters."""
+
+
+def first_limit(
+    walks: Sequence[LimitedWalk], start: Passage, end: float, *, goes_on: bool
+) -> tuple[float, LimitedWalk] | None:
+    """The input at the first limit on the way to an end, and what comes to it; where the way goes
+    on, as behind a full turn, also beyond the end. None where there is none."""
+    found = [(at, walk) for walk in walks if (at := walk.reached(start, end)) is not None]
+    if not found and goes_on:
+        later = [(walk.reached_later(start, end), walk) for walk in walks]
+        found = [(at, walk) for at, walk in later if at is not None]
+    return min(found, key=lambda one: abs(one[0] - start[0]), default=None)

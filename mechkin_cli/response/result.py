@@ -150,7 +150,10 @@ class ResponseResult(Result):
         return mode_letter(self.chosen, self.start)
 
     def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
-        return super()._row_inputs(session, inputs)._replace(chart=self.chart)
+        chart = self.chart
+        if not session.problem.mechanism.frictions:  # nothing rubs in that session
+            chart = chart._replace(friction=chart.friction[:0])
+        return super()._row_inputs(session, inputs)._replace(chart=chart)
 
     @cached_property
     def input_rates(self) -> Mapping[str, Floats]:

@@ -76,6 +76,29 @@ def test_plane_four_bar_by_the_law_of_cosines(four_bar):
     assert np.max(np.abs(four_bar["D.theta.transmission_angle"] - expected)) <= 2e-12
 
 
+def test_in_a_response_what_rubs_does_not_change_it():
+    """The static force of the drive alone, by the law of cosines where the crank is then."""
+    text = f"""
+format: 1
+plane: xy
+links: {{crank: {{mass: 1, center_of_mass: [1, 0], inertia: 1}}, coupler: {{}}, rocker: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0]}}
+  B: {{type: R, links: [crank, coupler], point: [2, 0]}}
+  C: {{type: R, links: [coupler, rocker], point: [5.125, {HEIGHT}]}}
+  D: {{type: R, links: [ground, rocker], point: [6, 0]}}
+loads:
+  - {{type: torque, joint: A, value: 9}}
+  - {{type: friction, joint: D, coefficient: 0.2, radius: 0.1}}
+responses: {{r: {{start: {{A.theta: 20, A.theta_dot: 1}}, time: {{from: 0, to: 1, count: 9}}}}}}
+"""
+    rows = mk.loads(text).respond("r")
+    assert set(rows["row.status"]) == {"ok"}
+    ratio = np.abs((25 + 16 - (4 + 36 - 24 * cosine(rows))) / 40)
+    expected = [float(mp.degrees(mp.acos(x))) for x in ratio]
+    assert np.max(np.abs(rows["D.theta.transmission_angle"] - expected)) <= 2e-12
+
+
 def rocker_angle(theta):
     """Of the rocker against the ground, from the triangles over the diagonal from B to D."""
     x, y = 6 - 2 * mp.cos(theta), -2 * mp.sin(theta)

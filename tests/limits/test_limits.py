@@ -375,3 +375,24 @@ def test_one_note_tells_of_all_modes_at_a_limit() -> None:
             "all limits",
         ]
     )
+
+
+@pytest.mark.parametrize("teeth", ["[20, 20]", "[30, 20]", "[20, 60]"])
+def test_a_range_ends_at_a_limit_some_turns_on(teeth: str) -> None:
+    """Wheels that are back after one turn or three, with a limit that takes longer."""
+    one, other = map(float, teeth.strip("[]").split(","))
+    text = f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad}}
+links: {{a: {{}}, b: {{}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [ground, b], point: [1, 0]}}
+couplings: {{K: {{type: gear, joints: [A, B], teeth: {teeth}}}}}
+limits: {{A.theta: [-0.2, 90], B.theta: [-40, 2]}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 0.1, count: 2}}}}}}
+"""
+    (found,) = mk.loads(text).ranges().ranges
+    assert found.lower.value == pytest.approx(-0.2, abs=1e-9)
+    assert found.upper.value == pytest.approx(min(90.0, 40.0 * other / one), abs=1e-9)
