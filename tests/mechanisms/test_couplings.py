@@ -322,29 +322,6 @@ def test_cardioid_gears() -> None:
     near(rows["norm(pen.velocity)"], 2.0 * 2.0 * 48.0 * np.abs(np.sin(theta / 2.0)), 1e-10)
 
 
-def test_curved_swash_plate() -> None:
-    """A sphere of 90 whose centre goes round at 12 mm, seen from a nose at 32 mm: the pressure and
-    the plunger's inertia along the bore are the axial part of the force square to the sphere."""
-    rows = rows_of("curved_swash_plate")
-    height = mp.sqrt(90**2 - 20**2)
-
-    def below(x: Any) -> Any:
-        return mp.sqrt(90**2 - 32**2 - 12**2 + 2 * 32 * 12 * mp.cos(x))
-
-    follows(rows, "shaft_bearing.theta", "bore.s", lambda x: height - below(x), 150.0)
-    axial = 2262.0 + 0.06e-3 * rows["bore.s_ddot"]
-    with mp.workdps(40):
-        turns = [mp.radians(mp.mpf(float(turn))) for turn in rows["shaft_bearing.theta"]]
-        steep = np.array([float(below(at)) for at in turns]) / 90.0
-    near(rows["norm(nose.force)"], axial / steep, 1e-10)
-    work = slopes(
-        rows,
-        "shaft_bearing.theta",
-        lambda x: (150 * mp.diff(below, x)) ** 2 * mp.mpf("0.06e-3") / 2 - 2262 * below(x),
-    )
-    near(rows["shaft_bearing.effort"], work, 1e-9)
-
-
 NAMES = (
     "tackle",
     "cylinder_boom",
@@ -361,7 +338,6 @@ NAMES = (
     "whitworth",
     "cardan_gears",
     "cardioid_gears",
-    "curved_swash_plate",
 )
 
 NOT_REPEATED = {"geneva_lock": {"wheel", "rate", "torque", "way"}, "cardan_gears": {"straight_y"}}
