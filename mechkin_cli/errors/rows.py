@@ -23,8 +23,8 @@ from mechkin_cli.exact import PI
 from mechkin_cli.expressions import Quantity, UnknownName
 from mechkin_cli.mechanism import (
     BEARING_KINDS,
-    COEFFICIENT_KINDS,
     DERIVED_KINDS,
+    DRIVEN_KINDS,
     FINITE_KINDS,
     LEDGER_KINDS,
     TIME_OF_ROW,
@@ -91,7 +91,7 @@ def reason_of(problem: Problem, quantity: Wanted) -> str:
         return VERDICT
     if quantity.kind in LEDGER_KINDS:
         return INTEGRAL
-    if problem.response is not None and quantity.kind in COEFFICIENT_KINDS:
+    if problem.response is not None and quantity.kind in DRIVEN_KINDS:
         return AS_DRIVEN
     if quantity.kind in FINITE_KINDS - {"finite_angle"}:
         return DRAWING

@@ -47,9 +47,9 @@ __getattr__, __dir__ = lazy_names(
         "constraint": "Constraint DistanceConstraint InputConstraint PairConstraint",
         "curve": "CoordinateLaw Curve Ends ExpressionOf Interpolation joined_curve LoadLaw "
         "smooth_curve",
-        "derived": "COEFFICIENT_KINDS DERIVED_KINDS FINITE_KINDS INSTANT_KINDS Input LEDGER_KINDS "
-        "ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated base_name "
-        "base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
+        "derived": "COEFFICIENT_KINDS DERIVED_KINDS DRIVEN_KINDS FINITE_KINDS INSTANT_KINDS Input "
+        "LEDGER_KINDS ORIENTATION_KINDS POWER_KINDS QUATERNION TRANSMISSION_KINDS accelerated "
+        "base_name base_quantity driving_joint hint_in_plane hint_of is_of_motion reference_point",
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint counted far_link frame_on is_told is_written stop_of "
         "told_coordinates",

@@ -37,6 +37,10 @@ from mechkin_cli.units import (
 
 COEFFICIENT_KINDS: set[str] = {"per_acceleration", "without_acceleration"}
 
+DRIVEN_KINDS: set[str] = {*COEFFICIENT_KINDS, "transmission_angle"}
+"""What is read in a response as if the start's coordinates were driven: a force that nothing drives
+is in no equilibrium."""
+
 _FORCES = {
     "force",
     "moment",

@@ -12,7 +12,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly import mode_letter
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism import (
-    COEFFICIENT_KINDS,
+    DRIVEN_KINDS,
     ORDERS,
     DrivenInput,
     MotionInputs,
@@ -206,7 +206,7 @@ class ResponseResult(Result):
         if of_response is not None:
             return Quantity(getattr(self, of_response.kind), of_response.dimension)
         wanted = self.problem.quantities().get(name)
-        if wanted is not None and wanted.kind in COEFFICIENT_KINDS:
+        if wanted is not None and wanted.kind in DRIVEN_KINDS:
             return self.as_driven.quantity(name)
         if wanted is not None and self.is_given(wanted):
             return Quantity(self._effort(wanted), wanted.dimension)
@@ -219,7 +219,7 @@ class ResponseResult(Result):
             quantity
             for quantity in wanted
             if quantity.name not in own
-            and quantity.kind not in COEFFICIENT_KINDS
+            and quantity.kind not in DRIVEN_KINDS
             and not self.is_given(quantity)
         )
 
