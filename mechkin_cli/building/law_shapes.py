@@ -16,7 +16,7 @@ belong to it; where two pieces meet that both move, the place belongs to the lat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import inf, pi, prod
 from typing import TYPE_CHECKING, Any
@@ -183,14 +183,40 @@ class PiecewiseLaw:
         return found
 
     def recorded(self, rows: ExactRows, x: Any, at: Floats) -> Orders:
-        """As `orders`, of a recorded number x of the rows; doubles `at` (rows,) tell its pieces."""
-        turns = self._turns(at)
-        if turns.any():
-            x = x - rows.given(turns) * self.period
-        piece = self._piece_of(at - turns * self._length)
-        row = [c[0] if _alike(c) else rows.picked(c, piece) for c in self._columns]
+        """As `orders`, of recorded moments x of the rows; doubles `at` (rows,) tell their pieces,
+        but for rows at an edge while numbers are shifted: they are in the one piece or the other as
+        shifts move them, or the edge."""
+        assert self.period is None  # of angles alone
+        piece = self._piece_of(at)
+        crossed = self._crossing(rows, x, at, piece)
+        row = [c[0] if _alike(c) else rows.picked(c, crossed) for c in self._columns]
         value, first, second, third = self._evaluated(x, row, len(_ORDERS))
         return value, first, second, third
+
+    def _crossing(
+        self, rows: ExactRows, x: Any, at: Floats, piece: NDArray[np.intp]
+    ) -> Callable[[], NDArray[np.intp]]:
+        """What gives the pieces of the rows by the shifts of the moment."""
+        starts = self._starts
+        if not starts.size:
+            return lambda: piece
+        edge = np.argmin(np.abs(at[:, None] - starts), axis=1)
+        extent = max(starts[-1], at.max()) - min(starts[0], at.min())
+        is_at = np.abs(at - starts[edge]) <= COURSE_SAME * extent
+        if not is_at.any():
+            return lambda: piece
+        gap = x - rows.picked([piece.start for piece in self.pieces[1:]], edge)
+
+        def crossed() -> NDArray[np.intp]:
+            found = rows.changes(gap)
+            if found is None:
+                return piece
+            own, change = found
+            # exact numbers that do not change differ by less than a double-double's rounding
+            moved = is_at & (np.abs(change) > np.maximum(np.abs(own), COURSE_SAME**2 * extent))
+            return np.where(moved, edge + (own + change > 0.0), piece)
+
+        return crossed
 
     @property
     def _length(self) -> float:

@@ -12,7 +12,7 @@ the recording, so that the structure is that of the ordinary build and the tape 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from decimal import Decimal
 from fractions import Fraction
@@ -43,8 +43,10 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.tape.recorder import Instruction
 
-    _Picked = tuple[Sequence[Any], NDArray[np.intp]]
-    """Recorded numbers or floats, and which of them each row has (rows,)."""
+    _Which = NDArray[np.intp] | Callable[[], NDArray[np.intp]]
+    _Picked = tuple[Sequence[Any], _Which]
+    """Recorded numbers or floats, and which of them each row has (rows,), also as found by a call
+    when the numbers are computed, which may be shifted then."""
 
 
 DECIDED = (*CONDITIONS, Operation.SIGN, Operation.POWER_OF_TWO, Operation.WHOLE)
@@ -242,11 +244,17 @@ class ShiftingRecorder(ExactRecorder):
     @contextmanager
     def shifted(self, shifts: Mapping[int, Fraction]) -> Iterator[None]:
         """Within the context, replays take these numbers for the leaves' zeros."""
+        before = {leaf: self.exact[leaf] for leaf in shifts}
         self.exact.update(shifts)
         try:
             yield
         finally:
-            self.exact.update(dict.fromkeys(shifts, _ZERO))
+            self.exact.update(before)
+
+    @property
+    def shifts(self) -> dict[int, Fraction]:
+        """The leaves that are not zero now."""
+        return {leaf: self.exact[leaf] for leaf in self._leaves if self.exact[leaf]}
 
     def compute(self, operation: Operation, *operands: int) -> int:
         """As `ExactRecorder.compute`; decisions are remembered."""
@@ -344,9 +352,24 @@ class ExactRows(RowRecorder):
         """A number of each row: doubles (rows,) that are exact."""
         return self._enter(values)
 
-    def picked(self, numbers: Sequence[Any], which: NDArray[np.intp]) -> RowNumber:
-        """A number of each row, picked from recorded numbers or floats by place (rows,)."""
+    def picked(self, numbers: Sequence[Any], which: _Which) -> RowNumber:
+        """A number of each row, picked from recorded numbers or floats by place (rows,), or by
+        what a call gives for these."""
         return self._enter((numbers, which))
+
+    def changes(self, number: Any) -> tuple[Floats, Floats] | None:
+        """A number of each row (rows,) without shifts, and how shifts change it; None where nothing
+        is shifted."""
+        recorder = self.recorder
+        shifts = recorder.shifts if isinstance(recorder, ShiftingRecorder) else {}
+        if not shifts:
+            return None
+        shifted = self.double_doubles([number])[0]
+        assert isinstance(recorder, ShiftingRecorder)
+        with recorder.shifted(dict.fromkeys(shifts, _ZERO)):
+            own = self.double_doubles([number])[0]
+        high, low = shifted - own
+        return own[0], high + low
 
     def _enter(self, values: Floats | _Picked) -> RowNumber:
         number = self._register(nan)
@@ -403,7 +426,7 @@ class ExactRows(RowRecorder):
             return np.stack([values, np.zeros(self.rows)])
         numbers, which = values
         pairs: Floats = np.array([parts(near)[:2] for near in self._near(numbers)])
-        return pairs[which].T
+        return pairs[which() if callable(which) else which].T
 
     def _approximations(self, values: Floats | _Picked) -> list[Approximation]:
         """An input of every row, not rounded."""
@@ -411,7 +434,7 @@ class ExactRows(RowRecorder):
             return [of_fraction(Fraction(value)) for value in map(float, values)]
         numbers, which = values
         near = self._near(numbers)
-        return [near[k] for k in which]
+        return [near[k] for k in (which() if callable(which) else which)]
 
     def _near(self, numbers: Sequence[Any]) -> list[Approximation]:
         """Floats, and numbers of the recording, to all their digits."""

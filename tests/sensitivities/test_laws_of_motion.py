@@ -60,3 +60,35 @@ def test_parameters_of_laws(law: str) -> None:
             by_d = mp.diff(lambda x, t=t: LAWS[law](t, a, x), d)
             assert found["A.theta", "a"][k] == pytest.approx(float(by_a), abs=1e-12)
             assert found["A.theta", "d"][k] == pytest.approx(float(by_d), abs=1e-12)
+
+
+RISE = """format: 1
+parameters: {d: 0.9 s, e: 1 s, a: 2 rad}
+units: {angle: rad}
+links: {arm: {}}
+joints: {A: {type: R, links: [ground, arm], point: [0, 0, 0], axis: [0, 0, 1]}}
+motion:
+  time: {from: 0, to: e, count: 11}
+  inputs: {A.theta: {law: LAW, from: 0, to: a, start: 0.1 s, duration: d}}
+"""
+ORDERS_OF_ENDS = {
+    "harmonic": 2,
+    "cycloidal": 3,
+    "modified-sine": 3,
+    "3-4-5": 3,
+    "4-5-6-7": 4,
+}
+"""Of each rise the derivative by time that is not zero at its ends, and so jumps there."""
+
+
+@pytest.mark.parametrize("law", ORDERS_OF_ENDS)
+def test_rows_at_the_ends_of_a_rise_are_bent(law: str) -> None:
+    """The last row is at the end of the rise at 0.1 s + d, and the second at its begin: what is one
+    derivative lower than the one that jumps has a kink there, by whatever moves row or end."""
+    jumps, steps = ORDERS_OF_ENDS[law], ["A.theta", "A.theta_dot", "A.theta_ddot"]
+    found = mk.loads(RISE.replace("LAW", law)).sensitivities(steps)
+    for order, quantity in enumerate(steps):
+        is_bent = order >= jumps - 1
+        for name, ends in (("d", [10]), ("e", [1, 10]), ("a", [])):
+            expected = ["bent" if is_bent and k in ends else "ok" for k in range(11)]
+            assert list(found.verdict(quantity, name)) == expected
