@@ -100,7 +100,8 @@ def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
 def _pushes(layout: Layout) -> Iterator[PlanRecord]:
     """What couplings push apart with, as frictions without a motion: the coefficient 1 by the
     multiplier."""
-    numbers = enumerate(layout.pushes.values(), start=len(layout.place_number))
+    first_place = len(layout.place_number) + len(layout.loss_number)
+    numbers = enumerate(layout.pushes.values(), start=first_place)
     for number, (first, _) in numbers:
         link, none = layout.link_number[first], NO_MOTION
         size = (ZERO, 0.0, 0.0, 1.0, 1.0, 1.0, -1)
