@@ -196,7 +196,7 @@ class Layout:
     def pushes(self) -> dict[str, tuple[str, str]]:
         """Both links of each coupling that pushes them apart, where something rubs: such a force
         goes by a magnitude, as friction does, and both are solved for together. Their places in the
-        kernel stand behind those of `place_number`."""
+        kernel stand behind those of `place_number` and `loss_number`."""
         if not self.mechanism.frictions:
             return {}
         joints = self.mechanism.joints

@@ -100,10 +100,11 @@ def _loss(layout: Layout, rubbing: Rubbing, loss: Loss) -> Iterator[PlanRecord]:
 def _pushes(layout: Layout) -> Iterator[PlanRecord]:
     """What couplings push apart with, as frictions without a motion: the coefficient 1 by the
     multiplier."""
-    numbers = enumerate(layout.pushes.values(), start=len(layout.place_number))
+    first_place = len(layout.place_number) + len(layout.loss_number)
+    numbers = enumerate(layout.pushes.values(), start=first_place)
     for number, (first, _) in numbers:
         link, none = layout.link_number[first], NO_MOTION
-        size = (ZERO, 0.0, 0.0, 1.0, 1.0, 1.0)
+        size = (ZERO, 0.0, 0.0, 1.0, 1.0, 1.0, -1)
         yield record("add_friction", number, none, none, link, False, *size)
         yield record("add_contact", ContactCode.TRANSMITTED, 1.0, 1.0, 0.0, 0.0, ZERO)
 
@@ -336,7 +337,7 @@ def _places(layout: Layout) -> Iterator[PlanRecord]:
         assert mesh is not None
         yield record(
             "add_place",
-            layout.joint_reference[name],
+            -1 - layout.coupling_number[name],
             *(layout.link_number[link] for link in (*links, mesh.carrier)),
             layout.point(Attached(mesh.carrier, mesh.point)),
             1.0,

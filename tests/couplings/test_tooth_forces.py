@@ -400,3 +400,31 @@ def test_rows_with_what_pushes_apart_are_the_same_in_lanes_of_any_width() -> Non
     for name in names:
         np.testing.assert_array_equal(one[name], other[name])
         np.testing.assert_array_equal(moved[0][name], moved[1][name])
+
+
+@pytest.mark.parametrize("rate", [3.0, -3.0])
+def test_teeth_that_push_apart_and_lose(rate: float) -> None:
+    """On wheel B (80 mm) act 2 N*m and the teeth, so these push by F = 2 N*m/80 mm along and F
+    tan(alpha) apart, which both bearings hold; wheel A (40 mm) drives it or is driven, and the
+    driven side has the part 0.9 of the power."""
+    result = mk.loads(f"""
+format: 1
+plane: xy
+units: {{length: m, angle: rad, mass: kg, force: N}}
+links: {{a: {{}}, b: {{}}}}
+joints:
+  A: {{type: R, links: [ground, a], point: [0, 0]}}
+  B: {{type: R, links: [ground, b], point: [0.12, 0]}}
+couplings:
+  K: {{type: gear, joints: [A, B], radii: [0.04, 0.08], efficiency: 0.9, pressure_angle: 0.35 rad}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 1, count: 3, rate: {rate}}}}}}}
+loads: [{{type: torque, joint: B, value: 2}}]
+""").analyze()
+    assert set(result["row.status"]) == {"ok"}
+    # B turns at -rate/2, and 2 N*m put in or take 2 (-rate/2); lossless, A holds 1 N*m
+    own = 1.0 / 0.9 if rate > 0.0 else 0.9
+    np.testing.assert_allclose(result["A.effort"], own, rtol=1e-12)
+    size = 2.0 / 0.08 / np.cos(0.35)
+    for bearing in "AB":
+        held = np.hypot(*result[f"{bearing}.force"].T)
+        np.testing.assert_allclose(held, size, rtol=1e-12)
