@@ -549,7 +549,10 @@ class _Survey:
         self.farther = turns * float(turn) if turn else 0.0
         quantities = self.problem.quantities()
         self.outputs = [quantities[name] for name in outputs]
-        self.limited = [LimitedWalk(walker, limit) for limit in self.problem.limits]
+        known = self.problem.quantities()  # without plays that a sweep stands amid
+        self.limited = [
+            LimitedWalk(walker, each) for each in self.problem.limits if each.name in known
+        ]
         self.met = LimitsMet()
 
     def ranges(self) -> tuple[tuple[Range, ...], list[Circuit]]:

@@ -201,9 +201,9 @@ class Layout:
             return {}
         joints = self.mechanism.joints
         return {
-            c.name: mesh.ends(joints)
+            c.owner: mesh.ends(joints)
             for c in self.graph.closings
-            if (relation := self.mechanism.couplings.get(c.name)) is not None
+            if (relation := self.mechanism.couplings.get(c.owner)) is not None
             and (mesh := relation.mesh) is not None
             and relation.pushes_apart
         }

@@ -269,6 +269,28 @@ class ImpactAt:
         """Those of some stops."""
         return tuple(touch.limit for touch in self.touches if touch.stop in stops)
 
+    def ends_the_motion(self) -> list[Diagnostic]:
+        """Why nothing goes on from here; nothing to say where a limit without restitution is
+        touched."""
+        limits = list(dict.fromkeys(touch.limit for touch in self.touches))
+        if any(limit.restitution is None for limit in limits):
+            return []
+        at = self.result.units.text(self.time, TIME)
+        names = " and ".join(limit.name for limit in limits)
+        if len(limits) > 1 and self.session.problem.mechanism.frictions:
+            text = (
+                f"the response ends at {at}, where {names} are at limits that end one freedom "
+                "together: how these share what they give is not unique, and friction may go by it"
+            )
+            hint = "give one of them more room, or leave out what rubs"
+        else:
+            text = (
+                f"the response ends at {at}, where no motion behind the limit of {names} is found"
+            )
+            hint = "give what moves there a mass"
+        place = limits[0].place
+        return [Diagnostic("impact-unresolved", "warning", text, place, hint=hint)]
+
     def _bounces(self, settling: Sequence[int]) -> list[float]:
         return [
             0.0 if touch.stop in settling else touch.limit.restitution or 0.0

@@ -412,6 +412,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
     contacts: list[Contact] = []
     at_last: tuple[Limit, ...] = ()
     left: list[int] = []
+    unresolved: ImpactAt | None = None
     met = 0
     while (number := touched_limit(one.response, moved)) is not None:
         touch = ImpactAt(result, number)
@@ -419,6 +420,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         if not times.size or met == tolerances.MOST_IMPACTS:
             break
         met += 1
+        unresolved = touch
         # a limit that lets go gives no impulse
         begun, work = touch.onward, (0.0, 0.0)
         struck = None if left else touch.rebound()
@@ -456,7 +458,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
                 # what began at rest does so in its first row, too
                 before = replace(moved, report=moved.report._replace(rows=moved.report.rows - 1))
                 later = repeated(later)
-        moved = joined(before, later, work)
+        moved, unresolved = joined(before, later, work), None
         result = rows_of(one, moved)
     if contacts:
         moving = result.problem.motion.time
@@ -471,6 +473,8 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
     if rebounds:
         result.rebounds = tuple(rebounds)
         result.row_states.diagnostics += impact_notes(result, result.impacts, at_last)
+    if unresolved is not None:
+        result.row_states.diagnostics += unresolved.ends_the_motion()
     return result
 
 

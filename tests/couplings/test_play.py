@@ -763,3 +763,50 @@ def test_play_is_the_same_in_any_lanes_and_in_variants() -> None:
     for number, width in enumerate(widths):
         alone = mk.loads(f"{text}parameters: {{b: {width} m}}\n").respond("run", names)
         np.testing.assert_array_equal(found["A.theta"][number], alone["A.theta"])
+
+
+def test_what_pushes_wheels_apart_rubs_in_bearings_with_play_too() -> None:
+    """A bearing with friction on a flank: 1 N m less friction turns I1 + I2/4, the bearing carries
+    F and F tan(alpha), F = I2 a/4/r."""
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  a: {mass: 1, center_of_mass: [0, 0], inertia: .02}
+  b: {mass: 1, center_of_mass: [.06, 0], inertia: .05}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [.06, 0]}
+couplings: {K: {type: gear, joints: [A, B], teeth: [20, 40], pressure_angle: .35, backlash: 0.5 mm}}
+loads: [{type: friction, joint: A, coefficient: .5, radius: 5 mm}]
+responses:
+  r:
+    start: {A.theta: 0.0125, A.theta_dot: 0, B.theta: 0, B.theta_dot: 0}
+    efforts: {A.theta: 1 N*m}
+    time: {from: 0, to: 1, count: 4}
+"""
+    rows = mk.loads(text).respond("r")
+    per = sqrt(1.0 + tan(0.35) ** 2) * 0.05 / 4 / 0.02  # bearing force by acceleration
+    rate = 1.0 / (0.02 + 0.05 / 4 + 0.5 * 0.005 * per)
+    assert set(rows["row.status"]) == {"ok"}
+    np.testing.assert_allclose(rows["A.theta_ddot"][1:], rate, rtol=1e-9)
+    np.testing.assert_allclose(rows["norm(A.force)"][1:], per * rate, rtol=1e-9)
+    np.testing.assert_allclose(rows["A.normal_load"][1:], per * rate, rtol=1e-9)
+
+
+def test_ranges_are_those_of_wheels_amid_their_play() -> None:
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: rad}
+links: {a: {}, b: {}}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [.06, 0]}
+couplings: {K: {type: gear, joints: [A, B], teeth: [20, 40], backlash: 0.5 mm}}
+limits: {B.theta: [-1, 0.5]}
+motion: {inputs: {A.theta: {from: 0, to: 1, count: 3}}}
+"""
+    (found,) = mk.loads(text).ranges().ranges
+    assert (found.lower.value, found.upper.value) == pytest.approx((-1.0, 2.0), abs=1e-9)

@@ -690,3 +690,26 @@ def test_a_lossy_rack_rests_at_a_limit_of_its_slide() -> None:
     np.testing.assert_allclose(rows["S.s"][before], 0.5 * rate * time[before] ** 2, atol=1e-9)
     np.testing.assert_allclose(rows["S.s"][~before], 0.1, atol=1e-12)
     np.testing.assert_allclose(rows["S.effort"][~before], -5.0, rtol=1e-12)
+
+
+def test_a_response_that_shared_limits_end_says_why() -> None:
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links:
+  a: {mass: 1, center_of_mass: [0, 0], inertia: 0.02}
+  b: {mass: 1, center_of_mass: [0.06, 0], inertia: 0.05}
+joints:
+  A: {type: R, links: [ground, a], point: [0, 0]}
+  B: {type: R, links: [ground, b], point: [0.06, 0]}
+couplings: {K: {type: gear, joints: [A, B], teeth: [20, 40]}}
+limits: {A.theta: {max: 1, restitution: 0}, B.theta: {min: -0.5, restitution: 0}}
+loads: [{type: friction, joint: A, coefficient: 0.1, radius: 5 mm}]
+responses: {r: {start: {A.theta: 0}, efforts: {A.theta: 1 N*m}, time: {from: 0, to: 1, count: 11}}}
+"""
+    model = mk.loads(text)
+    (told,) = (d for d in model.respond("r").diagnostics if d.code == "impact-unresolved")
+    assert "A.theta and B.theta are at limits" in told.message
+    free = mk.loads(text.replace("{type: friction, joint: A, coefficient: 0.1, radius: 5 mm}", ""))
+    assert not [d for d in free.respond("r").diagnostics if d.code == "impact-unresolved"]
