@@ -269,15 +269,18 @@ class ImpactAt:
         """Those of some stops."""
         return tuple(touch.limit for touch in self.touches if touch.stop in stops)
 
-    def ends_the_motion(self) -> list[Diagnostic]:
-        """Why nothing goes on from here; nothing to say where a limit without restitution is
-        touched."""
+    def ends_the_motion(self, met: int) -> list[Diagnostic]:
+        """Why nothing goes on from here, where limits were `met` so often; nothing to say where one
+        without restitution is touched."""
         limits = list(dict.fromkeys(touch.limit for touch in self.touches))
         if any(limit.restitution is None for limit in limits):
             return []
         at = self.result.units.text(self.time, TIME)
         names = " and ".join(limit.name for limit in limits)
-        if len(limits) > 1 and self.session.problem.mechanism.frictions:
+        if met == tolerances.MOST_IMPACTS:
+            text = f"the response ends at {at}, at a limit of {names}, with its {met} impacts"
+            hint = "end it earlier, or let less of the rates be left by a smaller restitution"
+        elif len(limits) > 1 and self.session.problem.mechanism.frictions:
             text = (
                 f"the response ends at {at}, where {names} are at limits that end one freedom "
                 "together: how these share what they give is not unique, and friction may go by it"
@@ -287,7 +290,7 @@ class ImpactAt:
             text = (
                 f"the response ends at {at}, where no motion behind the limit of {names} is found"
             )
-            hint = "give what moves there a mass"
+            hint = "give what moves there a mass, or end its drive at the limit"
         place = limits[0].place
         return [Diagnostic("impact-unresolved", "warning", text, place, hint=hint)]
 
@@ -568,8 +571,6 @@ def impact_notes(
         times = "once" if len(own) == 1 else f"{len(own)} times, first"
         text = f"{limit.name} comes to its limit {times} at {at[0]}"
         rests = any(limit in impact.held for impact in own)
-        if len(impacts) == tolerances.MOST_IMPACTS and impacts[-1] in own:
-            text += f"; the response ends with {tolerances.MOST_IMPACTS} impacts"
         if limit in at_last:
             text += f", and rests at it from {at[-1]} on"
         elif rests:

@@ -417,7 +417,10 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
     while (number := touched_limit(one.response, moved)) is not None:
         touch = ImpactAt(result, number)
         begin, times = touch.time, one.response.moments.values[moved.report.rows :]
-        if not times.size or met == tolerances.MOST_IMPACTS:
+        if not times.size:
+            break
+        if met == tolerances.MOST_IMPACTS:
+            unresolved = touch
             break
         met += 1
         unresolved = touch
@@ -474,7 +477,7 @@ def _rebounding(one: Prepared, moved: MotionRows, packing: Packing) -> ResponseR
         result.rebounds = tuple(rebounds)
         result.row_states.diagnostics += impact_notes(result, result.impacts, at_last)
     if unresolved is not None:
-        result.row_states.diagnostics += unresolved.ends_the_motion()
+        result.row_states.diagnostics += unresolved.ends_the_motion(met)
     return result
 
 

@@ -421,3 +421,22 @@ def test_what_a_limit_stops_and_a_load_draws_off_leaves_at_once(one: int, other:
     after = rows["time"][2:] - impact
     np.testing.assert_allclose(rows["A.theta"][2:], 0.6 + back / 2.0 * after**2, rtol=1e-9)
     np.testing.assert_allclose(rows["A.theta_dot"][2:], back * after, rtol=1e-9)
+
+
+def test_a_response_of_too_many_impacts_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1 kg pushed by 10 N from 0.1 m below its limit, thrown back as fast, every 2 sqrt(0.02) s."""
+    monkeypatch.setattr("mechkin_cli.tolerances.MOST_IMPACTS", 5)
+    text = """
+format: 1
+plane: xy
+units: {length: m, angle: rad, mass: kg, force: N}
+links: {m: {mass: 1, center_of_mass: [0, 0]}}
+joints: {S: {type: P, links: [ground, m], point: [0, 0], axis: [1, 0]}}
+loads: [{type: force, joint: S, value: 10}]
+limits: {S.s: {max: 0.1, restitution: 1}}
+responses: {r: {start: {S.s: 0}, time: {from: 0, to: 9, count: 10}}}
+"""
+    rows = mk.loads(text).respond("r")
+    (told,) = (d for d in rows.diagnostics if d.severity == "warning")
+    assert "with its 5 impacts" in told.message
+    assert rows["time"][-1] == pytest.approx(11.0 * sqrt(0.02), rel=1e-9)
