@@ -156,7 +156,7 @@ def power(base: Value, exponent: Value) -> Value:
 
 def _apply(operation: _Operation, first: Value, second: Any) -> Value:
     x, y = _rows(first), _rows(second)
-    if x.size != y.size:  # rows with one number
+    if x.size != y.size and 1 in (x.size, y.size):  # rows with one number
         x, y = map(_rows, np.broadcast_arrays(x, y))
     result: FloatArray = _kernel.elementwise(operation, x, y, width())
     if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):

@@ -271,7 +271,7 @@ _ALONG = 8
 
 _GAP, _GAP_ALPHA = "#eac54f", 0.25
 _MARKS = ("#a40e26", "#57606a")
-_DOUBTFUL = ("o", "s", "D", "^", "v", "<")
+_DOUBTFUL = ("o", "s", "D", "^", "v", "<", ">")
 
 
 def format_of(path: PurePath) -> str:

@@ -352,7 +352,7 @@ def row_notes(
         notes += uncounted_notes(result)
     note = open_turn_note(session, rows.states, rows.reached)
     notes += [note] if note else []
-    notes += lifted(result)
+    notes += lifted(result) if problem.mechanism.couplings else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(result, asked))
     return notes

@@ -20,6 +20,12 @@ LAW_POSITIONS = ("from", "to", "step", "at", "values")
 LAW_RATES = ("rate", "acceleration", "jerk")
 
 
+def _path_parts(data: Document) -> list[Document]:
+    """The pulleys and drums of cables."""
+    paths = (coupling.get("path", ()) for coupling in data.get("couplings", {}).values())
+    return [place for path in paths for place in path if isinstance(place, dict)]
+
+
 def vectors(data: Document) -> Iterator[tuple[Place, str, str]]:
     """(where, kind of unit, behaviour) of every vector.
 
@@ -46,6 +52,10 @@ def vectors(data: Document) -> Iterator[tuple[Place, str, str]]:
                     yield (joint[key], link), kind, behaviour
             elif key in joint:
                 yield (joint, key), kind, behaviour
+    for place in _path_parts(data):
+        for key in ("axis", "swivel"):
+            if key in place:
+                yield (place, key), "number", "polar"
     for point in data.get("points", {}).values():
         yield (point, "at"), "length", "point"
     for direction in data.get("directions", {}).values():
@@ -74,6 +84,7 @@ def scalars(data: Document) -> Iterator[tuple[Place, str]]:
     for joint in data["joints"].values():
         if "lead" in joint:
             yield (joint, "lead"), "length"
+    yield from (((place, "radius"), "length") for place in _path_parts(data) if "radius" in place)
     for coupling in data.get("couplings", {}).values():
         lengths = ("radius", "module", "pitch", "lead")
         yield from (((coupling, key), "length") for key in lengths if key in coupling)

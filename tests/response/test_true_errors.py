@@ -137,7 +137,8 @@ RUBBING = "[{type: friction, joint: S, coefficient: 0.2}, {type: gravity, g: [0,
 
 def test_friction_is_not_repeated_and_says_so() -> None:
     r = mk.loads(SLIDER.format(loads=RUBBING, tolerance="1e-9")).respond("run")
-    assert set(r.errors.why.values()) == {"friction", "words"}
+    why = "friction of S: when what rubs sticks and slips is found in doubles"
+    assert set(r.errors.why.values()) == {why, "words"}
     assert r.errors.digits is None
 
 

@@ -55,7 +55,8 @@ def test_every_verdict_has_a_colour_by_what_its_rows_have() -> None:
     status = branch(data(mk.loads(ROCKING)))["status"]
     assert dict(zip(status["words"], status["doubts"], strict=True)) == {
         **dict.fromkeys(["near-singular", "rank-unclear", "dead-centre"], 1),
-        **dict.fromkeys(["friction-undecided", "unsupported", "beyond-limit", "slack"], 1),
+        **dict.fromkeys(["friction-undecided", "unsupported", "beyond-limit"], 1),
+        **dict.fromkeys(["slack", "fleet-angle"], 1),
         **dict.fromkeys(["beyond-dead-centre", "branch-lost", "not-converged"], 2),
         **dict.fromkeys(["not-assembled", "singular-inertia", "step-limit"], 2),
         "ok": 0,
