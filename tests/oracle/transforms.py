@@ -21,6 +21,7 @@ from oracle.vectors import add, apply
 
 _LENGTHS = {"length": 1, "speed": 1, "acceleration": 1, "jerk": 1}
 _LENGTHS |= {"force": 1, "torque": 2, "inertia": 2}
+_LENGTH_WRITTEN_OUT = re.compile(r"[\d.]+ (?:mm|cm|m|in)\b(?!/)")
 _PROSE = ("format", "type", "name", "title", "source", "label", "units")
 
 
@@ -174,6 +175,9 @@ def scaled(data: Document, factor: str) -> Document:
             container[key] = f"({container[key]}{_unit(data, container[key], kind)})" + (
                 f" * {factor}" * power
             )
+    for law in data.get("motion", {}).get("inputs", {}).values():
+        if "with" in law:
+            law["with"] = _LENGTH_WRITTEN_OUT.sub(rf"(\g<0> * {factor})", str(law["with"]))
     return data
 
 
