@@ -422,7 +422,9 @@ def _diagnostic(error: dict[str, Any], document: Document) -> Diagnostic:
     if code in ("unknown-word", "literal_error"):
         return _unknown_word(code, path, context, document)
     at_key = path[-1:] == (_KEY,)
-    path = path[:-1] if at_key else path
+    # the key's own fault, or a short form, whose word stands for a key that is not written
+    if at_key or isinstance(document.node(path[:-1]), ScalarNode):
+        path = path[:-1]
     place = document.key_place(path) if at_key else document.place(path)
     if "text" in context:
         text = str(context["text"])
@@ -504,8 +506,7 @@ def _wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
         return _wrong_length(context, node)
     if name in _KINDS:
         expected, hint = _KINDS[name]
-        if _KINDS[name] is _LIST and isinstance(node, ScalarNode) and 2 < len(node.text) < 40:
-            # a shorter one is an axis by its letter
+        if _KINDS[name] is _LIST and isinstance(node, ScalarNode) and _may_be_an_entry(node.text):
             hint = f"write it in brackets: [{node.text}]"
         elif _KINDS[name] is _LIST and isinstance(node, Mapping):
             hint = "write it in brackets, [{key: value}], or behind a dash"
@@ -519,6 +520,13 @@ def _wrong_value(error: dict[str, Any], node: Node | None) -> Wording:
         message = f"{_kind(node)} is {relation} the limit {limit}"
         return "out-of-range", message, f"write {limit} or {direction}"
     return "invalid-value", f"{_kind(node)} cannot stand here", None
+
+
+def _may_be_an_entry(text: str) -> bool:
+    """Whether a scalar where a list belongs may be its one entry: no number, answer or axis."""
+    is_axis = text.lstrip("+-").lower() in ("x", "y", "z")
+    is_number = text[:1].isdigit() and len(text) < 3
+    return 0 < len(text) < 40 and not is_axis and not is_number and text not in ("true", "false")
 
 
 def _choice_hint(word: str, known: list[str], what: str) -> str | None:

@@ -68,6 +68,31 @@ def test_two_shafts_turn_by_their_ratio_and_share_power(words: str) -> None:
     )
 
 
+TRAIN = (
+    HEAD
+    + """
+links: {sun: {}, planet: {}, carrier: {}}
+joints:
+  S: {type: R, links: [ground, sun], point: [0, 0]}
+  C: {type: R, links: [ground, carrier], point: [0, 0]}
+  P: {type: R, links: [carrier, planet], point: [0.0375, 0]}
+"""
+)
+
+
+@pytest.mark.parametrize("turns", [60, 131, 2_000, 30_000])
+def test_wheels_turn_as_often_as_they_like(turns: int) -> None:
+    # the angles of a train round by their own size, in as many products and sums as it has terms
+    words = """inner: {type: gear, joints: [S, P], teeth: [18, 12], ideal: true}
+  outer: {type: gear, joints: [C, P], teeth: [42, 12], internal: true, ideal: true}"""
+    motion = f"motion: {{inputs: {{S.theta: {{from: 0, to: {turns} * 2*pi*1 rad, count: 997}}}}}}"
+    rows = of(TRAIN, words, motion).analyze(["C.theta", "P.theta"], errors=True)
+    assert set(rows["row.status"]) == {"ok"}
+    # Willis: the carrier turns by 18/(18 + 42) of the sun, the planet against it by 42/12 of that
+    np.testing.assert_allclose(rows["C.theta"], 0.3 * rows["S.theta"], rtol=4e-15)
+    np.testing.assert_allclose(rows["P.theta"], -1.05 * rows["S.theta"], rtol=4e-15)
+
+
 def test_a_gear_written_twice_moves_as_one_and_leaves_its_torques_open() -> None:
     twice = f"{GEAR}\n  H: {{type: linear, terms: {{B.theta: -5, A.theta: -2}}}}"
     one, both = (of(SHAFTS, words, SWEPT).analyze() for words in (GEAR, twice))

@@ -116,6 +116,9 @@ COUPLINGS = {
     "{type: cable, path: [P, Q], tension: 3}": "K.tension",
     "{type: cable, path: [P, Q], falls: 4}": "path: [a, b, a, b, a]",
     "{type: linear, of: A.theta, gives: B.theta}": "terms: {A.theta: 1, B.theta: 2}",
+    "{type: belt, joints: [A, B], radii: [3, 4], outside: B}": "in brackets: [B]",
+    "{type: cable, path: P}": "in brackets: [P]",
+    "{type: cable, path: [P, {pulley: A, radius: 3, swivel: true}]}": "in brackets: [x, y, z]",
 }
 
 
@@ -125,3 +128,13 @@ def test_a_coupling_by_another_word(written: str) -> None:
         mk.loads(f"{drawn(PARALLEL)}couplings: {{K: {written}}}\n")
     hints = [each.hint or "" for each in caught.value.diagnostics]
     assert any(COUPLINGS[written] in each for each in hints), hints
+
+
+def test_a_number_for_the_name_of_a_point_is_shown() -> None:
+    with pytest.raises(mk.InvalidFile) as caught:
+        mk.loads(f"{drawn(PARALLEL)}couplings: {{K: {{type: cable, path: [1, a b]}}}}\n")
+    told = [each.message for each in caught.value.diagnostics]
+    assert [text.partition(";")[0] for text in told] == [
+        "couplings.K.path#1: '1' is not a name",
+        "couplings.K.path#2: 'a b' is not a name",
+    ]

@@ -139,21 +139,25 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 
 // |f| in parts of the scale that the limit of closing equations is measured by:
 //
-//     reach + HALF_PLACE sum |x_j| |df/dx_j| / accept
+//     reach + HALF_PLACE n sum |x_j| |df/dx_j| / accept
 //
 // so that a row counts as closed up to accept * reach + what half the last place of each coordinate met moves the
-// equation. Reach: 1 for angles; of lengths the size of the mechanism, or of the loop that reaches farther. The sum
-// matters to threads and slides that have gone far and is taken where reach alone does not do; lanes are told apart by
-// their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
+// equation. Of a relation the terms themselves are large and are rounded again in their products and sums, so n is one
+// more than their number there, and 1 elsewhere. Reach: 1 for angles; of lengths the size of the mechanism, or of the
+// loop that reaches farther. The sum matters to threads, slides and wheels that have gone far and is taken where reach
+// alone does not do; lanes are told apart by their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
 // workspace may be of a place before.
 MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
-  const Pack half_place = HALF_PLACE;
   const Pack lengths = Pack(p.row_weight), reach = max(Pack(1.0), lengths * block_reach(p, w, b));
   Pack worst = 0.0;
   for (int c = b.closing_begin; c < b.closing_end; ++c) {
     const ClosingJoint& j = p.closing[c];
     int equations = 0, length_equations = 0;
-    with_closing_joint(j.type, [&](auto entry) { equations = entry.equations, length_equations = entry.lengths; });
+    Pack half_places = HALF_PLACE;
+    with_closing_joint(j.type, [&](auto entry) {
+      equations = entry.equations, length_equations = entry.lengths;
+      if (entry.is_relation) half_places = Pack(HALF_PLACE) * Pack(double(j.loop_end - j.loop_begin + 1));
+    });
     Pack moved[MAX_CLOSING_ROWS];
     for (Pack& m : moved) m = 0.0;
     for (int l = j.loop_begin; l < j.loop_end; ++l) {
@@ -171,7 +175,7 @@ MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, cons
         });
         // an orientation's quaternion has unit length
         const Pack x = states == freedoms ? abs(w.q[t.state + f]) : Pack(1.0);
-        for (int i = 0; i < equations; ++i) moved[i] += half_place * x * abs(column[i]);
+        for (int i = 0; i < equations; ++i) moved[i] += half_places * x * abs(column[i]);
       }
     }
     for (int i = 0; i < equations; ++i) {
