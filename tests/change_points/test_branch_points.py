@@ -61,7 +61,7 @@ def test_many_loops_lie_singular_at_once(pairs: str, count: int) -> None:
     assert set(result["row.status"][~at].tolist()) <= {"ok", "near-singular"}
 
 
-@pytest.mark.parametrize("count", [5, 10, 20, 30, 40, 60])
+@pytest.mark.parametrize("count", [5, 10, 20, 40])
 def test_parallelograms_in_a_row_turn_together(count: int) -> None:
     """Between rows they pass the place where all lie flat at once."""
     links, joints = [], ""

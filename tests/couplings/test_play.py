@@ -17,6 +17,7 @@ from couplings.dense import Dense, State
 import mechkin_cli as mk
 from mechkin_cli.balances.newton_euler import dense_system
 from mechkin_cli.building.tables import unknown_names
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.response import Impact, ResponseResult
 
 R1, R2, I1, I2, BACKLASH = 0.1, 0.2, 0.02, 0.03, 0.002
@@ -754,13 +755,13 @@ def test_play_is_the_same_in_any_lanes_and_in_variants() -> None:
     names = ["A.theta", "K.play", "K.tooth_force"]
     model = mk.loads(f"{text}parameters: {{b: 2 mm}}\n")
     one = model.respond("run", names, lanes=2, threads=1)
-    for lanes, threads in ((4, 1), (8, 2)):
+    for lanes, threads in zip(widths(), (2, 1, 2), strict=False):
         other = model.respond("run", names, lanes=lanes, threads=threads)
         for name in names:
             assert one[name].tobytes() == other[name].tobytes()
-    widths = [0.001, 0.002, 0.004]
-    found = model.vary({"b": widths}, ["A.theta"], run="run")
-    for number, width in enumerate(widths):
+    plays = [0.001, 0.002, 0.004]
+    found = model.vary({"b": plays}, ["A.theta"], run="run")
+    for number, width in enumerate(plays):
         alone = mk.loads(f"{text}parameters: {{b: {width} m}}\n").respond("run", names)
         np.testing.assert_array_equal(found["A.theta"][number], alone["A.theta"])
 

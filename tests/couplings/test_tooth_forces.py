@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import InvalidFile
+from mechkin_cli.kernel.functions import widths
 
 HEAD = """
 format: 1
@@ -395,8 +396,8 @@ def test_the_bearing_of_a_planet_rubs_by_both_meshes(load: int) -> None:
 def test_rows_with_what_pushes_apart_are_the_same_in_lanes_of_any_width() -> None:
     text = RUBBING.replace("teeth: [20, 40]", "teeth: [20, 40], pressure_angle: 20")
     names = ["A.effort", "B.force", "G.tooth_force", "A.normal_load"]
-    one, other = (mk.loads(text).analyze(names, lanes=lanes) for lanes in (2, 4))
-    moved = [mk.loads(text).respond("r", names, lanes=lanes) for lanes in (2, 4)]
+    one, other = (mk.loads(text).analyze(names, lanes=lanes) for lanes in (2, max(widths())))
+    moved = [mk.loads(text).respond("r", names, lanes=lanes) for lanes in (2, max(widths()))]
     for name in names:
         np.testing.assert_array_equal(one[name], other[name])
         np.testing.assert_array_equal(moved[0][name], moved[1][name])

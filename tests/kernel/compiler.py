@@ -24,3 +24,13 @@ def compile_with(source: Path, target: Path, *options: str) -> Path:
     command = [COMPILER, *FLAGS, f"-I{SOURCES}", *options, str(source), "-o", str(target)]
     subprocess.run(command, check=True, capture_output=True, text=True)
     return target
+
+
+def built_object(library: str, source: str) -> Path | None:
+    """The object file of a source in what `pip install .` left here, if it is newer than all
+    sources of the core."""
+    newest = max(file.stat().st_mtime for file in SOURCES.rglob("*") if file.is_file())
+    for file in SOURCES.parents[2].glob(f"build/*/core/CMakeFiles/{library}.dir/{source}.o"):
+        if file.stat().st_mtime > newest:
+            return file
+    return None

@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import nnls
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.response import ResponseResult
 from mechkin_cli.response.impacts import complementary
 
@@ -551,7 +552,7 @@ def test_which_limits_push_where_some_end_one_freedom(seed: int) -> None:
 def test_rests_are_the_same_bits_in_any_lanes() -> None:
     text = CROSS.format(e=0.5, rate=0.3, efforts="X.s: 5", more="")
     one = mk.loads(text).respond("fall", ["X.s", "Y.effort"], lanes=2)
-    for lanes in (4, 8):
+    for lanes in widths():
         other = mk.loads(text).respond("fall", ["X.s", "Y.effort"], lanes=lanes)
         for name in ("X.s", "Y.effort"):
             assert one[name].tobytes() == other[name].tobytes()

@@ -11,7 +11,7 @@ from random_families.at_dead_centres.judge import judge
 
 import mechkin_cli as mk
 
-LINKAGES = 25 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+LINKAGES = 15 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -100,7 +100,7 @@ def wheels(count: int, rods: int, angle: float, longer: float = 0.0) -> str:
 
 
 @pytest.mark.parametrize("longer", [0.0, 1e-8, 1e-3])
-@pytest.mark.parametrize("count", [1, 2, 4, 8])
+@pytest.mark.parametrize("count", [1, 2, 4, 6])
 def test_rods_beside_each_other(count: int, longer: float) -> None:
     names = [f"D{k}.theta" for k in range(count)]
     wanted = mk.loads(wheels(count, 1, 30, longer)).analyze(names)
@@ -113,7 +113,7 @@ def test_rods_beside_each_other(count: int, longer: float) -> None:
             assert np.abs(found[name] - wanted[name]).max() < 1e-9
 
 
-@pytest.mark.parametrize("count", [1, 2, 4, 8])
+@pytest.mark.parametrize("count", [1, 2, 4, 6])
 def test_a_flat_drawing_does_not_tell_the_rank(count: int) -> None:
     assert sizes(wheels(count, 2, 0)) == [1] * count
 

@@ -16,7 +16,7 @@ from random_families.no_wrong_row.difficult import (
 )
 from random_families.no_wrong_row.run import run_one
 
-COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+COUNT = 24 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
 def check(numbers: list[int], series: int, solved: int) -> None:
