@@ -10,7 +10,7 @@ from fuzz.verdict import check, verdict
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import Diagnostic, Place
 
-RUNS = 500
+RUNS = 300
 """Damaged files per part: about a second."""
 
 

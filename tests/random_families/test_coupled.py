@@ -12,7 +12,7 @@ RINGS = (27, 38, 45)
 """Rings, whose sense is a truth value of what the file tells."""
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 6, 7, *SLIDES, *RINGS])
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, *SLIDES, *RINGS])
 def test_motion_and_forces_are_those_of_a_dense_system(seed: int) -> None:
     swept, moved = judge(seed)
     assert swept.word in ("ok", "beyond"), swept

@@ -205,7 +205,7 @@ def worst(found: Answers, wanted: Answers) -> float:
 def test_the_same_answers_in_any_units(which: str, explicit: float, tmp_path: Path) -> None:
     rng = random.Random(f"{which} {explicit}")
     wanted = wanted_of(which)
-    for _ in range(5 * TIMES):
+    for _ in range(3 * TIMES):
         words = random_words(rng)
         error = worst(answers(which, tmp_path, words, rng, explicit), wanted)
         assert error < ROUNDING, (words, error)

@@ -258,7 +258,7 @@ def lead_screw(lead: float, order: list[int], flip: bool) -> str:
     )
 
 
-CLOSED_AT = [("B", "R"), ("C", "R"), ("D", "R"), ("B", "D"), ("C", "D"), None]
+CLOSED_AT = [("B", "R"), ("D", "R"), ("C", "D"), None]
 
 
 @pytest.mark.parametrize("lead", [5, 0.05, 0.01])

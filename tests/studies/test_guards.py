@@ -131,7 +131,7 @@ def test_what_is_no_address_is_told_at_once(address: str) -> None:
 def test_a_signal_ends_processes_quietly(tmp_path: Path, name: str) -> None:
     if not hasattr(signal, name):
         pytest.skip("no such signal here")
-    data = RCSR | {"sample": {"count": 40_000}}
+    data = RCSR | {"sample": {"count": 12_000}}
     (tmp_path / "study.yaml").write_text(study_text(data, FILE_OF["rcsr"]))
     words = ("study", tmp_path / "study.yaml", "--out", tmp_path / "out", "--processes", "2")
     call = [sys.executable, "-P", "-m", "mechkin_cli", *map(str, words)]

@@ -9,7 +9,7 @@ import pytest
 from random_families.planar import judge
 from random_families.planar.judge import run_one
 
-COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+COUNT = 24 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
 @pytest.mark.parametrize("seed", range(COUNT))

@@ -7,7 +7,7 @@ import os
 import pytest
 from random_families.response.case import run_one
 
-COUNT = 5 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+COUNT = 3 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 
 @pytest.mark.parametrize("seed", range(COUNT))
