@@ -90,12 +90,12 @@ class Loop:
 
 
 def cases() -> list[tuple[str, int, int, float]]:
-    """Thirteen folds of each kind that lie clear of the drawing and of another fold."""
+    """Five folds of each kind that lie clear of the drawing and of another fold."""
     found = []
     for kind in "RP":
         seed, far = 0, 3.0 if kind == "R" else 2.0
         count = 0
-        while count < 13:
+        while count < 5:
             seed += 1
             loop, way = Loop(seed, kind), 1 if seed % 2 else -1
             if np.linalg.norm(loop.pin) < 0.2 or loop.parts(mpf(0))[1] < 0.05:

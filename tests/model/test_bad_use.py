@@ -12,7 +12,7 @@ from references import RCSR
 
 import mechkin_cli as mk
 
-CALLS_PER_ARGUMENT = 400
+CALLS_PER_ARGUMENT = 200
 DOCUMENTED = (mk.UsageError, mk.InvalidFile, mk.ExpressionError)
 CURES = (
     "expected",

@@ -15,7 +15,7 @@ from properties.structures import structure
 
 _TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
-LOOPS = [f"loop {seed}" for seed in range(40 * _TIMES)]
+LOOPS = [f"loop {seed}" for seed in range(28 * _TIMES)]
 _SLOW = (2, 14) if _TIMES == 1 else ()
 STRUCTURES = [f"structure {seed}" for seed in range(16 * _TIMES) if seed not in _SLOW]
 CASES = [*LOOPS, *STRUCTURES]

@@ -56,7 +56,7 @@ def moments(count: int) -> list[Any]:
     return [mp.mpf(k) / 4 for k in range(count)]
 
 
-@pytest.mark.parametrize("tolerance", ["1e-13", "1e-9", "1e-5"])
+@pytest.mark.parametrize("tolerance", ["1e-13", "1e-5"])
 def test_a_pendulum(tolerance: str) -> None:
     """From rest: sin(theta/2) = k cd(w t), k = sin(start/2); the start is the text's 2.1 rad."""
     text = PENDULUM.format(angle="2.1", rate=0).replace("1e-13", tolerance)

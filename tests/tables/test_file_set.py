@@ -134,8 +134,8 @@ def removing(folder: Path, new: dict[str, bytes], removed: list[str]) -> None:
 
 def test_a_kill_while_the_next_run_clears(tmp_path: Path) -> None:
     """Also a run that clears what another left may be killed at every operation."""
-    for first in range(20, 60, 3):
-        for second in range(1, 40, 3):
+    for first in range(20, 60, 5):
+        for second in range(1, 40, 5):
             folder = tmp_path / f"{first} {second}"
             write_files(folder, OLD)
             child(lambda folder=folder: write_files(folder, NEW), first, die)
