@@ -4,6 +4,7 @@ and its tree has a ball, whose orientation has four numbers for three freedoms."
 from __future__ import annotations
 
 import math
+import os
 import random
 from pathlib import Path
 
@@ -12,6 +13,8 @@ import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.assembly import at_unit_rate, choose_start
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 STEWART = Path(__file__).parents[2] / "mechanisms" / "classics" / "stewart.yaml"
 
@@ -43,7 +46,7 @@ def text(seed: int) -> tuple[str, list[str], float]:
     return "\n".join(lines), names, 1.0
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(12 * TIMES))
 def test_rows_are_right_or_have_a_status(seed: int) -> None:
     file, names, length = text(seed)
     try:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import mechkin_cli as mk
+from mechkin_cli.kernel.functions import widths
 from mechkin_cli.verdict import Status
 
 Floats = NDArray[np.float64]
@@ -353,8 +354,9 @@ def test_lanes_do_not_change_bits() -> None:
     model = mk.loads(ARM.text([-0.4, 0.9], [0.0, 0.0], "0.1", 2.0))
     names = ["J0.theta", "J1.theta_dot", "row.dissipated"]
     here = model.respond("go", names)
-    other = model.respond("go", names, lanes=2)
-    assert all(other[name].tobytes() == here[name].tobytes() for name in names)
+    for lanes in widths():
+        other = model.respond("go", names, lanes=lanes)
+        assert all(other[name].tobytes() == here[name].tobytes() for name in names)
 
 
 UNLOADED = f"""{HEAD}name: arm on a table

@@ -1,5 +1,6 @@
 """A few seconds of seeded fuzzing; `python tests/fuzz` goes on for minutes, guided by coverage."""
 
+import os
 import random
 
 import pytest
@@ -10,7 +11,9 @@ from fuzz.verdict import check, verdict
 import mechkin_cli as mk
 from mechkin_cli.diagnostics import Diagnostic, Place
 
-RUNS = 300
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+
+RUNS = 300 * TIMES
 """Damaged files per part: about a second."""
 
 

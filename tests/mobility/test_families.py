@@ -11,6 +11,7 @@ meet.
 from __future__ import annotations
 
 import math
+import os
 import random
 import re
 from pathlib import Path
@@ -21,6 +22,8 @@ import pytest
 
 import mechkin_cli as mk
 from mechkin_cli.mobility import dimension
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 SQUARE = ((1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0))
 REGULAR = {
@@ -118,7 +121,7 @@ def test_a_table_goes_parallel(
     check(table(feet, drawn, places), places, 1.0, 0)
 
 
-@pytest.mark.parametrize("seed", range(1, 5))
+@pytest.mark.parametrize("seed", range(1, 1 + 4 * TIMES))
 def test_turned_and_scaled_and_of_other_shapes(seed: int) -> None:
     rng = random.Random(seed)
     feet = tuple((rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(rng.randint(4, 6)))
@@ -153,7 +156,7 @@ def searches(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 @pytest.mark.parametrize(
-    ("feet", "drawn", "variants"), [(SQUARE, (0.0, 0.0), 8), (REGULAR[5], (0.3, 0.2), 5)]
+    ("feet", "drawn", "variants"), [(SQUARE, (0.0, 0.0), 8 * TIMES), (REGULAR[5], (0.3, 0.2), 5)]
 )
 def test_variants_go_on_in_the_family_of_the_file(
     feet: tuple[tuple[float, float], ...],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 from collections.abc import Callable
 from typing import Any
@@ -12,7 +13,9 @@ from references import RCSR
 
 import mechkin_cli as mk
 
-CALLS_PER_ARGUMENT = 200
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+
+CALLS_PER_ARGUMENT = 200 * TIMES
 DOCUMENTED = (mk.UsageError, mk.InvalidFile, mk.ExpressionError)
 CURES = (
     "expected",

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 from session.questions import MECHANISMS, answer, differing, kept, rows
 
 import mechkin_cli as mk
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 FOLLOWED = next(MECHANISMS.rglob("rcsr_csr_loop_one.yaml"))
 
@@ -20,7 +23,7 @@ def test_questions_in_random_order(path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["rcsr_csr_loop_one", "rcsr", "rcsr_response", "rprrhc"])
 def test_many_questions_in_random_order(name: str) -> None:
-    _, differing_answers = differing(next(MECHANISMS.rglob(f"{name}.yaml")), 1, 8)
+    _, differing_answers = differing(next(MECHANISMS.rglob(f"{name}.yaml")), 1, 8 * TIMES)
     assert not differing_answers
 
 

@@ -8,6 +8,7 @@ with that of R alone; rods beside equal ones change nothing at all.
 from __future__ import annotations
 
 import math
+import os
 import random
 from itertools import product
 from pathlib import Path
@@ -21,6 +22,8 @@ from mechkin_cli.mechanism.vectors import GROUND
 from mechkin_cli.session.assembled_places import is_drawn_assembled
 from mechkin_cli.structure.network import connections_of, reduce
 from mechkin_cli.structure.rank import Rates, middle_and_size
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 KINDS = ("RRR", "RSR", "SSR", "CSR", "SCR", "SRR")
 UNKNOWNS = {"RRR": 2, "RSR": 2, "SSR": 1, "CSR": 3, "SCR": 3, "SRR": 2}
@@ -100,7 +103,7 @@ def wheels(count: int, rods: int, angle: float, longer: float = 0.0) -> str:
 
 
 @pytest.mark.parametrize("longer", [0.0, 1e-8, 1e-3])
-@pytest.mark.parametrize("count", [1, 2, 4, 6])
+@pytest.mark.parametrize("count", [1, 2, 4, 8 if TIMES > 1 else 6])
 def test_rods_beside_each_other(count: int, longer: float) -> None:
     names = [f"D{k}.theta" for k in range(count)]
     wanted = mk.loads(wheels(count, 1, 30, longer)).analyze(names)
@@ -113,7 +116,7 @@ def test_rods_beside_each_other(count: int, longer: float) -> None:
             assert np.abs(found[name] - wanted[name]).max() < 1e-9
 
 
-@pytest.mark.parametrize("count", [1, 2, 4, 6])
+@pytest.mark.parametrize("count", [1, 2, 4, 8 if TIMES > 1 else 6])
 def test_a_flat_drawing_does_not_tell_the_rank(count: int) -> None:
     assert sizes(wheels(count, 2, 0)) == [1] * count
 

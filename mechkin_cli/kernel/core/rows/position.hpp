@@ -145,8 +145,8 @@ inline void advance_block(const Plan& p, Workspace& w, int index, const Pack* st
 // equation. Of a relation the terms themselves are large and are rounded again in their products and sums, so n is one
 // more than their number there, and 1 elsewhere. Reach: 1 for angles; of lengths the size of the mechanism, or of the
 // loop that reaches farther. The sum matters to threads, slides and wheels that have gone far and is taken where reach
-// alone does not do; lanes are told apart by their own values. w.right, w.closure and the poses are those of the place; screws are made here, for those in the
-// workspace may be of a place before.
+// alone does not do; lanes are told apart by their own values. w.right, w.closure and the poses are those of the place;
+// screws are made here, for those in the workspace may be of a place before.
 MECHKIN_RARE Pack residual_with_rounding(const Plan& p, const Workspace& w, const Block& b, double accept) {
   const Pack lengths = Pack(p.row_weight), reach = max(Pack(1.0), lengths * block_reach(p, w, b));
   Pack worst = 0.0;
