@@ -147,6 +147,44 @@ NEW = Command(
     ),
     has_model=False,
 )
+IMPORT = Command(
+    "import",
+    "bridges:import_",
+    """Write the mechanism file that a file of another program becomes.
+
+    FILE.csv is a table of hard points (name, x, y, z) for a template. What cannot be carried over
+    is named. An existing file is never written over.
+    """,
+    (
+        Word("file", "The file to import.", kind="path", metavar="FILE", required=True),
+        Word(
+            "out",
+            "File to write (default: STEM.yaml in this folder).",
+            ("-o", "--out"),
+            "path",
+            "FILE",
+        ),
+        Word(
+            "template",
+            "Of hard points: a template of mechkin new, or a mechanism file, that takes them.",
+            ("--template",),
+            "text",
+            "TEMPLATE",
+        ),
+        Word("unit", "Unit of the table's lengths, such as mm.", ("--unit",), "text", "UNIT"),
+        Word(
+            "rename",
+            "A point of the table and what the template calls it, as 'LCA outer=lower_ball'; "
+            "repeatable.",
+            ("--rename",),
+            "text",
+            "TABLE=TEMPLATE",
+            repeated=True,
+        ),
+        MESSAGES,
+        QUIET,
+    ),
+)
 ANALYZE = Command(
     "analyze",
     "analyze:analyze",
@@ -525,7 +563,7 @@ BENCH = Command(
 COMMANDS = {
     command.name: command
     for command in (
-        *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
+        *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
         *(PLOT, STUDY, TABLES, SCHEMA, BENCH),
     )
 }
