@@ -429,6 +429,40 @@ PLOT = Command(
         QUIET,
     ),
 )
+EXPORT = Command(
+    "export",
+    "bridges:export",
+    """Write a mechanism in the format of another program.
+
+    mjcf: a model for MuJoCo, drawn in the pose of a row, loops closed by equality constraints.
+    The files go into out/STEM or a folder of your choice; what they cannot hold is named.
+    """,
+    (
+        FILE,
+        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT", required=True),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
+        Word(
+            "run",
+            "Run to export: sweep, or a response (default: the first).",
+            ("--run",),
+            "text",
+            "NAME",
+            offers="run_names",
+        ),
+        Word(
+            "row",
+            "Number of a row, from 1 on; several as 1,19 (default: the first, or all).",
+            ("--row",),
+            "text",
+            "NUMBER",
+            repeated=True,
+        ),
+        SET,
+        MODE,
+        MESSAGES,
+        QUIET,
+    ),
+)
 STUDY = Command(
     "study",
     "study:study",
@@ -564,7 +598,7 @@ COMMANDS = {
     command.name: command
     for command in (
         *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
-        *(PLOT, STUDY, TABLES, SCHEMA, BENCH),
+        *(PLOT, EXPORT, STUDY, TABLES, SCHEMA, BENCH),
     )
 }
 """The commands by name, in the order of help."""
