@@ -258,12 +258,19 @@ VIEW = Command(
     """Write a page that shows a mechanism in motion.
 
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
-    responses, in all assembly modes, with curves, tables, verdicts and notes.
+    responses, in all assembly modes, with curves, tables, verdicts and notes. Of a folder, a page
+    for each mechanism file in it (or in the folders in it), and index.html, which shows a card of
+    each.
     """,
     (
-        FILE,
+        FILE._replace(help="Mechanism file (YAML, format 1), or a folder; - reads stdin."),
         Word(
-            "out", "File to write (default: out/STEM/view.html).", ("-o", "--out"), "path", "PAGE"
+            "out",
+            "File to write (default: out/STEM/view.html); of a folder, a folder (default: "
+            "out/FOLDER).",
+            ("-o", "--out"),
+            "path",
+            "PAGE",
         ),
         SET,
         MODE,

@@ -100,6 +100,23 @@ def _piped() -> bytes:
     return b"".join(pieces)
 
 
+def mechanism_files(path: Path) -> list[Path]:
+    """The mechanism files of a folder, or of the folders in it where it has none of its own, by
+    name; a file stands for itself.
+
+    Raises:
+        UsageError: there are none.
+    """
+    if path.is_dir():
+        files = [*path.glob("*.yaml")] or [*path.glob("*/*.yaml")]
+        if not files:
+            raise UsageError(f"{path} holds no mechanism files (*.yaml)")
+        return sorted(files, key=lambda file: (file.name, file))
+    if not path.exists():
+        raise UsageError(f"{path} does not exist; give a mechanism file or a folder of them")
+    return [path]
+
+
 def content_of(path: Path) -> bytes:
     """The bytes of a committed file.
 

@@ -16,6 +16,7 @@ from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
     content_of,
+    mechanism_files,
     put,
     put_json,
     refusal,
@@ -49,7 +50,7 @@ def tables(
     """Regenerates the tables kept beside mechanism files, or compares them."""
     tell_as(messages)
     refuse_stdin(path, "tables are kept beside a file, and - is none")
-    files = _mechanism_files(path)
+    files = mechanism_files(path)
     overview = path if path.is_dir() else None
     if against:
         if check:
@@ -75,17 +76,6 @@ def tables(
     if json:
         put_json(found)
     return code
-
-
-def _mechanism_files(path: Path) -> list[Path]:
-    if path.is_dir():
-        files = [*path.glob("*.yaml")] or [*path.glob("*/*.yaml")]
-        if not files:
-            raise UsageError(f"{path} holds no mechanism files (*.yaml)")
-        return sorted(files, key=lambda file: (file.name, file))
-    if not path.exists():
-        raise UsageError(f"{path} does not exist; give a mechanism file or a folder of them")
-    return [path]
 
 
 def _one(

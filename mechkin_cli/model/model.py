@@ -577,7 +577,8 @@ class Model(Listed):
                 over the way between finite rows, as in `r.summary()`.
             run: a response instead of the sweep, as `with_parameters(...).respond(run)` gives it;
                 where a stop ends it, its row takes the place of the next moment.
-            lanes, threads: width of the kernel's packs, how many split the variants; 0: the most.
+            lanes: width of the kernel's packs; 0: the most.
+            threads: how many split the variants; 0: the most.
 
         Raises:
             UsageError: unknown names, invalid values, lengths that differ, a width not to be had.
