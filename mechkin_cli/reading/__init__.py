@@ -20,6 +20,6 @@ __getattr__, __dir__ = lazy_names(
         "document": "Document KeyPath document_from_data document_from_text explain is_mechanism "
         "is_study read_document",
         "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
-        "yaml": "CORRECT_FIRST in_order",
+        "yaml": "CORRECT_FIRST Mapping Node Sequence in_order plain_data",
     },
 )
