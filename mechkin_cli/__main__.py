@@ -21,6 +21,10 @@ def main() -> NoReturn:
     end_quietly()
     gc.disable()  # until the command is loaded
     try:
+        if os.name == "nt":
+            from mechkin_cli.cli.windows import prepare
+
+            prepare()
         from mechkin_cli.cli.run import run
 
         code = run()

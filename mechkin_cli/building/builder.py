@@ -221,7 +221,7 @@ def read_fields(
     """Units and parameters of a file, `given` as in `build`, `moved` as in `evaluate_parameters`;
     places are measured from the `datum` (m). Errors are noted."""
     units, errors = read_units(document, file.units)
-    fields = Fields(document, units, diagnostics=errors, plane=file.in_plane)
+    fields = Fields(document, units, diagnostics=[*document.notes, *errors], plane=file.in_plane)
     read_parameters(fields, file.parameters, given, moved)
     if datum != ZERO:
         fields.datum = Datum(datum, file.parameters, given, units)

@@ -64,11 +64,13 @@ def open_data(
 
 
 def _checked(document: Document) -> tuple[MechanismFile, Document]:
+    if schema.OLD_KEYS:
+        document = schema.up_to_date(schema.form_of(document.data), document)
     try:
         file = validate(document.data)
     except InvalidDataError as invalid:
         diagnostics = reading.is_study(document) or reading.explain(invalid.errors, document)
-        raise InvalidFile(diagnostics) from None
+        raise InvalidFile([*document.notes, *diagnostics]) from None
     with_units = _with_units(document, file.units)
     if with_units != document.overrides:
         return _checked(replace(document, overrides=with_units))

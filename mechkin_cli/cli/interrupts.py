@@ -38,11 +38,12 @@ def said() -> None:
 
 
 def end_quietly() -> None:
-    """Lets Ctrl-C, and a request to end (kill, a closed terminal), end the process quietly."""
+    """Lets Ctrl-C, and a request to end (kill, a closed terminal, Ctrl-Break), end the process
+    quietly."""
     global _final_code
     _final_code = None
     then("")
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"):  # each where it exists
         number = getattr(signal, name, None)
         # nohup and parents that ignore a signal are obeyed
         usual = (signal.SIG_DFL, signal.default_int_handler)

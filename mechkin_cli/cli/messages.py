@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from enum import IntEnum
+from errno import EINVAL
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -89,7 +90,8 @@ def _piped() -> bytes:
     try:
         descriptor = sys.stdin.fileno()
         if os.isatty(descriptor):
-            say("reading the mechanism from the terminal; end it with Ctrl-D")
+            end = "Ctrl-Z and Enter" if os.name == "nt" else "Ctrl-D"
+            say(f"reading the mechanism from the terminal; end it with {end}")
         pieces, left = [], reading.MOST_BYTES + 1
         while left and (piece := os.read(descriptor, left)):
             pieces.append(piece)
@@ -206,7 +208,8 @@ def stdout_failed(error: OSError) -> None:
         UsageError: it takes no more for another reason.
     """
     discard(sys.stdout)
-    if isinstance(error, BrokenPipeError):
+    # a pipe of Windows without a reader says that its argument is invalid
+    if isinstance(error, BrokenPipeError) or (os.name == "nt" and error.errno == EINVAL):
         return
     reason = error.strerror or str(error)
     raise UsageError(
@@ -327,7 +330,10 @@ def _from_the_top(file: str) -> str:
     top = os.environ.get("GITHUB_WORKSPACE")
     if not top:
         return file
-    path = os.path.relpath(os.path.abspath(file), os.path.abspath(top))
+    try:
+        path = os.path.relpath(os.path.abspath(file), os.path.abspath(top))
+    except ValueError:  # on another drive of Windows
+        return file
     return file if path.startswith(os.pardir) else path.replace(os.sep, "/")
 
 

@@ -23,6 +23,6 @@ __getattr__, __dir__ = lazy_names(
         "edits": "with_values",
         "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular "
         "shortened",
-        "yaml": "CORRECT_FIRST in_order",
+        "yaml": "CORRECT_FIRST Mapping Node Sequence in_order plain_data",
     },
 )

@@ -60,7 +60,7 @@ class Document:
     names, None for a text that does not come from a file. With `is_data` the text was made from a
     program's data, and places are paths of keys. `tables` are the contents of files that it names,
     by name, as they were when they were first read, so that building a document again, here or in
-    another process, builds the same.
+    another process, builds the same; `notes` are what there is to say of how it is written.
     """
 
     file: str
@@ -70,6 +70,7 @@ class Document:
     folder: Path | None = None
     is_data: bool = False
     tables: dict[str, bytes] = field(default_factory=dict)
+    notes: tuple[Diagnostic, ...] = ()
 
     @property
     def files(self) -> tuple[Path, ...]:

@@ -42,7 +42,9 @@ SHORT_NAME: Final = 8
 """Letters of a file's name below which a slip makes the name of another mechanism."""
 
 _PIECE = 1 << 20
-_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
+_FLAGS = os.O_RDONLY | sum(  # each where it exists: without the last, Windows changes line ends
+    getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_BINARY")
+)
 
 
 class NotRegular(OSError):

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mechkin_cli.schema.loads import *
     from mechkin_cli.schema.motion import *
     from mechkin_cli.schema.plane import *
+    from mechkin_cli.schema.renamed import *
     from mechkin_cli.schema.responses import *
     from mechkin_cli.schema.scalars import *
     from mechkin_cli.schema.study import *
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "base": "fields_of section_of",
+        "base": "OLD_KEYS Renamed fields_of section_of",
         "couplings": "AnyCoupling BeltCoupling CableCoupling ChainCoupling Flanks FollowerSection "
         "FunctionCoupling GearCoupling LinearCoupling PathPart RackCoupling ScrewCoupling "
         "TableCoupling",
@@ -51,11 +52,12 @@ __getattr__, __dir__ = lazy_names(
         "HeldInput InputMotion Law ListedInput MotionSection Polynomial Rise Segment Sequence Sine "
         "SweptInput TableLaw TimeSection WithRates",
         "plane": "in_space",
+        "renamed": "up_to_date",
         "responses": "HeldCoordinate ListedTime",
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
         "study": "StudyFile validate_study",
         "tables": "Coefficients",
-        "validation": "InvalidDataError validate",
+        "validation": "InvalidDataError form_of validate",
         "view": "PartBetween ShapeOfLink ViewSection",
     },
 )

@@ -24,14 +24,28 @@ NOTHING: Any = {}
 """Default of a mapping that may be left out; sections are read, never changed."""
 
 
+class Renamed(NamedTuple):
+    """What a key of an earlier version is called now, by which version, and the version that takes
+    only the new one."""
+
+    new: str
+    since: str
+    until: str
+
+
+OLD_KEYS: set[str] = set()
+"""Keys that some section has renamed."""
+
+
 class Section:
     """A mapping of the file with fixed keys; frozen.
 
     The text below a field is its help text. `keys` are the keys of fields, by the field's name,
     where they cannot be names in Python. `advice` answers keys that people are likely to try and
-    that the format does not have; `editors` is added to the mapping in the JSON Schema. `tag` names
-    the section among several forms of a value: by default its word at `type` or `law`. It starts
-    with a parenthesis, which no key does, so that an error's location shows which steps are tags.
+    that the format does not have; `renamed` keys are read, with a warning; `editors` is added to
+    the mapping in the JSON Schema. `tag` names the section among several forms of a value: by
+    default its word at `type` or `law`. It starts with a parenthesis, which no key does, so that an
+    error's location shows which steps are tags.
     """
 
     __slots__ = (
@@ -42,10 +56,12 @@ class Section:
     )
     keys: ClassVar[dict[str, str]] = {"first": "from", "last": "to"}
     advice: ClassVar[dict[str, str]] = {}
+    renamed: ClassVar[dict[str, Renamed]] = {}
     editors: ClassVar[dict[str, Any]] = {}
     tag: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
+        OLD_KEYS.update(cls.renamed)
         annotations = get_annotations(cls)
         word = get_args(annotations.get("type") or annotations.get("law"))
         if len(word) == 1 and "tag" not in cls.__dict__:

@@ -31,6 +31,7 @@ from mechkin_cli.schema.base import (
 from mechkin_cli.schema.curves import EXAMPLES
 from mechkin_cli.schema.file import AnyFile, MechanismFile
 from mechkin_cli.schema.plane import PlaneFile
+from mechkin_cli.schema.renamed import with_old_keys
 from mechkin_cli.schema.scalars import TAKEN_FOR_EDITORS
 from mechkin_cli.schema.study import StudyFile
 from mechkin_cli.schema.validation import RESERVED
@@ -508,7 +509,8 @@ def _section(section: type[Section], definitions: Schema) -> Schema:
     words = "\n\n".join(_paragraphs(section))
     mapping = {"description": words, "type": "object", "additionalProperties": False}
     mapping |= {"properties": properties} | ({"required": required} if required else {})
-    return mapping | section.editors
+    mapping |= section.editors
+    return with_old_keys(section, mapping) if section.renamed else mapping
 
 
 def _measure(schema: Schema, definitions: Schema) -> str | None:

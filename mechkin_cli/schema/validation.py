@@ -121,12 +121,16 @@ class InvalidDataError(Exception):
 def validate(data: object) -> AnyFile:
     """The mechanism file that plain data describes, with `plane:` one in a plane; raises
     `InvalidDataError`."""
-    form: type[AnyFile] = MechanismFile
+    return validated(form_of(data), data, name_errors(data))
+
+
+def form_of(data: object) -> type[AnyFile]:
+    """The form of a file that plain data has, or is meant to have."""
     if isinstance(data, dict) and any(_is_plane(*entry) for entry in data.items()):
         from mechkin_cli.schema.plane import PlaneFile
 
-        form = PlaneFile
-    return validated(form, data, name_errors(data))
+        return PlaneFile
+    return MechanismFile
 
 
 def _is_plane(key: object, value: object) -> bool:

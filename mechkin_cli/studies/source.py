@@ -12,13 +12,12 @@ from mechkin_cli import reading
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import Document, KeyPath, in_order, read_document
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.schema import InvalidDataError, validate_study
+from mechkin_cli.schema import OLD_KEYS, InvalidDataError, StudyFile, up_to_date, validate_study
 from mechkin_cli.variants import one_value, with_parameters
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Solvable
     from mechkin_cli.reading import KeyPath
-    from mechkin_cli.schema import StudyFile
     from mechkin_cli.units import Dimension, UnitSystem
 
 
@@ -173,8 +172,12 @@ def open_study(study: str | Path | Mapping[str, Any]) -> StudySource:
         document = reading.document_from_data({"study": 1, **study}, DATA, None)
     else:
         document = read_document(study)
+    if OLD_KEYS:
+        document = up_to_date(StudyFile, document)
+        if any(note.severity == "error" for note in document.notes):
+            raise InvalidFile(list(document.notes))
     try:
         return StudySource(validate_study(document.data), document)
     except InvalidDataError as invalid:
         errors = reading.is_mechanism(document) or reading.explain(invalid.errors, document)
-        raise InvalidFile(errors) from None
+        raise InvalidFile([*document.notes, *errors]) from None

@@ -140,7 +140,8 @@ class Study:
         self.source = source
         self.share = share
         plan = study_plan(source.file, source.document, model)
-        self.variation, self.question, self.notes = plan
+        self.variation, self.question, notes = plan
+        self.notes = (*source.document.notes, *notes)
 
     @property
     def variants(self) -> int:

@@ -359,7 +359,10 @@ def _keep(target: str, second: str) -> None:
 
 
 def _link(path: Path, text: str) -> bool:
-    """Whether the symbolic link could be made: some file systems have none."""
+    """Whether the symbolic link could be made: some file systems have none. Windows asks for a
+    right that few users have, and reads such links differently."""
+    if os.name == "nt":
+        return False
     try:
         os.symlink(text, path)
     except OSError:
@@ -399,7 +402,7 @@ def _put_file(source: str, target: str, attempt: Path) -> None:
         os.unlink(spare)
         _put_file(source, target, attempt)
         return
-    except OSError:  # a file system without hard links
+    except (OSError, NotImplementedError):  # a file system, or a system, without such links
         spare = source
         if not os.path.lexists(source):
             os.unlink(target)
@@ -476,6 +479,8 @@ _CURES = {
     errno.ELOOP: "a symbolic link there leads nowhere; remove it or choose another --out",
     errno.ENAMETOOLONG: "the name is too long; choose a shorter one with --out",
 }
+_OPEN_ELSEWHERE = (5, 32, 33)
+"""Errors of Windows: access denied, a sharing violation, a locked part."""
 
 
 # What a run wrote, by which the next one knows the files that it may remove.
@@ -619,4 +624,9 @@ def _refusal(target: Path) -> Iterator[None]:
 def _refused(target: Path, error: OSError) -> UsageError:
     reason = error.strerror or str(error)
     cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
+    if getattr(error, "winerror", None) in _OPEN_ELSEWHERE:
+        cure = (
+            "no permission to write there, or another program has it open; close it there or "
+            "choose another folder with --out"
+        )
     return UsageError(f"cannot write {target}: {cure}")

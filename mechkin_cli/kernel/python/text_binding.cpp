@@ -121,7 +121,7 @@ nb::bytes written(const Write& write) {
   const Room room = [&bytes](std::size_t size) {
     const nb::gil_scoped_acquire held;
     bytes = PyBytes_FromStringAndSize(nullptr, (Py_ssize_t)size);
-    return bytes ? PyBytes_AS_STRING(bytes) : nullptr;
+    return bytes ? PyBytes_AsString(bytes) : nullptr;  // the macro is not of the stable ABI
   };
   try {
     const nb::gil_scoped_release released;

@@ -238,7 +238,7 @@ inline void iterate_friction(const Plan& p, Rubbing& r, Mask done) {
     }
   }
   // where the forces were moved after their loads had been found, or were not found in time
-  if (any(moved) | !all(done)) load_contacts(p, r);
+  if (any(moved) || !all(done)) load_contacts(p, r);
 }
 
 // A start next to the solution for lanes that are not `done`: magnitudes sqrt(|load|^2 + softness^2) have no kinks and the

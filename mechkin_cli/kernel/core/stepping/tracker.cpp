@@ -84,7 +84,8 @@ class Tracker {
   Tracker(const Path& path, const KernelUnit& unit, long rows, const double* sigma, const StepLimits& limits,
           const RowGuesses& out, long first, std::vector<Segment>* kept)
       : path_(path), unit_(unit), rows_(rows), sigma_(sigma), limits_(limits), out_(out), first_(first),
-        kept_(kept), stepper_(path, unit, limits), progress_(limits), has_kinks_(has_kinks(stepper_.plan().functions)), track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}} {}
+        kept_(kept), stepper_(path, unit, limits), progress_(limits),
+        track_{TrackEnd::finished, 0, 0, 0, {}, 0.0, {}, {}}, has_kinks_(has_kinks(stepper_.plan().functions)) {}
 
   Track follow(double begin, double end, const double* start, const std::vector<double>& turn) {
     if (!stepper_.close(begin, start, &node_)) {
