@@ -220,7 +220,9 @@ VIEW = Command(
     """Write a page that shows a mechanism in motion.
 
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
-    responses, in all assembly modes, with curves, tables, verdicts and notes.
+    responses, in all assembly modes, with curves, tables, verdicts and notes. With --live it
+    changes with the file, shows its faults with their places, and writes dimensions that are set
+    in it back into the file on request; Ctrl-C ends that.
     """,
     (
         FILE,
@@ -239,6 +241,12 @@ VIEW = Command(
         ),
         Word("no_modes", "Leave out the other assembly modes.", ("--no-modes",)),
         Word("open_", "Also open the page in the browser.", ("--open",)),
+        Word(
+            "live",
+            "Serve the page on this machine, open it, and follow the file while it is edited.",
+            ("--live",),
+        ),
+        Word("no_open", "With --live: do not open the browser.", ("--no-open",)),
         MESSAGES,
         QUIET,
     ),

@@ -34,12 +34,16 @@ def view(
     run: str | None = None,
     no_modes: bool = False,
     open_: bool = False,
+    live: bool = False,
+    no_open: bool = False,
     messages: str | None = None,
     quiet: bool = False,
 ) -> ExitCode:
     """Writes a page that shows a mechanism in motion."""
 
     tell_as(messages)
+    if live:
+        return _follow(file, out, set_, pages.Wish(run, mode, not no_modes), not no_open, quiet)
     try:
         with working(f"{shown(file)}: reading", quiet) as tell:
             model = model_of(file, parameters(set_))
@@ -59,6 +63,26 @@ def view(
         _show(target)
     complete = all(analysis.complete for analysis in analyses)
     return ExitCode.OK if complete else ExitCode.ROWS_MISSING
+
+
+def _follow(
+    file: Path,
+    out: Path | None,
+    set_: list[str] | None,
+    wish: pages.Wish,
+    opens: bool,
+    quiet: bool,
+) -> ExitCode:
+    from mechkin_cli.cli.live import follow
+
+    try:
+        if out is not None:
+            raise UsageError("--live writes no page; leave --out away, or --live")
+        if set_:
+            raise UsageError("--live shows the file as it is; set parameters in it, or in the page")
+        return follow(file, wish, opens, quiet)
+    except UsageError as error:
+        return refusal(file, error)[0]
 
 
 def _summary(analyses: list[Analysis], size: int) -> str:

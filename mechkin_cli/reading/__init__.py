@@ -21,7 +21,8 @@ __getattr__, __dir__ = lazy_names(
         "document": "Document KeyPath document_from_data document_from_text explain is_mechanism "
         "is_study read_document",
         "edit": "Span edited value_spans",
-        "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
+        "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded lines_of "
+        "read_regular read_text",
         "yaml": "CORRECT_FIRST in_order",
     },
 )
