@@ -16,7 +16,7 @@ from typing import Final
 
 from mechkin_cli.bridges.parts import Imported, listed, number_text, refuse
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError, nearest
-from mechkin_cli.reading import Document, KeyPath, document_from_text, shortened, with_values
+from mechkin_cli.reading import Document, KeyPath, document_from_text, edited, shortened
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import LENGTH, UnitError, UnitSystem, parse_unit
 
@@ -128,7 +128,7 @@ def with_hard_points(
         told = f"the table gives no unit; its numbers are taken in {own}, the template's unit"
         cure = "give another with --unit mm, or in the header: x [mm]"
         notes.append(Diagnostic("unit-assumed", "note", told, Place(file, 1, 1), hint=cure))
-    return Imported(with_values(document, values), tuple(notes))
+    return Imported(edited(document.text, values), tuple(notes))
 
 
 def _unit_of(document: Document) -> str:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from mechkin_cli.building.builder import *
     from mechkin_cli.building.cables import *
     from mechkin_cli.building.drawn_wheels import *
+    from mechkin_cli.building.edit import *
     from mechkin_cli.building.fields import *
     from mechkin_cli.building.motion import *
     from mechkin_cli.building.recording import *
@@ -26,6 +27,7 @@ __getattr__, __dir__ = lazy_names(
         "builder": "Built build",
         "cables": "DrawnCable",
         "drawn_wheels": "DrawnBelt DrawnScrew DrawnWheel",
+        "edit": "Edited edit_parameters value_text",
         "fields": "is_tiny_length",
         "motion": "by_count by_step",
         "recording": "precise precise_response record shifting",

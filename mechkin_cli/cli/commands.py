@@ -260,7 +260,8 @@ VIEW = Command(
     One file of HTML that works offline: the mechanism in three dimensions along its sweep and its
     responses, in all assembly modes, with curves, tables, verdicts and notes. Of a folder, a page
     for each mechanism file in it (or in the folders in it), and index.html, which shows a card of
-    each.
+    each. With --live it changes with the file, shows its faults with their places, and writes
+    dimensions that are set in it back into the file on request; Ctrl-C ends that.
     """,
     (
         FILE._replace(help="Mechanism file (YAML, format 1), or a folder; - reads stdin."),
@@ -284,6 +285,12 @@ VIEW = Command(
         ),
         Word("no_modes", "Leave out the other assembly modes.", ("--no-modes",)),
         Word("open_", "Also open the page in the browser.", ("--open",)),
+        Word(
+            "live",
+            "Serve the page on this machine, open it, and follow the file while it is edited.",
+            ("--live",),
+        ),
+        Word("no_open", "With --live: do not open the browser.", ("--no-open",)),
         MESSAGES,
         QUIET,
     ),

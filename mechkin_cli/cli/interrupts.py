@@ -14,11 +14,16 @@ import sys
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
+    import threading
+    from collections.abc import Iterator
     from types import FrameType
     from typing import NoReturn
 
 
 INTERRUPTED = 130
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+"""Ctrl-C, and requests to end; each where the system has it."""
+
 _next_step = ""
 _final_code: int | None = None
 
@@ -43,12 +48,32 @@ def end_quietly() -> None:
     global _final_code
     _final_code = None
     then("")
-    for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK"):  # each where it exists
+    for name in SIGNALS:
         number = getattr(signal, name, None)
         # nohup and parents that ignore a signal are obeyed
         usual = (signal.SIG_DFL, signal.default_int_handler)
         if number is not None and signal.getsignal(number) in usual:
             signal.signal(number, _interrupted)
+
+
+@contextlib.contextmanager
+def awaiting_the_end() -> Iterator[threading.Event]:
+    """Inside, Ctrl-C and requests to end do no more than set the event: for work that goes on until
+    then."""
+    import threading
+
+    ended = threading.Event()
+    before = {
+        number: signal.signal(number, lambda *_: ended.set())
+        for name in SIGNALS
+        if (number := getattr(signal, name, None)) is not None
+        and signal.getsignal(number) is not signal.SIG_IGN
+    }
+    try:
+        yield ended
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def leave(code: int) -> NoReturn:

@@ -40,12 +40,16 @@ def view(
     run: str | None = None,
     no_modes: bool = False,
     open_: bool = False,
+    live: bool = False,
+    no_open: bool = False,
     messages: str | None = None,
     quiet: bool = False,
 ) -> ExitCode:
     """Writes a page that shows a mechanism in motion."""
 
     tell_as(messages)
+    if live:
+        return _follow(file, out, set_, pages.Wish(run, mode, not no_modes), not no_open, quiet)
     if not is_stdin(file) and file.is_dir():
         if set_ or mode or run:
             raise UsageError(
@@ -114,6 +118,26 @@ def _gallery(folder: Path, out: Path, no_modes: bool, open_: bool, quiet: bool) 
     if open_:
         _show(index)
     return code
+
+
+def _follow(
+    file: Path,
+    out: Path | None,
+    set_: list[str] | None,
+    wish: pages.Wish,
+    opens: bool,
+    quiet: bool,
+) -> ExitCode:
+    from mechkin_cli.cli.live import follow
+
+    try:
+        if out is not None:
+            raise UsageError("--live writes no page; leave --out away, or --live")
+        if set_:
+            raise UsageError("--live shows the file as it is; set parameters in it, or in the page")
+        return follow(file, wish, opens, quiet)
+    except UsageError as error:
+        return refusal(file, error)[0]
 
 
 def _summary(analyses: list[Analysis], size: int) -> str:

@@ -11,19 +11,23 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
+    from mechkin_cli.view.following import *
     from mechkin_cli.view.gallery import *
     from mechkin_cli.view.joints import link_poses as link_poses
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
+    from mechkin_cli.view.server import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
+        "following": "Changed Follower Seen Wish",
         "gallery": "INDEX_NAME Card card_of index_page",
         "joints": "link_poses",
         "page": "PAGE_NAME",
         "scene": "view_page write_view",
+        "server": "LiveServer",
     },
 )

@@ -108,6 +108,12 @@ def filled(page: str, data: Plain) -> bytes:
     return (before + script_json(data) + after).encode("utf-8")
 
 
+@cache
+def waiting_page() -> bytes:
+    """The page without data, which takes them from the page that holds it in a frame."""
+    return template().replace(PLACE, "null", 1).encode("utf-8")
+
+
 class Lengths:
     """Lengths (m) in the unit of one file."""
 

@@ -41,6 +41,7 @@ from mechkin_cli.view.page import (
     ShownRun,
     assumed,
     filled,
+    script_json,
     shares,
     template,
 )
@@ -406,6 +407,14 @@ def view_page(
     """The page of runs of one model, and the notes on what it leaves out."""
     scene, notes = view_scene(analyses, modes)
     return filled(template(), scene.record()), notes
+
+
+def view_data(
+    analyses: Sequence[ShownAnalysis], modes: bool = True
+) -> tuple[bytes, list[Diagnostic]]:
+    """What the page of runs of one model shows, as JSON, and the notes as of `view_page`."""
+    scene, notes = view_scene(analyses, modes)
+    return script_json(scene.record()).encode("ascii"), notes
 
 
 def view_scene(

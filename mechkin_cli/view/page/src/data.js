@@ -25,7 +25,11 @@ function bytes(text) {
 
 /** The data that `mechkin view` put into the page, or null where there is none. */
 export function readData() {
-  const data = JSON.parse(document.getElementById("mechkin-data").textContent);
+  return checked(JSON.parse(document.getElementById("mechkin-data").textContent));
+}
+
+/** Data that this page can read. */
+export function checked(data) {
   if (data && data.format !== 1) {
     throw new Error(`the page reads format 1 of its data, and this is format ${data.format}`);
   }

@@ -1,7 +1,7 @@
 // The page: reads its data, puts player, stage, curves, tables and notes on it, and tells in words what cannot be done.
 
-import { readData } from "./data.js";
 import { choice, find } from "./dom.js";
+import { givenData, keepPlace, tellShown } from "./held.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
@@ -22,21 +22,23 @@ const INK = {
   paper: { background: "#ffffff", grid: "#d5d9df" },
 };
 
-function start() {
+async function start() {
   const theme = new Theme();
   find("#choices").append(theme.button);
-  const data = readData();
+  const { data, place } = await givenData();
   if (data === null) return say("This page has no data yet: `mechkin view FILE` writes it with a mechanism.");
   find("#title").textContent = data.name ?? data.file ?? "mechanism";
   find("#subtitle").textContent = [data.file, data.program].filter(Boolean).join(", ");
   document.title = `${data.name ?? data.file}: mechkin view`;
   const tabs = new Tabs(find("#tabs"));
-  if (data.runs.length > 0) showRuns(data, theme, tabs);
-  else say("Nothing of this file has been run, so there is nothing to draw.");
+  const shown = data.runs.length > 0 ? showRuns(data, theme, tabs) : null;
+  if (!shown) say("Nothing of this file has been run, so there is nothing to draw.");
   const notes = showNotes(find("#notes"), data);
   tabs.add("notes", notes > 0 ? `Notes (${notes})` : "Notes");
   showHelp(find("#help"), data);
   tabs.add("help", "Help");
+  if (shown) keepPlace(place, shown);
+  tellShown();
   return undefined;
 }
 
@@ -60,6 +62,7 @@ function showRuns(data, theme, tabs) {
     },
   });
   Object.assign(window.mechkin, hooks({ data, state, player, curves, theatre }));
+  return { state, player, theatre, tabs, theme };
 }
 
 function offerRuns(data, state) {
@@ -113,12 +116,11 @@ function hooks({ data, state, player, curves, theatre }) {
 }
 
 window.mechkin = {};
-window.mechkin.ready = new Promise((resolve, reject) => {
-  try {
-    start();
-    requestAnimationFrame(() => requestAnimationFrame(() => resolve(true)));
-  } catch (error) {
+window.mechkin.ready = start().then(
+  () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true)))),
+  (error) => {
     say(`The page cannot show its data: ${error.message}`);
-    reject(error);
-  }
-});
+    tellShown();
+    throw error;
+  },
+);

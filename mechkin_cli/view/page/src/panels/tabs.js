@@ -17,7 +17,12 @@ export class Tabs {
     this.open([...this.#buttons.keys()][0]);
   }
 
+  has(id) {
+    return this.#buttons.has(id);
+  }
+
   open(id) {
+    this.opened = id;
     for (const [each, button] of this.#buttons) {
       button.setAttribute("aria-selected", String(each === id));
       find(`#${each}`).hidden = each !== id;

@@ -134,6 +134,15 @@ export class Stage {
     this.ask();
   }
 
+  /** Looks from a position to a target, as arrays. */
+  moveTo({ position, up, target }) {
+    this.camera.position.fromArray(position);
+    this.camera.up.fromArray(up);
+    this.controls.target.fromArray(target);
+    this.controls.update();
+    this.ask();
+  }
+
   /** The shares of the stage's height that its tools and its legend lie over. */
   #covered() {
     const share = (selector) => Math.min(0.25, (this.host.querySelector(selector)?.offsetHeight ?? 0) / (this.height || 1));

@@ -195,6 +195,17 @@ export class Theatre {
     this.stage.look(back, withRoom([...this.places, ...compared], room));
   }
 
+  /** Looks along a direction, or as a camera did that somebody has moved; now, or when the stage has its size. */
+  keepView({ look, camera }) {
+    const go = () => {
+      if (look) this.lookFrom(look);
+      else this.fitted = null;
+      if (!look) this.stage.moveTo(camera);
+    };
+    if (this.stage.width) go();
+    else this.stage.whenSized = go;
+  }
+
   setShown(what, on) {
     this.shown[what] = on;
     this.paths.object.visible = this.shown.paths;

@@ -1,0 +1,84 @@
+// A page that another holds in a frame: its data may come by message, and the reader's place in it goes over to the next one.
+
+import { readData, checked } from "./data.js";
+
+const held = window.parent !== window;
+// a page without an origin cannot be named, nor can its holder; nothing in the messages is secret from who holds the page
+const post = (message) => held && window.parent.postMessage(message, "*");
+
+/** The data in the page, or those that the holder sends where it has none, with the reader's place; null where there is neither. */
+export async function givenData() {
+  const data = readData();
+  if (data !== null || !held) return { data, place: null };
+  return new Promise((resolve, reject) => {
+    const take = ({ source, data: message }) => {
+      if (source !== window.parent || message?.mechkin !== "data") return;
+      window.removeEventListener("message", take);
+      try {
+        resolve({ data: checked(JSON.parse(message.text)), place: message.place ?? null });
+      } catch (error) {
+        reject(error);
+      }
+    };
+    window.addEventListener("message", take);
+    post({ mechkin: "ready" });
+  });
+}
+
+/** Tells the holder that all is drawn. */
+export function tellShown() {
+  let told = false;
+  const tell = () => {
+    if (!told) post({ mechkin: "shown" });
+    told = true;
+  };
+  requestAnimationFrame(() => requestAnimationFrame(tell));
+  setTimeout(tell, 250); // frames that are behind others may have to wait for pictures
+}
+
+/** Goes to the reader's place in the page before, as far as it is here, and tells the holder of each new one. */
+export function keepPlace(place, shown) {
+  if (!held) return;
+  if (place) goTo(place, shown);
+  let asked = false;
+  const tell = () => {
+    if (asked) return;
+    asked = true;
+    setTimeout(() => {
+      asked = false;
+      post({ mechkin: "place", place: placeIn(shown) });
+    }, 50);
+  };
+  const { state, theatre, tabs } = shown;
+  state.watch(tell);
+  theatre?.stage.controls.addEventListener("change", tell);
+  for (const each of ["click", "keyup", "scroll"]) window.addEventListener(each, tell, { passive: true, capture: true });
+  tabs.host.addEventListener("click", tell);
+}
+
+function placeIn({ state, player, theatre, tabs, theme }) {
+  const { run, branch, row, compare } = state;
+  const place = {
+    run: run.name, branch: branch.name, other: branch !== state.branches()[0], row, x: branch.x[row], rows: branch.rows, compare,
+    tab: tabs.opened, playing: player.playing, dark: theme.chosen, scroll: window.scrollY,
+  };
+  if (theatre) {
+    const { camera, controls } = theatre.stage;
+    place.camera = theatre.fitted ? null : { position: camera.position.toArray(), up: camera.up.toArray(), target: controls.target.toArray() };
+    place.look = theatre.fitted ? [...theatre.fitted] : null;
+    place.shown = { names: theatre.shown.names, paths: theatre.shown.paths };
+  }
+  return place;
+}
+
+function goTo(place, { state, player, theatre, tabs, theme }) {
+  if (typeof place.dark === "boolean" && place.dark !== theme.dark) theme.toggle();
+  state.setRun(place.run);
+  state.setBranch(place.branch);
+  if (place.compare) state.setCompare(true);
+  state.seek(state.branch.rows === place.rows ? place.row : state.branch.rowAt(place.x));
+  tabs.open(tabs.has(place.tab) ? place.tab : tabs.opened);
+  if (place.look || place.camera) theatre?.keepView(place);
+  if (place.playing) player.play();
+  if (place.scroll > 0) window.scrollTo(0, place.scroll);
+}
