@@ -82,7 +82,7 @@ points: {P: {link: rod, at: ["1", 2 mm, .5]}}
 """
     found = put_in("a, 1, 2.5, 3e-1\np,4,5,-6\n", template, unit="mm")
     changed = template.replace("[0, 0, 10]", "[1, 2.5, 0.3]").replace(
-        '["1", 2 mm, .5]', "[4, 5, -6]"
+        '["1", 2 mm, .5]', '["4", 5, -6]'
     )
     assert found.text == changed
     assert "point: [1 in, " in put_in("A,1,2,3\n", template, unit="in").text
