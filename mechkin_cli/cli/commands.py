@@ -404,7 +404,8 @@ STUDY = Command(
     """Run many variants of a mechanism and keep a few numbers of each.
 
     Writes variants.csv, with a line for each variant, into a folder. A study that was stopped is
-    continued by the same command.
+    continued by the same command. Jobs of an array each compute a share with --part I/N; --merge
+    puts the shares together.
     """,
     (
         Word(
@@ -452,6 +453,14 @@ STUDY = Command(
             "text",
             "ADDRESS",
         ),
+        Word(
+            "part",
+            "Compute only the I-th of N shares, into part-I-of-N in the folder.",
+            ("--part",),
+            "text",
+            "I/N",
+        ),
+        Word("merge", "Put all shares in the folder together; compute nothing.", ("--merge",)),
         Word("explain", "Estimate time and size from a trial; write nothing.", ("--explain",)),
         Word("dry_run", "Check the study and show variants; compute nothing.", ("--dry-run",)),
         JSON,

@@ -43,6 +43,8 @@ def study(
     threads: int = 0,
     processes: int = 0,
     scheduler: str | None = None,
+    part: str | None = None,
+    merge: bool = False,
     explain: bool = False,
     dry_run: bool = False,
     json: bool = False,
@@ -55,8 +57,12 @@ def study(
     record: Record = {}
     code = ExitCode.OK
     try:
+        share = None if part is None else studies.share_of(part)
+        if merge and (part is not None or explain or dry_run):
+            other = "--part" if part is not None else "--explain" if explain else "--dry-run"
+            raise UsageError(f"--merge computes nothing; leave {other} out")
         source = studies.open_study(file)
-        planned = studies.Study(source.load_model(parameters(set_), load), source)
+        planned = studies.Study(source.load_model(parameters(set_), load), source, share)
         say_diagnostics(planned.notes, str(file))
         workers = studies.Workers(threads, processes, None, scheduler)
         if dry_run:
@@ -65,14 +71,10 @@ def study(
             record = _estimate(planned, workers, format_, json)
         else:
             target = Path("out", file.stem) if out is None else out
-            then(", and the same command goes on with them")
-            if processes:
-                studies.end_without_warnings()
-            with counting(planned.source.name, "variants", quiet or json) as progress:
-                found = planned.in_folder(target, workers, format_, again, progress)
-            record = _record(found)
+            found = _written(planned, target, workers, format_, again, merge, quiet or json)
+            record = _record(found, planned)
             if not json:
-                _print(found, quiet)
+                _print(found, planned, quiet)
             if set(found.overview.verdicts) - {"ok"}:
                 code = ExitCode.ROWS_MISSING
     except (InvalidFile, UsageError) as error:
@@ -82,25 +84,45 @@ def study(
     return code
 
 
+def _written(
+    planned: Study,
+    target: Path,
+    workers: Workers,
+    format_: str,
+    again: bool,
+    merge: bool,
+    quiet: bool,
+) -> StudyFiles:
+    """The files of the study or of its share, computed or merged."""
+    name = planned.source.name
+    then(", and the same command goes on with them")
+    if merge:
+        with working(f"{name}: putting all parts together", quiet):
+            return planned.merged(target, format_, again)
+    if workers.processes:
+        studies.end_without_warnings()
+    with counting(name, "variants", quiet) as progress:
+        return planned.in_folder(target, workers, format_, again, progress)
+
+
 def _shown_variants(planned: Study, json: bool) -> Record:
     """Counts and the values of some variants."""
     variation = planned.variation
     lists, lines, samples = variation.counts
     half = SHOWN_VARIANTS // 2
-    last = max(planned.variants - half, half)
-    stretches = [(0, min(half, planned.variants))]
-    if last < planned.variants:
-        stretches.append((last, planned.variants))
+    own = planned.numbers
+    stretches = [own[:half], own[half:][-half:]]
     shown = {
         number: {name: float(values[place]) for name, values in found.items()}
-        for begin, end in stretches
-        for found in [variation.values(begin, end)]
-        for place, number in enumerate(range(begin, end))
+        for numbers in stretches
+        if numbers
+        for found in [variation.values(numbers.start, numbers.stop)]
+        for place, number in enumerate(numbers)
     }
     if not json:
         say(_counts(planned))
         put(_values_table(planned, shown))
-    return {
+    return _share_record(planned) | {
         "variants": planned.variants,
         "lists": lists,
         "lines": lines,
@@ -115,7 +137,20 @@ def _counts(planned: Study) -> str:
     parts = [(lists, "of lists"), (lines, "lines of the table"), (samples, "samples")]
     words = " x ".join(f"{count} {what}" for count, what in parts if count > 1)
     of_what = f" ({words})" if words.count("x") else ""
-    return f"{planned.source.name}: {planned.variants} variants{of_what} of {planned.model.name}"
+    text = f"{planned.source.name}: {planned.variants} variants{of_what} of {planned.model.name}"
+    if planned.share is None:
+        return text
+    numbers = planned.numbers
+    which = f"variants {numbers[0]} to {numbers[-1]}" if numbers else "no variants"
+    return f"{text}; part {planned.share} has {which}"
+
+
+def _share_record(planned: Study) -> Record:
+    """Which variants a share has, where one is named."""
+    if planned.share is None:
+        return {}
+    numbers = planned.numbers
+    return {"part": str(planned.share), "begin": numbers.start, "end": numbers.stop}
 
 
 def _values_table(planned: Study, shown: dict[int, dict[str, float]]) -> str:
@@ -133,17 +168,18 @@ def _estimate(planned: Study, workers: Workers, format_: str, json: bool) -> Rec
     """Time and size, from a trial."""
     with working(f"{planned.source.name}: a trial of some variants", json):
         tried, seconds, whole_seconds, whole_bytes = planned.trial(workers, format_)
+    whole = "all of them take" if planned.share is None else f"part {planned.share} takes"
     if not json:
         say(_counts(planned))
         say(
-            f"  a trial of {tried} took {_time(seconds)}; all of them take about "
+            f"  a trial of {tried} took {_time(seconds)}; {whole} about "
             f"{_time(whole_seconds)} and {_size(whole_bytes)}, in pieces of "
             f"{planned.piece}"
         )
         run = planned.question.run
         count = len(planned.question.tables["variants"])
         say(f"  each variant has {count} columns, of the run {run}")
-    return {
+    return _share_record(planned) | {
         "variants": planned.variants,
         "piece": planned.piece,
         "trial": {"variants": tried, "seconds": seconds},
@@ -171,9 +207,10 @@ def _size(count: float) -> str:
     return f"{count:.3g} TB"
 
 
-def _record(found: StudyFiles) -> Record:
+def _record(found: StudyFiles, planned: Study) -> Record:
     return {
         "name": found.name,
+        **_share_record(planned),
         "files": [str(path) for path in found.files],
         "variants": found.overview.variants,
         "verdicts": found.overview.verdicts,
@@ -188,7 +225,7 @@ def _spread_record(spread: Spread) -> dict[str, Any]:
     return {"label": spread.label, "unit": spread.unit, "found": spread.found}
 
 
-def _print(found: StudyFiles, quiet: bool) -> None:
+def _print(found: StudyFiles, planned: Study, quiet: bool) -> None:
     for path in found.files:
         put(f"{path}\n")
     if quiet:
@@ -199,7 +236,8 @@ def _print(found: StudyFiles, quiet: bool) -> None:
 
         put(shown_table(_overview(spreads), len(spreads)))
     verdicts = ", ".join(f"{count} {word}" for word, count in found.overview.verdicts.items())
-    say(f"{found.name}: {found.overview.variants} variants: {verdicts}")
+    which = "" if planned.share is None else f", part {planned.share}"
+    say(f"{found.name}{which}: {found.overview.variants} variants{verdicts and f': {verdicts}'}")
 
 
 def _overview(spreads: Sequence[Spread]) -> Columns:

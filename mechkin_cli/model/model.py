@@ -613,6 +613,8 @@ class Model(Listed):
         executor: Executor | None = None,
         scheduler: str | None = None,
         progress: Callable[[int, int], None] | None = None,
+        part: str | None = None,
+        merge: bool = False,
     ) -> StudyResults | StudyFiles:
         """Many variants: drawn, crossed or listed, and numbers of each that are kept.
 
@@ -627,6 +629,8 @@ class Model(Listed):
             executor: computes instead; any of `concurrent.futures`.
             scheduler: address of a Dask cluster that computes instead (extra `cluster`).
             progress: told how many variants are done, and of how many.
+            part: compute only this share, as "3/8", into a folder in `out`.
+            merge: compute nothing, put all shares in `out` together.
 
         Returns:
             Columns over the variants; of a folder its files and an overview.
@@ -634,7 +638,8 @@ class Model(Listed):
         Raises:
             InvalidFile: with every independent error of the study and its place.
             UsageError: too many results for the memory, a folder of another study or one that
-                another process writes to, what cannot be written, workers that do not answer.
+                another process writes to, what cannot be written, workers that do not answer,
+                shares that are missing or do not belong together.
 
         Example:
             >>> from mechkin_cli import load
@@ -646,7 +651,7 @@ class Model(Listed):
             [147.41, 135.04, 125.93]
         """
         workers = studies.Workers(threads, processes, executor, scheduler)
-        return studies.study_of(self, study, out, format, again, workers, progress)
+        return studies.study_of(self, study, out, format, again, workers, progress, part, merge)
 
     def sensitivities(
         self,

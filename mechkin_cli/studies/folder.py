@@ -3,13 +3,15 @@
 `study.json` says what the folder holds, `pieces/` has a file for each piece that is done. A piece
 is written under another name and renamed when it is whole, so that whatever ends the process leaves
 pieces that are whole or not there; the next run computes those that are missing. At the end the
-pieces are put together, and go.
+pieces are put together, and go. A share of a study has a folder of its own inside that of the
+whole, in which it is kept in the same way.
 """
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import hashlib
 import json
 import os
 import shutil
@@ -21,6 +23,7 @@ from typing import Any, BinaryIO
 
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
 from mechkin_cli.tables import Claim
 
@@ -30,6 +33,22 @@ VARIANTS, ROWS = "variants", "rows"
 """What the results are called, and in which order they are written."""
 
 _UNFINISHED = ".unfinished"
+
+
+class Share(NamedTuple):
+    """The `number`-th of `total` consecutive stretches of a study's variants, from 1."""
+
+    number: int = 1
+    total: int = 1
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.total}"
+
+    def of(self, variants: int) -> range:
+        """Numbers of its variants, of so many; none where there are fewer variants than shares."""
+        return range(
+            (self.number - 1) * variants // self.total, self.number * variants // self.total
+        )
 
 
 class StudyFolder:
@@ -43,21 +62,25 @@ class StudyFolder:
         tables: Mapping[str, Sequence[Heading]],
         file_format: Format,
         size: int,
+        share: Share | None = None,
     ) -> None:
         """Args:
         folder: made as needed.
         sources: digests of what its results are of, by name (`mechanism`, `study`, ...); results
             of equal sources, variants, tables and format have equal bytes.
-        variants: how many.
+        variants: how many the whole study has.
         tables: headings of `variants`, and of `rows` where rows are kept.
         file_format: writes the files.
         size: variants of a piece, where the folder does not say yet.
+        share: of the study that is kept here; None: all of it.
         """
         self.folder = folder
         self.sources = sources
         self.variants = variants
         self.tables = tables
         self.size = size
+        self.share = share
+        self.numbers = (share or Share()).of(variants)
         self.is_complete = False
         self._format = file_format
         self._claim: Claim | None = None
@@ -83,18 +106,18 @@ class StudyFolder:
         Raises:
             UsageError: the folder holds another study, or cannot be written to.
         """
-        found = None if again else self._manifest()
+        found = None if again else self.manifest()
         with refused(self.folder):
             if found is None:
                 if not again:
                     self._refuse_foreign()
-                self._clear()
+                self.clear()
                 (self.folder / PIECES).mkdir(exist_ok=True)
                 self._write_manifest()
                 return
             self._check(found)
             self.size = int(found["piece"])
-            self.is_complete = bool(found["complete"]) and all(map(Path.exists, self.results))
+            self.is_complete = self.is_finished(found)
             if self.is_complete:
                 shutil.rmtree(self.folder / PIECES, ignore_errors=True)
                 return
@@ -104,7 +127,8 @@ class StudyFolder:
 
     def _record(self) -> dict[str, Any]:
         """What the results are of, as plain data."""
-        return {
+        share = {} if self.share is None else {"part": str(self.share)}
+        return share | {
             "sources": dict(self.sources),
             "variants": self.variants,
             "format": self._format.ending,
@@ -122,11 +146,12 @@ class StudyFolder:
     @property
     def pieces(self) -> range:
         """Numbers of all pieces."""
-        return range(-(-self.variants // self.size))
+        return range(-(-len(self.numbers) // self.size))
 
     def stretch(self, piece: int) -> tuple[int, int]:
         """Numbers of the variants of a piece: the first, and one after the last."""
-        return piece * self.size, min((piece + 1) * self.size, self.variants)
+        first, end = self.numbers.start, self.numbers.stop
+        return first + piece * self.size, min(first + (piece + 1) * self.size, end)
 
     def missing(self) -> list[int]:
         """Numbers of the pieces that are not there yet."""
@@ -168,10 +193,17 @@ class StudyFolder:
         Raises:
             UsageError: a result cannot be written; all pieces stay.
         """
+        self.join({name: [self._piece(name, n) for n in self.pieces] for name in self.tables})
+
+    def join(self, files: Mapping[str, Sequence[Path]]) -> None:
+        """Puts files of consecutive variants together, by name of result, as the whole ones.
+
+        Raises:
+            UsageError: a result cannot be written; all files stay.
+        """
         for (name, headings), path in zip(self.tables.items(), self.results, strict=True):
-            pieces = [self._piece(name, number) for number in self.pieces]
             with refused(path):
-                _write_whole(path, partial(self._format.join, pieces, headings))
+                _write_whole(path, partial(self._format.join, files[name], headings))
         with refused(self.folder):
             self.is_complete = True
             self._write_manifest()
@@ -185,7 +217,12 @@ class StudyFolder:
     def _piece(self, name: str, number: int) -> Path:
         return self.folder / PIECES / f"{name}-{number:09d}.{self._format.ending}"
 
-    def _manifest(self) -> dict[str, Any] | None:
+    def manifest(self) -> dict[str, Any] | None:
+        """What the folder says that it holds; None: nothing.
+
+        Raises:
+            UsageError: it cannot be read, or is none.
+        """
         path = self.folder / MANIFEST
         try:
             found = json.loads(read_regular(path, MOST_TABLE_BYTES))
@@ -200,25 +237,50 @@ class StudyFolder:
             )
         return dict(found)
 
-    def _check(self, found: Mapping[str, Any]) -> None:
+    def is_finished(self, found: Mapping[str, Any]) -> bool:
+        """Whether a manifest says that all is there, and it is."""
+        return bool(found["complete"]) and all(map(Path.exists, self.results))
+
+    def differences(self, found: Mapping[str, Any]) -> str:
+        """In what a manifest is one of another study; "" where it is one of this."""
         own = json.loads(json.dumps(self._record()))
-        if all(found.get(key) == value for key, value in own.items()):
-            return
+        if all(found.get(key) == own.get(key) for key in {*own, "part"}):
+            return ""
         theirs = found["sources"]
         changed = [
             name
             for name in dict.fromkeys((*self.sources, *theirs))
             if self.sources.get(name) != theirs.get(name)
         ]
-        changed += [key for key in ("variants", "format") if found.get(key) != own[key]]
-        what = ", ".join(changed) or "columns"
-        raise UsageError(
-            f"{self.folder} holds results of another study: different {what}; choose another "
-            "folder with --out, or start over with --again"
-        )
+        keys = ("part", "variants", "format")
+        changed += [key for key in keys if found.get(key) != own.get(key)]
+        return ", ".join(changed) or "columns"
+
+    def _check(self, found: Mapping[str, Any]) -> None:
+        what = self.differences(found)
+        if what:
+            raise UsageError(
+                f"{self.folder} holds results of another study: different {what}; choose another "
+                "folder with --out, or start over with --again"
+            )
+
+    def digests(self) -> dict[str, str]:
+        """SHA-256 of each result, by the name of its file.
+
+        Raises:
+            UsageError: it cannot be read.
+        """
+        found = {}
+        for path in self.results:
+            with refused(path, "read"), path.open("rb") as file:
+                found[path.name] = hashlib.file_digest(file, "sha256").hexdigest()
+        return found
 
     def _write_manifest(self) -> None:
         record = self._record() | {"piece": self.size, "complete": self.is_complete}
+        if self.share is not None and self.is_complete:
+            # a part may be copied from machine to machine before all are merged
+            record["sha256"] = self.digests()
         text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
         _write_whole(self.folder / MANIFEST, partial(_put, text.encode()))
 
@@ -231,7 +293,7 @@ class StudyFolder:
                     "another folder with --out, or replace it with --again"
                 )
 
-    def _clear(self) -> None:
+    def clear(self) -> None:
         """Removes what a study left here, and nothing else; last what says that it is a study's."""
         for path in _replaced(self.folder):
             with contextlib.suppress(FileNotFoundError):

@@ -13,7 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import ExitStack
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -25,10 +25,11 @@ from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.kernel.functions import check_threads
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
-from mechkin_cli.studies.folder import VARIANTS, StudyFolder, spare
-from mechkin_cli.studies.formats import Records, format_of, joined
+from mechkin_cli.studies.folder import VARIANTS, Share, StudyFolder, spare
+from mechkin_cli.studies.formats import Format, Records, format_of, joined
 from mechkin_cli.studies.plan import study_plan
 from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
+from mechkin_cli.studies.shares import merge, part_folder, share_of
 from mechkin_cli.studies.source import StudySource, open_study
 from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
 from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
@@ -129,33 +130,40 @@ class Workers(NamedTuple):
 
 
 class Study:
-    """A study of a model, planned and not yet carried out."""
+    """A study of a model, planned and not yet carried out; of a share of it, where one is named."""
 
-    def __init__(self, model: Solvable, source: StudySource) -> None:
+    def __init__(self, model: Solvable, source: StudySource, share: Share | None = None) -> None:
         """Raises:
         InvalidFile: with every independent error and its place.
         """
         self.model = model
         self.source = source
+        self.share = share
         plan = study_plan(source.file, source.document, model)
         self.variation, self.question, self.notes = plan
 
     @property
     def variants(self) -> int:
-        """How many."""
+        """How many, of all shares."""
         return len(self.variation)
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of the variants that are computed: all, or those of the share."""
+        return (self.share or Share()).of(self.variants)
 
     @property
     def piece(self) -> int:
         """Variants of a piece."""
         question = self.question
-        wished = max(LEAST_IN_PIECE, self.variants // PIECES)
+        wished = max(LEAST_IN_PIECE, len(self.numbers) // PIECES)
         if question.run != SWEEP:
             return min(RESPONSES_IN_PIECE, wished)
         wide = 2 + len({column.text for column in question.columns}) + len(question.rows)
         most = PIECE_NUMBERS // (self.model.problem.motion.rows * wide)
         return max(1, min(MOST_IN_PIECE, wished, most))
 
+    @cached_property
     def _sources(self) -> dict[str, str]:
         """Digests of what the results of this study follow from."""
         document, known = self.model.built.document, self.model.problem.parameters
@@ -193,7 +201,7 @@ class Study:
                 break
             count = min(4 * count, self.piece)
         size = sum(len(kind.piece(headings, computed[name])) for name, headings in tables.items())
-        share = self.variants / count
+        share = len(self.numbers) / count
         at_once = max(workers.processes, 1)
         return count, seconds, seconds * share / at_once, size * share
 
@@ -258,7 +266,8 @@ class Study:
         again: bool = False,
         progress: Progress | None = None,
     ) -> StudyFiles:
-        """Writes the results into a folder; takes up what an earlier run of the same study left.
+        """Writes the results into a folder, those of a share into a folder in it; takes up what an
+        earlier run of the same study left.
 
         Raises:
             UsageError: the folder holds another study, another process writes to it, or a file
@@ -266,21 +275,41 @@ class Study:
         """
         workers, kind = _checked(workers), format_of(file_format)
         spare(folder, [*self.model.built.document.files, *self.source.document.files])
-        tables = self.question.tables
-        with StudyFolder(
-            folder, self._sources(), self.variants, tables, kind, self.piece
-        ) as output:
+        with self._folder(folder, kind, self.share) as output:
             output.begin(again)
             missing = [] if output.is_complete else output.missing()
             tasks = [Task(number, *output.stretch(number)) for number in missing]
-            done = self.variants - sum(task.end - task.begin for task in tasks)
+            done = len(self.numbers) - sum(task.end - task.begin for task in tasks)
             for task, records in self._whole_pieces(tasks, workers, progress, done):
                 output.put(task.piece, records)
-            headings = tables[VARIANTS]
             if not output.is_complete:
                 output.finish()
-            seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
-            return StudyFiles(self.source.name, tuple(output.results), seen, self.notes)
+            return self._written(output)
+
+    def merged(self, folder: Path, file_format: str = "csv", again: bool = False) -> StudyFiles:
+        """Puts the shares in a folder together, as if the whole study had been run there, and
+        removes them.
+
+        Raises:
+            UsageError: a share is missing, unfinished, damaged, there twice or of another study;
+                or the folder holds another study, or a file cannot be written. All shares stay.
+        """
+        kind = format_of(file_format)
+        spare(folder, [*self.model.built.document.files, *self.source.document.files])
+        with self._folder(folder, kind, None) as output:
+            merge(output, lambda share: self._folder(folder, kind, share), again)
+            return self._written(output)
+
+    def _folder(self, folder: Path, kind: Format, share: Share | None) -> StudyFolder:
+        """The folder of the whole study, or that of a share in it."""
+        where = folder if share is None else part_folder(folder, share)
+        tables = self.question.tables
+        return StudyFolder(where, self._sources, self.variants, tables, kind, self.piece, share)
+
+    def _written(self, output: StudyFolder) -> StudyFiles:
+        headings = self.question.tables[VARIANTS]
+        seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
+        return StudyFiles(self.source.name, tuple(output.results), seen, self.notes)
 
     def _whole_pieces(
         self, tasks: list[Task], workers: Workers, progress: Progress | None, done: int
@@ -289,7 +318,7 @@ class Study:
         whole = {task.piece: task for task in tasks}
         parts: dict[int, list[tuple[Task, dict[str, Records]]]] = {}
         if progress is not None and tasks:
-            progress(done, self.variants)
+            progress(done, len(self.numbers))
         for part, tables in self.computed(tasks, workers):
             task = whole[part.piece]
             own = parts.setdefault(part.piece, [])
@@ -301,7 +330,7 @@ class Study:
                 yield task, {name: joined([tables[name] for _, tables in own]) for name in names}
                 del parts[part.piece]
             if progress is not None:
-                progress(done, self.variants)
+                progress(done, len(self.numbers))
 
 
 def study_of(
@@ -312,15 +341,24 @@ def study_of(
     again: bool,
     workers: Workers,
     progress: Progress | None,
+    part: str | None,
+    merge: bool,
 ) -> StudyResults | StudyFiles:
     """`Model.study`, whose arguments these are."""
     if not isinstance(study, Mapping):
         study = a_path("study", study)
     a_text("format", file_format, '"csv"')
     source = open_study(study)
-    planned = Study(source.applied_to(model), source)
+    share = None if part is None else share_of(a_text("part", part, '"3/8"'))
+    if merge and share is not None:
+        raise UsageError("merge puts all parts together; leave part out")
+    planned = Study(source.applied_to(model), source, share)
     if out is None:
+        if merge or share is not None:
+            raise UsageError("the parts of a study are kept in a folder; name it with out=")
         return planned.in_memory(workers, progress)
+    if merge:
+        return planned.merged(a_path("out", out), file_format, again)
     return planned.in_folder(a_path("out", out), workers, file_format, again, progress)
 
 
