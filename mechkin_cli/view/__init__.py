@@ -11,11 +11,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
-<<<<<<< HEAD
     from mechkin_cli.view.gallery import *
-=======
     from mechkin_cli.view.joints import link_poses as link_poses
->>>>>>> bridges
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
 
@@ -24,11 +21,8 @@ __getattr__, __dir__ = lazy_names(
     {
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
-<<<<<<< HEAD
         "gallery": "INDEX_NAME Card card_of index_page",
-=======
         "joints": "link_poses",
->>>>>>> bridges
         "page": "PAGE_NAME",
         "scene": "view_page write_view",
     },
