@@ -57,7 +57,7 @@ __getattr__, __dir__ = lazy_names(
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
         "study": "StudyFile validate_study",
         "tables": "Coefficients",
-        "validation": "InvalidDataError form_of validate",
+        "validation": "InvalidDataError RESERVED form_of validate",
         "view": "PartBetween ShapeOfLink ViewSection",
     },
 )
