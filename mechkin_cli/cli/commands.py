@@ -391,6 +391,81 @@ PLOT = Command(
         QUIET,
     ),
 )
+TOLERANCES = Command(
+    "tolerances",
+    "tolerances:tolerances",
+    """Find what tolerances of parameters do to quantities.
+
+    Worst case, root sum of squares and samples (Monte Carlo) at every row, and what each tolerance
+    contributes. Writes tolerances.csv and .md with a line for each row, and tolerances_shares.csv
+    and .md, into out/STEM.
+    """,
+    (
+        FILE,
+        Word(
+            "tolerance",
+            "A parameter and half its band, as P1=0.01mm, or both ends, as P1=-0.01mm,0.02mm; "
+            "repeatable.",
+            ("--tolerance",),
+            "text",
+            "NAME=BAND",
+            repeated=True,
+            offers="parameter_names",
+        ),
+        Word(
+            "of",
+            "Quantities, expressions or labels of columns, separated by commas (default: the "
+            "columns of the first table); repeatable.",
+            ("--of",),
+            "text",
+            "NAMES",
+            repeated=True,
+        ),
+        Word(
+            "at",
+            "Only the row at this value of the input; repeatable.",
+            ("--at",),
+            "text",
+            "VALUE",
+            repeated=True,
+        ),
+        Word(
+            "samples",
+            "Variants that are drawn and run.",
+            ("--samples",),
+            "whole",
+            "NUMBER",
+            default=1024,
+        ),
+        Word(
+            "method",
+            "How they are drawn: latin, sobol or random.",
+            ("--method",),
+            "text",
+            "METHOD",
+            default="latin",
+        ),
+        Word("seed", "Another seed draws others.", ("--seed",), "whole", "NUMBER", default=0),
+        Word(
+            "distribution",
+            "Within the bands: uniform, or normal with half a band as three sigma.",
+            ("--distribution",),
+            "text",
+            "NAME",
+            default="uniform",
+        ),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "DIR"),
+        Word("format_", "csv or md (default: both).", ("--format",), "text", "FORMAT"),
+        Word(
+            "plot",
+            "Also draw tolerances.svg (needs matplotlib: pip install 'mechkin[plot]').",
+            ("--plot",),
+        ),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
 STUDY = Command(
     "study",
     "study:study",
@@ -535,7 +610,7 @@ COMMANDS = {
     command.name: command
     for command in (
         *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
-        *(PLOT, STUDY, TABLES, SCHEMA, BENCH),
+        *(PLOT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
     )
 }
 """The commands by name, in the order of help."""
