@@ -147,6 +147,44 @@ NEW = Command(
     ),
     has_model=False,
 )
+IMPORT = Command(
+    "import",
+    "bridges:import_",
+    """Write the mechanism file that a file of another program becomes.
+
+    FILE.csv is a table of hard points (name, x, y, z) for a template. What cannot be carried over
+    is named. An existing file is never written over.
+    """,
+    (
+        Word("file", "The file to import.", kind="path", metavar="FILE", required=True),
+        Word(
+            "out",
+            "File to write (default: STEM.yaml in this folder).",
+            ("-o", "--out"),
+            "path",
+            "FILE",
+        ),
+        Word(
+            "template",
+            "Of hard points: a template of mechkin new, or a mechanism file, that takes them.",
+            ("--template",),
+            "text",
+            "TEMPLATE",
+        ),
+        Word("unit", "Unit of the table's lengths, such as mm.", ("--unit",), "text", "UNIT"),
+        Word(
+            "rename",
+            "A point of the table and what the template calls it, as 'LCA outer=lower_ball'; "
+            "repeatable.",
+            ("--rename",),
+            "text",
+            "TABLE=TEMPLATE",
+            repeated=True,
+        ),
+        MESSAGES,
+        QUIET,
+    ),
+)
 ANALYZE = Command(
     "analyze",
     "analyze:analyze",
@@ -396,9 +434,9 @@ TOLERANCES = Command(
     "tolerances:tolerances",
     """Find what tolerances of parameters do to quantities.
 
-    Worst case, root sum of squares and samples (Monte Carlo) at every row, and what each tolerance
-    contributes. Writes tolerances.csv and .md with a line for each row, and tolerances_shares.csv
-    and .md, into out/STEM.
+    Worst case, root sum square and samples (Monte Carlo) at every row, and what each tolerance
+    contributes. Writes tolerances.csv, with a line for each row, tolerances_shares.csv, and
+    tolerances.md with both.
     """,
     (
         FILE,
@@ -463,6 +501,40 @@ TOLERANCES = Command(
         ),
         SET,
         JSON,
+        QUIET,
+    ),
+)
+EXPORT = Command(
+    "export",
+    "bridges:export",
+    """Write a mechanism in the format of another program.
+
+    mjcf: a model for MuJoCo, drawn in the pose of a row, loops closed by equality constraints.
+    The files go into out/STEM or a folder of your choice; what they cannot hold is named.
+    """,
+    (
+        FILE,
+        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT", required=True),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
+        Word(
+            "run",
+            "Run to export: sweep, or a response (default: the first).",
+            ("--run",),
+            "text",
+            "NAME",
+            offers="run_names",
+        ),
+        Word(
+            "row",
+            "Number of a row, from 1 on; several as 1,19 (default: the first, or all).",
+            ("--row",),
+            "text",
+            "NUMBER",
+            repeated=True,
+        ),
+        SET,
+        MODE,
+        MESSAGES,
         QUIET,
     ),
 )
@@ -609,8 +681,8 @@ BENCH = Command(
 COMMANDS = {
     command.name: command
     for command in (
-        *(NEW, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
-        *(PLOT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
+        *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
+        *(PLOT, EXPORT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
     )
 }
 """The commands by name, in the order of help."""

@@ -33,13 +33,13 @@ def new(name: str | None = None, template: str = "four-bar", list_: bool = False
         )
     text = templates.template_text(template)
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
-    _write_new(path, text)
+    write_new(path, text)
     say(f"{path}: {templates.purpose(text)}")
     say(f"mechkin analyze {quote(str(path))}")
     return ExitCode.OK
 
 
-def _write_new(path: Path, text: str) -> None:
+def write_new(path: Path, text: str) -> None:
     """Writes a file that is not there yet, whole or not at all.
 
     Raises:

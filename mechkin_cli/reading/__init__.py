@@ -11,6 +11,7 @@ from mechkin_cli.lazy import lazy_names
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.reading.document import *
+    from mechkin_cli.reading.edits import *
     from mechkin_cli.reading.text import *
     from mechkin_cli.reading.yaml import *
 
@@ -19,7 +20,9 @@ __getattr__, __dir__ = lazy_names(
     {
         "document": "Document KeyPath document_from_data document_from_text explain is_mechanism "
         "is_study read_document",
-        "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular",
+        "edits": "with_values",
+        "text": "MOST_BYTES MOST_DIAGNOSTICS MOST_TABLE_BYTES NotRegular decoded read_regular "
+        "shortened",
         "yaml": "CORRECT_FIRST in_order",
     },
 )

@@ -64,6 +64,7 @@ ORDER = [
     "studies",
     "model",
     "templates",
+    "bridges",
     "bench",
     "cli",
 ]

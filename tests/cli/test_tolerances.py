@@ -1,4 +1,4 @@
-"""`mechkin tolerances`: its files against the closed form of the slider-crank, and what it refuses."""
+"""`mechkin tolerances`: its files against the closed form of the slider-crank; what it refuses."""
 
 from __future__ import annotations
 
