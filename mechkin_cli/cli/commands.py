@@ -12,32 +12,12 @@ import sys
 from collections.abc import Mapping
 from importlib import import_module
 
-from mechkin_cli.cli.messages import FORMS
+from mechkin_cli.cli.words import FILE, FILES, JSON, MESSAGES, MODE, QUIET, SET, TABLE, Word
 from mechkin_cli.record import NamedTuple
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
-    from typing import Any, Literal
-
-    Kind = Literal["flag", "text", "whole", "path", "folder"]
-
-
-class Word(NamedTuple):
-    """An option or, without `names`, an argument: the parameter of the command's function that it
-    gives, and how help tells it.
-
-    `offers` is the function of `app.py` that a shell is offered values by.
-    """
-
-    parameter: str
-    help: str
-    names: tuple[str, ...] = ()
-    kind: Kind = "flag"
-    metavar: str | None = None
-    repeated: bool = False
-    required: bool = False
-    default: str | int | None = None
-    offers: str | None = None
+    from typing import Any
 
 
 class Command(NamedTuple):
@@ -76,55 +56,6 @@ def all_formats() -> str:
     *names, last = WRITERS
     return f"{', '.join(names)} or {last}"
 
-
-FILES = Word(
-    "files",
-    "Mechanism files (YAML, format 1); - reads stdin.",
-    kind="path",
-    metavar="FILE",
-    repeated=True,
-    required=True,
-    offers="mechanism_files",
-)
-FILE = FILES._replace(
-    parameter="file", help="Mechanism file (YAML, format 1); - reads stdin.", repeated=False
-)
-SET = Word(
-    "set_",
-    "Set a parameter, as P1=0.6in; repeatable.",
-    ("--set",),
-    "text",
-    "NAME=VALUE",
-    repeated=True,
-    offers="parameter_names",
-)
-MODE = Word(
-    "mode",
-    "Assembly mode at the first row: its letter, or home for the one drawn.",
-    ("--mode",),
-    "text",
-    "NAME",
-    offers="mode_names",
-)
-TABLE = Word(
-    "table",
-    "Only this table; may be repeated.",
-    ("--table",),
-    "text",
-    "NAME",
-    repeated=True,
-    offers="table_names",
-)
-MESSAGES = Word(
-    "messages",
-    f"Form of the messages: {' or '.join(FORMS)} (annotations for CI).",
-    ("--messages",),
-    "text",
-    "FORM",
-    offers="message_forms",
-)
-JSON = Word("json", "One JSON object on stdout and nothing else.", ("--json",))
-QUIET = Word("quiet", "Only warnings and errors.", ("--quiet",))
 
 NEW = Command(
     "new",
@@ -453,6 +384,81 @@ PLOT = Command(
         QUIET,
     ),
 )
+TOLERANCES = Command(
+    "tolerances",
+    "tolerances:tolerances",
+    """Find what tolerances of parameters do to quantities.
+
+    Worst case, root sum square and samples (Monte Carlo) at every row, and what each tolerance
+    contributes. Writes tolerances.csv, with a line for each row, tolerances_shares.csv, and
+    tolerances.md with both.
+    """,
+    (
+        FILE,
+        Word(
+            "tolerance",
+            "A parameter and half its band, as P1=0.01mm, or both ends, as P1=-0.01mm,0.02mm; "
+            "repeatable.",
+            ("--tolerance",),
+            "text",
+            "NAME=BAND",
+            repeated=True,
+            offers="parameter_names",
+        ),
+        Word(
+            "of",
+            "Quantities, expressions or labels of columns, separated by commas (default: the "
+            "columns of the first table); repeatable.",
+            ("--of",),
+            "text",
+            "NAMES",
+            repeated=True,
+        ),
+        Word(
+            "at",
+            "Only the row at this value of the input; repeatable.",
+            ("--at",),
+            "text",
+            "VALUE",
+            repeated=True,
+        ),
+        Word(
+            "samples",
+            "Variants that are drawn and run.",
+            ("--samples",),
+            "whole",
+            "NUMBER",
+            default=1024,
+        ),
+        Word(
+            "method",
+            "How they are drawn: latin, sobol or random.",
+            ("--method",),
+            "text",
+            "METHOD",
+            default="latin",
+        ),
+        Word("seed", "Another seed draws others.", ("--seed",), "whole", "NUMBER", default=0),
+        Word(
+            "distribution",
+            "Within the bands: uniform, or normal with half a band as three sigma.",
+            ("--distribution",),
+            "text",
+            "NAME",
+            default="uniform",
+        ),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "DIR"),
+        Word("format_", "csv or md (default: both).", ("--format",), "text", "FORMAT"),
+        Word(
+            "plot",
+            "Also draw tolerances.svg (needs matplotlib: pip install 'mechkin[plot]').",
+            ("--plot",),
+        ),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
 EXPORT = Command(
     "export",
     "bridges:export",
@@ -631,7 +637,7 @@ COMMANDS = {
     command.name: command
     for command in (
         *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
-        *(PLOT, EXPORT, STUDY, TABLES, SCHEMA, BENCH),
+        *(PLOT, EXPORT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
     )
 }
 """The commands by name, in the order of help."""
