@@ -1,16 +1,19 @@
 // The page: reads its data, puts player, stage, curves, tables and notes on it, and tells in words what cannot be done.
 
 import { choice, find } from "./dom.js";
-import { givenData, keepPlace, tellShown } from "./held.js";
+import { givenData, keepPlace, tellLive, tellShown } from "./held.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
+import { SaveMenu, connect, liveRun, showLive } from "./live/start.js";
 import { showHelp, showNotes } from "./panels/notes.js";
 import { Tables } from "./panels/tables.js";
 import { Tabs } from "./panels/tabs.js";
 import { Tools } from "./panels/tools.js";
 import { preparePaper } from "./paper.js";
 import { Player } from "./player.js";
+import { saves } from "./export/save.js";
+import { Drag } from "./scene/drag.js";
 import { NoWebGL } from "./scene/stage.js";
 import { Theatre } from "./scene/theatre.js";
 import { State } from "./state.js";
@@ -26,7 +29,10 @@ async function start() {
   const theme = new Theme();
   find("#choices").append(theme.button);
   const { data, place } = await givenData();
-  if (data === null) return say("This page has no data yet: `mechkin view FILE` writes it with a mechanism.");
+  if (data === null) {
+    say("This page has no data yet: `mechkin view FILE` writes it with a mechanism.");
+    return;
+  }
   find("#title").textContent = data.name ?? data.file ?? "mechanism";
   find("#subtitle").textContent = [data.file, data.program].filter(Boolean).join(", ");
   document.title = `${data.name ?? data.file}: mechkin view`;
@@ -39,7 +45,23 @@ async function start() {
   tabs.add("help", "Help");
   if (shown) keepPlace(place, shown);
   tellShown();
-  return undefined;
+  if (!shown) return;
+  await enliven(shown);
+  tellLive();
+}
+
+/** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
+async function enliven(shown) {
+  let dimensions = null;
+  const bring = (run) => (dimensions = showLive(run, shown));
+  try {
+    const run = await liveRun(shown.data);
+    if (run) bring(run);
+  } catch (error) {
+    console.warn(`dimensions cannot be changed here: ${error.message}`);
+  }
+  connect(shown.state, dimensions);
+  Object.assign(window.mechkin, { dimensions, bring: (run) => (window.mechkin.dimensions = bring(run)) });
 }
 
 function showRuns(data, theme, tabs) {
@@ -48,11 +70,15 @@ function showRuns(data, theme, tabs) {
   const player = new Player(find("#player"), state);
   const curves = new Curves(find("#curves"), state, theme);
   tabs.add("curves", "Curves");
-  new Tables(find("#tables"), state, theme);
+  const tables = new Tables(find("#tables"), state, theme);
   tabs.add("tables", data.tables.length > 1 ? `Tables (${data.tables.length})` : "Table");
   const theatre = raise(data, state, theme);
   const tools = theatre && new Tools(find("#tools"), state, theatre);
-  if (theatre) showLegend(find("#legend"), data, theatre);
+  if (theatre) {
+    showLegend(find("#legend"), data, theatre);
+    new Drag(theatre, state, player, (text) => (find("#said").textContent = text));
+  }
+  const menu = new SaveMenu(find("#choices"), saves({ data, state, theatre, curves, tables, player }));
   preparePaper(theme, theatre);
   listenToKeys({
     state, player,
@@ -62,7 +88,7 @@ function showRuns(data, theme, tabs) {
     },
   });
   Object.assign(window.mechkin, hooks({ data, state, player, curves, theatre }));
-  return { state, player, theatre, tabs, theme };
+  return { data, state, tabs, menu, player, theatre, theme };
 }
 
 function offerRuns(data, state) {
