@@ -7,6 +7,7 @@ const MOST_WAIT = 8000; // milliseconds after which a page that says nothing is 
 class Frames {
   #spare = null;
   #wanted = 0;
+  #busy = null;
 
   /**
    * @param host  element that frames fill
@@ -45,7 +46,13 @@ class Frames {
     if (data.mechkin === "ready") held.isReady();
     else if (data.mechkin === "shown") held.isShown();
     else if (data.mechkin === "place") held.place = data.place;
+    else if (data.mechkin === "live") this.#enliven(held);
     else if (held === this.seen) this.hear(data);
+  }
+
+  #enliven(held) {
+    held.isLive = true;
+    if (held === this.seen) this.hear({ mechkin: "live" });
   }
 
   /** Where the reader is in the page that is seen: run, mode, row, tab, camera. */
@@ -56,27 +63,28 @@ class Frames {
   /** Shows data, a JSON text, at a place; gives whether they are seen, and not newer ones instead. */
   async show(text, place) {
     const number = (this.#wanted += 1);
-    const held = this.#spare ?? this.#open();
-    this.#spare = null;
-    await held.ready;
-    if (number !== this.#wanted) return this.#keep(held);
-    held.frame.contentWindow.postMessage({ mechkin: "data", text, place }, "*");
-    await Promise.race([held.shown, new Promise((done) => setTimeout(done, MOST_WAIT))]);
-    if (number !== this.#wanted) {
-      this.#close(held);
-      return false;
+    // one at a time, so that something is seen however fast the data change; of those that wait, the last
+    while (this.#busy) {
+      await this.#busy;
+      if (number !== this.#wanted) return false;
     }
-    for (const each of [...this.all]) if (each !== held) this.#close(each);
-    this.seen = held;
-    held.frame.inert = false;
-    setTimeout(() => (this.#spare ??= this.#open()), 100);
+    this.#busy = this.#put(text, place);
+    await this.#busy;
+    this.#busy = null;
     return true;
   }
 
-  #keep(held) {
-    if (this.#spare) this.#close(held);
-    else this.#spare = held;
-    return false;
+  async #put(text, place) {
+    const held = this.#spare ?? this.#open();
+    this.#spare = null;
+    await held.ready;
+    held.frame.contentWindow.postMessage({ mechkin: "data", text, place }, "*");
+    await Promise.race([held.shown, new Promise((done) => setTimeout(done, MOST_WAIT))]);
+    for (const each of [...this.all]) if (each !== held) this.#close(each);
+    this.seen = held;
+    held.frame.inert = false;
+    if (held.isLive) this.hear({ mechkin: "live" });
+    setTimeout(() => (this.#spare ??= this.#open()), 100);
   }
 
   #close(held) {

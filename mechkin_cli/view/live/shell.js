@@ -111,8 +111,13 @@ class Live {
     const kept = this.#changed.filter(([name, value]) => parameters[name] === before[name] && value !== parameters[name]);
     this.#own = parameters;
     this.#values = Object.fromEntries(kept);
-    if (kept.length > 0) this.frames.post({ mechkin: "set-parameters", values: this.#values });
+    this.#setAgain();
     this.#offer();
+  }
+
+  #setAgain() {
+    const values = Object.fromEntries(this.#changed);
+    if (Object.keys(values).length > 0) this.frames.post({ mechkin: "set-parameters", values });
   }
 
   get #changed() {
@@ -120,6 +125,7 @@ class Live {
   }
 
   #hear(message) {
+    if (message.mechkin === "live") this.#setAgain();
     if (message.mechkin !== "parameters" || typeof message.values !== "object" || message.values === null) return;
     this.#values = message.values;
     this.#texts = message.texts ?? {};

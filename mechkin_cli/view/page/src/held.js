@@ -1,6 +1,7 @@
 // A page that another holds in a frame: its data may come by message, and the reader's place in it goes over to the next one.
 
-import { readData, checked } from "./data.js";
+import { checked, readData } from "./data.js";
+import { warmUp } from "./scene/stage.js";
 
 const held = window.parent !== window;
 // a page without an origin cannot be named, nor can its holder; nothing in the messages is secret from who holds the page
@@ -22,6 +23,7 @@ export async function givenData() {
     };
     window.addEventListener("message", take);
     post({ mechkin: "ready" });
+    warmUp();
   });
 }
 
@@ -35,6 +37,9 @@ export function tellShown() {
   requestAnimationFrame(() => requestAnimationFrame(tell));
   setTimeout(tell, 250); // frames that are behind others may have to wait for pictures
 }
+
+/** Tells the holder that dimensions can be set from now on, where they can. */
+export const tellLive = () => post({ mechkin: "live" });
 
 /** Goes to the reader's place in the page before, as far as it is here, and tells the holder of each new one. */
 export function keepPlace(place, shown) {

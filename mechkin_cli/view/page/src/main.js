@@ -1,7 +1,7 @@
 // The page: reads its data, puts player, stage, curves, tables and notes on it, and tells in words what cannot be done.
 
 import { choice, find } from "./dom.js";
-import { givenData, keepPlace, tellShown } from "./held.js";
+import { givenData, keepPlace, tellLive, tellShown } from "./held.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
@@ -29,7 +29,10 @@ async function start() {
   const theme = new Theme();
   find("#choices").append(theme.button);
   const { data, place } = await givenData();
-  if (data === null) return say("This page has no data yet: `mechkin view FILE` writes it with a mechanism.");
+  if (data === null) {
+    say("This page has no data yet: `mechkin view FILE` writes it with a mechanism.");
+    return;
+  }
   find("#title").textContent = data.name ?? data.file ?? "mechanism";
   find("#subtitle").textContent = [data.file, data.program].filter(Boolean).join(", ");
   document.title = `${data.name ?? data.file}: mechkin view`;
@@ -40,12 +43,11 @@ async function start() {
   tabs.add("notes", notes > 0 ? `Notes (${notes})` : "Notes");
   showHelp(find("#help"), data);
   tabs.add("help", "Help");
-  if (shown) {
-    keepPlace(place, shown);
-    await enliven(shown);
-  }
+  if (shown) keepPlace(place, shown);
   tellShown();
-  return undefined;
+  if (!shown) return;
+  await enliven(shown);
+  tellLive();
 }
 
 /** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
@@ -86,7 +88,7 @@ function showRuns(data, theme, tabs) {
     },
   });
   Object.assign(window.mechkin, hooks({ data, state, player, curves, theatre }));
-  return { data, state, player, theatre, tabs, theme, menu };
+  return { data, state, tabs, menu, player, theatre, theme };
 }
 
 function offerRuns(data, state) {

@@ -1,8 +1,8 @@
 // The stage: canvas, camera, lights, floor. It draws when something has changed, and never else.
 
 import {
-  Color, DirectionalLight, GridHelper, HemisphereLight, PerspectiveCamera, Quaternion, Scene,
-  Vector3, WebGLRenderer,
+  BoxGeometry, Color, DirectionalLight, GridHelper, HemisphereLight, LineBasicMaterial, LineSegments, Mesh,
+  MeshBasicMaterial, MeshStandardMaterial, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { vector } from "./vectors.js";
@@ -21,6 +21,28 @@ function rendererOrReason() {
   }
 }
 
+let warm = null;
+
+/** Prepares what a stage needs that takes long, for one that is raised later: a renderer with its programs for all materials. */
+export function warmUp() {
+  try {
+    warm = rendererOrReason();
+  } catch (error) {
+    if (error instanceof NoWebGL) return;
+    throw error;
+  }
+  const scene = new Scene().add(...lights());
+  for (const transparent of [false, true]) {
+    scene.add(new Mesh(new BoxGeometry(), new MeshStandardMaterial({ transparent })));
+    scene.add(new LineSegments(new BoxGeometry(), new LineBasicMaterial({ transparent })));
+  }
+  scene.add(new Mesh(new BoxGeometry(), new MeshBasicMaterial()));
+  warm.setSize(8, 8);
+  warm.render(scene, new PerspectiveCamera());
+}
+
+const lights = () => [new HemisphereLight(0xffffff, 0x8a8f99, 1.9), new DirectionalLight(0xffffff, 2.1), new DirectionalLight(0xffffff, 0.5)];
+
 /** Takes an object off the stage and gives its memory back. */
 export function dispose(object) {
   object.removeFromParent();
@@ -38,7 +60,8 @@ export class Stage {
   constructor(host, data) {
     this.host = host;
     this.data = data;
-    this.renderer = rendererOrReason();
+    this.renderer = warm ?? rendererOrReason();
+    warm = null;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     host.prepend(this.renderer.domElement);
     this.scene = new Scene();
@@ -56,10 +79,9 @@ export class Stage {
   }
 
   #light() {
-    this.scene.add(new HemisphereLight(0xffffff, 0x8a8f99, 1.9));
-    this.sun = new DirectionalLight(0xffffff, 2.1);
-    this.fill = new DirectionalLight(0xffffff, 0.5);
-    this.scene.add(this.sun, this.fill, this.sun.target, this.fill.target);
+    const [sky, sun, fill] = lights();
+    Object.assign(this, { sun, fill });
+    this.scene.add(sky, sun, fill, sun.target, fill.target);
   }
 
   /** Light comes over the viewer's left shoulder, so that no side that is seen is black. */
