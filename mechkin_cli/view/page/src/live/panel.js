@@ -17,7 +17,7 @@ export class DimensionPanel {
     this.original = tick("original", state.withOriginal, (on) => state.setWithOriginal(on));
     this.original.title = "Draw the file's own dimensions pale, and their curves dashed";
     this.rows = dimensions.parameters.map((parameter) => new DimensionRow(parameter, dimensions));
-    const takes = acts.map(({ text, act }) => press(text, text, () => this.#act(act)));
+    const takes = acts.map(({ text, short, act }) => press(short, text, () => this.#act(act)));
     host.append(
       element("summary", {}, element("h2", {}, "Dimensions")),
       element("div.actions", { role: "toolbar", "aria-label": "Dimensions" }, this.back, this.on, this.reset, this.original, ...takes, this.copied),
