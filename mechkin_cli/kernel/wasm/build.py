@@ -47,7 +47,7 @@ SMALL = (
 )
 EXPORTED = (
     *("mechkin_plan_create", "mechkin_plan_free", "mechkin_page_sizes", "mechkin_page_run"),
-    *("mechkin_tape_create", "mechkin_tape_free", "mechkin_tape_run", "mechkin_cell_texts"),
+    *("mechkin_tape_create", "mechkin_tape_free", "mechkin_tape_run", "mechkin_tape_outputs", "mechkin_cell_texts"),
     *("malloc", "free"),
 )
 LINKED = [
