@@ -5,7 +5,7 @@ import { readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
-const MOST_BYTES = 800_000;
+const MOST_BYTES = 1_600_000;
 const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 const page = here("../page.html");
 

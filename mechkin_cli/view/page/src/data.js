@@ -3,9 +3,10 @@
 const KINDS = { f32: Float32Array, f64: Float64Array, i32: Int32Array, u8: Uint8Array };
 const decoded = new WeakMap();
 
-/** The numbers of `{"f64": "..."}` and its like, little-endian as every browser's machine is. */
+/** The numbers of `{"f64": "..."}` and its like, little-endian as every browser's machine is; an array of numbers is itself. */
 export function numbers(packed) {
   if (!packed) return new Float64Array(0);
+  if (ArrayBuffer.isView(packed)) return packed;
   let made = decoded.get(packed);
   if (!made) {
     const [kind, text] = Object.entries(packed)[0];

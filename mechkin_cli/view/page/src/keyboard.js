@@ -11,6 +11,7 @@ export const KEYS = [
   ["n", "names on or off"],
   ["0", "the first view again"],
   ["x y z", "look along an axis; with Shift from behind"],
+  ["Ctrl+Z Ctrl+Shift+Z", "undo or redo a change of dimensions"],
 ];
 
 /** Listens to keys wherever no field is being written in. */
@@ -59,6 +60,7 @@ function leaveAfterClicks() {
 
 /** Whether the key belongs to the element: to a text field or a list of choices, and Space to what it presses. */
 function takes(target, key) {
-  if (target.matches?.("input[type=search], select, textarea")) return true;
+  if (target.matches?.("input[type=search], input[type=number], select, textarea")) return true;
+  if (target.matches?.("#dimensions input[type=range]")) return key !== " ";
   return key === " " && target.matches?.("button, summary, input[type=checkbox], [role=tab]");
 }

@@ -5,12 +5,15 @@ import { choice, find } from "./dom.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
+import { SaveMenu, connect, liveRun, showLive } from "./live/start.js";
 import { showHelp, showNotes } from "./panels/notes.js";
 import { Tables } from "./panels/tables.js";
 import { Tabs } from "./panels/tabs.js";
 import { Tools } from "./panels/tools.js";
 import { preparePaper } from "./paper.js";
 import { Player } from "./player.js";
+import { saves } from "./export/save.js";
+import { Drag } from "./scene/drag.js";
 import { NoWebGL } from "./scene/stage.js";
 import { Theatre } from "./scene/theatre.js";
 import { State } from "./state.js";
@@ -22,7 +25,7 @@ const INK = {
   paper: { background: "#ffffff", grid: "#d5d9df" },
 };
 
-function start() {
+async function start() {
   const theme = new Theme();
   find("#choices").append(theme.button);
   const data = readData();
@@ -31,13 +34,27 @@ function start() {
   find("#subtitle").textContent = [data.file, data.program].filter(Boolean).join(", ");
   document.title = `${data.name ?? data.file}: mechkin view`;
   const tabs = new Tabs(find("#tabs"));
-  if (data.runs.length > 0) showRuns(data, theme, tabs);
-  else say("Nothing of this file has been run, so there is nothing to draw.");
+  const shown = data.runs.length > 0 ? showRuns(data, theme, tabs) : null;
+  if (!shown) say("Nothing of this file has been run, so there is nothing to draw.");
   const notes = showNotes(find("#notes"), data);
   tabs.add("notes", notes > 0 ? `Notes (${notes})` : "Notes");
   showHelp(find("#help"), data);
   tabs.add("help", "Help");
-  return undefined;
+  return shown && enliven(shown);
+}
+
+/** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
+async function enliven(shown) {
+  let dimensions = null;
+  const bring = (run) => (dimensions = showLive(run, shown));
+  try {
+    const run = await liveRun(shown.data);
+    if (run) bring(run);
+  } catch (error) {
+    console.warn(`dimensions cannot be changed here: ${error.message}`);
+  }
+  connect(shown.state, dimensions);
+  Object.assign(window.mechkin, { dimensions, bring: (run) => (window.mechkin.dimensions = bring(run)) });
 }
 
 function showRuns(data, theme, tabs) {
@@ -46,11 +63,15 @@ function showRuns(data, theme, tabs) {
   const player = new Player(find("#player"), state);
   const curves = new Curves(find("#curves"), state, theme);
   tabs.add("curves", "Curves");
-  new Tables(find("#tables"), state, theme);
+  const tables = new Tables(find("#tables"), state, theme);
   tabs.add("tables", data.tables.length > 1 ? `Tables (${data.tables.length})` : "Table");
   const theatre = raise(data, state, theme);
   const tools = theatre && new Tools(find("#tools"), state, theatre);
-  if (theatre) showLegend(find("#legend"), data, theatre);
+  if (theatre) {
+    showLegend(find("#legend"), data, theatre);
+    new Drag(theatre, state, player, (text) => (find("#said").textContent = text));
+  }
+  const menu = new SaveMenu(find("#choices"), saves({ data, state, theatre, curves, tables, player }));
   preparePaper(theme, theatre);
   listenToKeys({
     state, player,
@@ -60,6 +81,7 @@ function showRuns(data, theme, tabs) {
     },
   });
   Object.assign(window.mechkin, hooks({ data, state, player, curves, theatre }));
+  return { data, state, tabs, menu };
 }
 
 function offerRuns(data, state) {
@@ -113,12 +135,10 @@ function hooks({ data, state, player, curves, theatre }) {
 }
 
 window.mechkin = {};
-window.mechkin.ready = new Promise((resolve, reject) => {
-  try {
-    start();
-    requestAnimationFrame(() => requestAnimationFrame(() => resolve(true)));
-  } catch (error) {
+window.mechkin.ready = start().then(
+  () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true)))),
+  (error) => {
     say(`The page cannot show its data: ${error.message}`);
-    reject(error);
-  }
-});
+    throw error;
+  },
+);

@@ -9,16 +9,17 @@ export function preparePaper(theme, theatre) {
   theme.addEventListener("change", () => {
     picture.hidden = !theme.printing || !theatre;
     if (picture.hidden) return;
-    theatre.stage.draw();
-    picture.src = pictureOf(theatre);
+    picture.src = pictureOf(theatre).toDataURL("image/png");
   });
 }
 
-function pictureOf(theatre) {
+/** A canvas with the stage as it is seen, and its names. */
+export function pictureOf(theatre) {
+  theatre.stage.draw();
   const { domElement } = theatre.stage.renderer;
   const sheet = element("canvas", { width: domElement.width, height: domElement.height });
   const brush = sheet.getContext("2d");
   brush.drawImage(domElement, 0, 0);
-  theatre.labels.write(brush, domElement.width / theatre.stage.width);
-  return sheet.toDataURL("image/png");
+  theatre.labels.write(brush, domElement.width / theatre.stage.width, theatre.stage.background);
+  return sheet;
 }

@@ -39,6 +39,7 @@ export class Player {
   #show(changes) {
     const { branch, row } = this.state;
     if (changes.has("compare") && !changes.has("branch")) this.#offerModes();
+    if (changes.has("dimensions")) this.#paint();
     if (changes.has("branch")) {
       this.slider.max = Math.max(0, branch.rows - 1);
       this.slider.disabled = this.button.disabled = branch.rows < 2;
@@ -63,7 +64,8 @@ export class Player {
     const kept = [];
     if (many) {
       const names = branches.map((each) => each.name);
-      const texts = branches.map(({ name, own }) => (own ? `${name} (the file's)` : name));
+      const changed = branches[0] !== this.state.fileBranches()[0];
+      const texts = branches.map(({ name, own }) => (own ? `${name} (${changed ? "changed" : "the file's"})` : name));
       const modes = choice("Assembly mode", texts, (k) => this.state.setBranch(names[k]));
       modes.value = branches.indexOf(this.state.branch);
       kept.push(modes, tick("compare", this.state.compare, (on) => this.state.setCompare(on)));
@@ -96,6 +98,12 @@ export class Player {
       brush.fillStyle = MARKS[mark.kind] ?? MARKS.event;
       brush.fillRect(at * reach - ratio, 0, 2 * ratio, height);
     }
+  }
+
+  /** The place after a share of once through. */
+  placeAt(share) {
+    const { branch } = this.state;
+    return Math.min(branch.rows - 1, Math.max(0, advanced(branch, 0, share)));
   }
 
   toggle() {

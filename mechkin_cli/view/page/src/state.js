@@ -5,23 +5,49 @@ import { Branch } from "./branch.js";
 /** The run, branch and row that are shown; `change` events say what became different. */
 export class State extends EventTarget {
   #branches = new Map();
+  #changed = new Map(); // by run: its own branch with changed dimensions
 
   constructor(data) {
     super();
     this.data = data;
+    this.drawn = data; // with changed dimensions, what is drawn of them
     this.run = data.runs[0] ?? null;
     this.place = 0; // a row, or between two of them while it plays
     this.compare = false;
+    this.withOriginal = true;
+    this.tables = data.tables;
     this.branch = this.run ? this.branches(this.run)[0] : null;
   }
 
-  /** The decoded branches of a run. */
+  /** The decoded branches of a run; where dimensions are changed, the first is as they make it. */
   branches(run = this.run) {
+    const found = this.fileBranches(run);
+    const changed = this.#changed.get(run);
+    return changed ? [changed, ...found.slice(1)] : found;
+  }
+
+  /** The branches of a run with the file's dimensions. */
+  fileBranches(run = this.run) {
     if (!this.#branches.has(run)) {
       const made = run.branches.map((each) => new Branch(each, this.data.links.length));
       this.#branches.set(run, made);
     }
     return this.#branches.get(run);
+  }
+
+  /** The branch of the file's dimensions that the shown one was made of by changing them; null where nothing is changed. */
+  get original() {
+    return this.run && this.branch === this.#changed.get(this.run) ? this.fileBranches()[0] : null;
+  }
+
+  /** The original where it is to be seen beside the changed one. */
+  get shownOriginal() {
+    return this.withOriginal ? this.original : null;
+  }
+
+  /** What is drawn of a branch: with changed dimensions, or with the file's. */
+  drawnOf(branch) {
+    return branch === this.#changed.get(this.run) ? this.drawn : this.data;
   }
 
   /** The row that is shown. */
@@ -70,6 +96,34 @@ export class State extends EventTarget {
   setCompare(compare) {
     this.compare = compare;
     this.#tell("compare");
+  }
+
+  /** Whether the original is seen beside the changed dimensions. */
+  setWithOriginal(on) {
+    this.withOriginal = on;
+    this.#tell("compare");
+  }
+
+  /**
+   * Shows changed dimensions; null: those of the file again.
+   * @param changed  {runs: {name: {branch, tables}}, drawn}: packed as in the data, `drawn` the parts of these that differ
+   */
+  setChanged(changed) {
+    const wasOwn = this.branch === this.branches()[0];
+    const had = this.original !== null;
+    this.#changed.clear();
+    this.tables = this.data.tables;
+    this.drawn = changed ? { ...this.data, ...changed.drawn } : this.data;
+    for (const [name, { branch, tables }] of Object.entries(changed?.runs ?? {})) {
+      const run = this.data.runs.find((each) => each.name === name);
+      const [own] = this.fileBranches(run);
+      this.#changed.set(run, new Branch({ ...own.packed, ...branch, name: own.name, own: own.own }, this.data.links.length));
+      const made = new Map((tables ?? []).map((table) => [table.name, table]));
+      this.tables = this.tables.map((table) => (table.run === name && made.has(table.name) ? { ...table, ...made.get(table.name) } : table));
+    }
+    if (wasOwn) [this.branch] = this.branches();
+    this.place = Math.min(this.place, Math.max(0, this.branch.rows - 1));
+    this.#tell("dimensions", ...(had === (this.original !== null) ? [] : ["compare"]));
   }
 
   /** Calls `listener(changes)` now and on each change. */

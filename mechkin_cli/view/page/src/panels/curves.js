@@ -40,6 +40,8 @@ export class Curves {
   #change(changes) {
     if (changes.has("run")) this.#offer();
     if (["run", "branch", "compare"].some((each) => changes.has(each))) this.#draw();
+    else if (changes.has("dimensions") && this.plotted.clientWidth === 0 && !this.theme.printing) this.stale = true;
+    else if (changes.has("dimensions")) this.#refresh();
     else this.#moveCursor();
   }
 
@@ -67,10 +69,29 @@ export class Curves {
       this.#plot(unit, columns.filter((column) => column.unit === unit), colours, k === units.length - 1, units.length),
     );
     this.empty.hidden = columns.length > 0;
-    const others = this.#others().map(({ branch: other }) => other.name);
+    const others = this.#others().map(({ name }) => name);
     this.remark.textContent = others.length > 0 ? `dashed: ${others.join(", ")}` : "";
     this.#listMarks();
     this.#moveCursor();
+  }
+
+  /** New numbers in the same plots. */
+  #refresh() {
+    this.stale = false;
+    const { branch } = this.state;
+    const byRow = this.axis.byRow;
+    this.axis = new RowAxis(branch);
+    if (this.axis.byRow !== byRow) return this.#draw();
+    for (const plot of this.plots) {
+      const values = plot.columns.map(({ key, other }) => {
+        const column = (other?.branch ?? branch).columns.find((each) => keyOf(each) === key);
+        if (!column) return this.axis.x.map(() => null);
+        return other ? other.axis.onto(this.axis, rounded(column)) : this.axis.sorted(rounded(column));
+      });
+      plot.setData([this.axis.x, ...values]);
+    }
+    this.#listMarks();
+    return this.#moveCursor();
   }
 
   #plot(unit, columns, colours, last, count) {
@@ -79,7 +100,7 @@ export class Curves {
     const grid = { stroke: this.theme.colour("--line"), width: 1 };
     const axis = { stroke: ink, grid, ticks: grid, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif", labelSize: 20 };
     const curves = columns.map((column) => ({
-      column,
+      key: keyOf(column),
       series: { label: column.label, stroke: colours.get(keyOf(column)), width: 1.8, points: { show: branch.rows < 2 } },
       values: this.axis.sorted(rounded(column)),
     }));
@@ -89,8 +110,9 @@ export class Curves {
         if (!match) continue;
         const values = other.axis.onto(this.axis, rounded(match));
         curves.push({
-          column,
-          series: { label: `${column.label}, ${other.branch.name}`, stroke: colours.get(keyOf(column)), width: 1, dash: DASHES[other.index % DASHES.length], points: { show: false } },
+          key: keyOf(column),
+          other,
+          series: { label: `${column.label}, ${other.name}`, stroke: colours.get(keyOf(column)), width: 1, dash: DASHES[other.index % DASHES.length], points: { show: false } },
           values,
         });
       }
@@ -112,15 +134,22 @@ export class Curves {
         ready: [(plot) => this.#listen(plot)],
       },
     };
-    return new uPlot(options, [this.axis.x, ...curves.map((curve) => curve.values)], this.plotted);
+    const plot = new uPlot(options, [this.axis.x, ...curves.map((curve) => curve.values)], this.plotted);
+    plot.columns = curves;
+    plot.xName = this.axis.byRow ? "row" : withUnit(label, xUnit);
+    plot.yName = withUnit(columns.length === 1 ? columns[0].label : "", unit);
+    return plot;
   }
 
+  /** What is drawn dashed: the original beside changed dimensions, other modes where they are compared. */
   #others() {
-    if (!this.state.compare) return [];
-    return this.state.branches()
-      .map((branch, index) => ({ branch, index }))
-      .filter(({ branch }) => branch !== this.state.branch && branch.poseCount > 0)
-      .map((each) => ({ ...each, axis: new RowAxis(each.branch) }));
+    const { branch: shown, shownOriginal, compare } = this.state;
+    const modes = compare ? this.state.branches() : [];
+    const others = modes
+      .map((branch, index) => ({ branch, index, name: branch.name }))
+      .filter(({ branch }) => branch !== shown && branch.poseCount > 0);
+    if (shownOriginal) others.unshift({ branch: shownOriginal, index: 0, name: "original" });
+    return others.map((each) => ({ ...each, axis: new RowAxis(each.branch) }));
   }
 
   /** A click, not the end of a drag that zooms, shows the row below the cursor. */
@@ -205,6 +234,7 @@ export class Curves {
 
   #fit() {
     if (this.plotted.clientWidth < 50) return;
+    if (this.stale) this.#refresh();
     const width = this.#width();
     for (const plot of this.plots) if (plot.width !== width) plot.setSize({ width, height: this.#height(this.plots.length) });
   }

@@ -12,13 +12,13 @@ export class Tables {
   constructor(host, state, theme) {
     this.state = state;
     this.theme = theme;
-    this.all = state.data.tables;
-    if (this.all.length === 0) {
+    const { tables } = state.data;
+    if (tables.length === 0) {
       host.append(element("p.empty", {}, "The file has no tables."));
       return;
     }
-    const names = this.all.map((table) => (table.title && table.title !== table.name ? `${table.name}: ${table.title}` : table.name));
-    this.choice = choice("Table", names, (k) => this.#open(this.all[k]));
+    const names = tables.map((table) => (table.title && table.title !== table.name ? `${table.name}: ${table.title}` : table.name));
+    this.choice = choice("Table", names, (k) => this.#open(k));
     this.remark = element("p.remark");
     this.head = element("thead");
     this.body = element("tbody");
@@ -27,9 +27,20 @@ export class Tables {
     host.append(element("div.choice", {}, this.choice), this.remark, this.scroller);
     this.body.addEventListener("click", (event) => this.#click(event));
     new ResizeObserver(() => this.#unfold()).observe(this.scroller);
-    theme.addEventListener("change", () => this.#fill(true));
-    this.#open(this.all[0]);
-    state.watch(() => this.#follow());
+    theme.addEventListener("change", () => (this.stale ? this.#read() : this.#fill(true)));
+    this.#open(0);
+    state.watch((changes) => {
+      // what is not seen is not read anew before it is
+      if (changes.has("dimensions") && this.scroller.clientHeight === 0 && !theme.printing) this.stale = true;
+      else if (changes.has("dimensions")) this.#read();
+      this.#follow();
+    });
+  }
+
+  /** The table that is open, as it is now. */
+  get shown() {
+    if (this.stale) this.#read();
+    return this.table;
   }
 
   /** The run's row that a table's row shows, or -1. */
@@ -37,29 +48,37 @@ export class Tables {
     return this.table.rowsOf ? this.table.rowsOf[at] : at;
   }
 
-  #open(table) {
+  #open(number) {
+    this.number = number;
+    this.scroller.scrollTop = 0;
+    this.#read();
+    this.#follow();
+  }
+
+  /** The table as it is now: dimensions may have changed. */
+  #read() {
+    this.stale = false;
+    const table = this.state.tables[this.number];
     this.table = table;
+    this.count = countOf(table);
     // a table without verdicts has other rows than its run
     const run = table.status?.length ? this.state.data.runs.find((each) => each.name === table.run) : undefined;
     this.run = run ?? null;
     this.own = run ? this.state.branches(run)[0] : null;
-    const curves = this.own?.columns.filter((each) => each.table === table.name) ?? [];
-    this.exact = table.columns.map(({ exact, label }) => numbers(exact ?? curves.find((each) => each.label === label)?.values));
+    this.exact = exactColumns(table, this.own);
     this.places = new Map();
-    if (run) table.rows.forEach((_, at) => this.places.set(this.#runRow(at), at));
+    if (run) for (let at = 0; at < this.count; at += 1) this.places.set(this.#runRow(at), at);
     const cells = table.columns.map(({ label, unit }) =>
       element("th", { scope: "col" }, element("span", {}, label), element("small", {}, unit ?? "")));
     this.head.replaceChildren(element("tr", {}, ...cells, ...(table.status?.length ? [element("th", { scope: "col" }, element("span", {}, "verdict"))] : [])));
-    this.scroller.scrollTop = 0;
     this.now = null;
     this.#fill(true);
-    this.#follow();
   }
 
   /** Makes the rows that are seen now; on paper, all that fit a print. */
   #fill(anew = false) {
     if (!this.table) return;
-    const count = this.table.rows.length;
+    const { count } = this;
     const seen = Math.ceil((this.scroller.clientHeight || 400) / ROW);
     let from = Math.max(0, Math.floor(this.scroller.scrollTop / ROW) - BEYOND);
     let to = Math.min(count, from + seen + 2 * BEYOND);
@@ -79,7 +98,7 @@ export class Tables {
   }
 
   #row(at) {
-    const cells = this.table.rows[at].map((text, k) => element("td", allDigits(this.exact[k]?.[at], text), text));
+    const cells = rowOf(this.table, at).map((text, k) => element("td", allDigits(this.exact[k]?.[at], text), text));
     const row = element("tr", { data: { at } }, ...cells);
     const code = this.table.status?.[at];
     if (code !== undefined) {
@@ -122,6 +141,7 @@ export class Tables {
 
   /** The panel is opened, or has another height: the row that is shown is brought into it. */
   #unfold() {
+    if (this.stale) this.#read();
     this.now = null;
     this.#follow();
     this.#fill();
@@ -130,6 +150,16 @@ export class Tables {
   #mark() {
     for (const row of this.body.children) row.classList.toggle("here", row.dataset.at === String(this.now));
   }
+}
+
+/** How many rows a table has, and the texts of one: made when they are seen where dimensions are changed. */
+export const countOf = (table) => table.count ?? table.rows.length;
+export const rowOf = (table, at) => (table.row ? table.row(at) : table.rows[at]);
+
+/** All digits of a table's columns; those that its branch has as curves are not repeated in it. */
+export function exactColumns(table, own) {
+  const curves = own?.columns.filter((each) => each.table === table.name) ?? [];
+  return table.columns.map(({ exact, label }) => numbers(exact ?? curves.find((each) => each.label === label)?.values));
 }
 
 /** What a cell shows on hover: all digits of its number, where the text has fewer. */

@@ -34,6 +34,7 @@ export class Tools {
     this.on = state.data.view?.forces === true;
     state.watch((changes) => {
       if (changes.has("run")) this.#offer();
+      else if (changes.has("dimensions")) this.theatre.setArrows(this.names);
     });
   }
 

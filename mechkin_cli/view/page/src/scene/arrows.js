@@ -18,15 +18,25 @@ export class Arrows {
     this.size = size;
     this.longest = data.view?.arrow_length ?? LONGEST * size;
     this.zoom = 1;
+    this.unit = unit;
     this.object = new Group();
-    this.usual = {};
-    for (const kind of ["force", "moment"]) this.usual[kind] = usualLargest(branch, kind);
     this.all = branch.arrows.map((arrow) => {
       const made = shaped(arrow.kind, unit);
       this.object.add(made.group);
-      return { arrow, ...made, values: numbers(arrow.values), shown: false };
+      return { arrow, ...made, shown: false };
     });
     this.headLength = HEAD * unit;
+    this.turnTo(branch);
+  }
+
+  /** Takes the values of another branch; false where it has other arrows. */
+  turnTo({ arrows, poseCount }) {
+    const same = arrows.length === this.all.length && arrows.every(({ name, kind }, k) => name === this.all[k].arrow.name && kind === this.all[k].arrow.kind);
+    if (!same) return false;
+    this.usual = {};
+    for (const kind of ["force", "moment"]) this.usual[kind] = usualLargest(arrows, poseCount, kind);
+    this.all.forEach((each, k) => Object.assign(each, { arrow: arrows[k], values: numbers(arrows[k].values) }));
+    return true;
   }
 
   /** The length of an arrow of one unit. */
@@ -74,10 +84,10 @@ function shaped(kind, unit) {
 }
 
 /** The magnitude that all but a few of the values stay below. */
-function usualLargest(branch, kind) {
+function usualLargest(all, count, kind) {
   const largest = [];
-  const arrows = branch.arrows.filter((each) => each.kind === kind).map((each) => numbers(each.values));
-  for (let index = 0; index < branch.poseCount; index += 1) {
+  const arrows = all.filter((each) => each.kind === kind).map((each) => numbers(each.values));
+  for (let index = 0; index < count; index += 1) {
     let most = 0;
     for (const values of arrows) {
       const length = Math.hypot(values[3 * index], values[3 * index + 1], values[3 * index + 2]);

@@ -71,6 +71,7 @@ export class Cables {
   /** @param unit  the size of a joint */
   constructor(cables, unit) {
     this.cables = cables;
+    this.unit = unit;
     this.object = new Group();
     this.material = new MeshStandardMaterial({ color: INK, roughness: 0.6 });
     this.wire = bar(WIRE * unit, 0, 1, 8);

@@ -42,14 +42,14 @@ export class Labels {
   }
 
   /** Writes the names that are shown into a picture of the stage, `ratio` of its pixels to one of the page. */
-  write(brush, ratio) {
+  write(brush, ratio, ground = "#ffffff") {
     brush.textBaseline = "middle";
     for (const { node, text, box } of this.made.values()) {
       if (node.hidden) continue;
       const { color, fontWeight, fontSize, fontFamily } = getComputedStyle(node);
       brush.font = `${fontWeight} ${parseFloat(fontSize) * ratio}px ${fontFamily}`;
       brush.fillStyle = color;
-      brush.strokeStyle = "#ffffff";
+      brush.strokeStyle = ground;
       brush.lineWidth = 3 * ratio;
       brush.lineJoin = "round";
       const [left, top, right, bottom] = box.map((each) => each * ratio);

@@ -10,26 +10,42 @@ const ROUND = 28; // sides of what is round
 const CREASE = 0.6;
 const MOST_TURNS = 300;
 
+const MOST_KEPT = 600;
+const kept = new Map();
+
+/** A part that was made before, or made now: nobody changes it. The oldest ones are forgotten. */
+function once(make, name) {
+  return (...sizes) => {
+    const key = `${name} ${JSON.stringify(sizes)}`;
+    let part = kept.get(key);
+    if (part) kept.delete(key);
+    else part = make(...sizes);
+    if (kept.size >= MOST_KEPT) kept.delete(kept.keys().next().value);
+    kept.set(key, part); // as the youngest
+    return part;
+  };
+}
+
 const turned = (geometry) => geometry.rotateX(Math.PI / 2);
 
 /** A round bar from z = `from` to `to`. */
-export const bar = (radius, from, to, sides = ROUND) =>
-  turned(new CylinderGeometry(radius, radius, to - from, sides)).translate(0, 0, (from + to) / 2);
+export const bar = once((radius, from, to, sides = ROUND) =>
+  turned(new CylinderGeometry(radius, radius, to - from, sides)).translate(0, 0, (from + to) / 2), "bar");
 
-export const ball = (radius) => turned(new SphereGeometry(radius, ROUND, ROUND / 2));
+export const ball = once((radius) => turned(new SphereGeometry(radius, ROUND, ROUND / 2)), "ball");
 
 /** A box from corner to corner. */
-export const block = (low, high) =>
+export const block = once((low, high) =>
   new BoxGeometry(...high.map((value, k) => value - low[k])).translate(
     ...high.map((value, k) => (value + low[k]) / 2),
-  );
+  ), "block");
 
 /** What a closed outline [[radius, z], ...] sweeps about z. */
-export function turnedOutline(outline, angle = 2 * Math.PI, start = 0) {
+export const turnedOutline = once((outline, angle = 2 * Math.PI, start = 0) => {
   const points = [...outline, outline[0]].map(([radius, z]) => new Vector2(radius, z));
   const sides = Math.max(3, Math.round((ROUND * angle) / (2 * Math.PI)));
   return toCreasedNormals(turned(new LatheGeometry(points, sides, start, angle)), CREASE);
-}
+}, "turned outline");
 
 /** A sleeve about z. */
 export const sleeve = (inner, outer, from, to) =>
@@ -51,9 +67,17 @@ export function shell(inner, outer, from, to) {
 
 /** An outline in x and y, with a hole if one is given, drawn out along z. */
 export function drawnOut(shape, from, to) {
-  const made = new ExtrudeGeometry(shape, { depth: to - from, bevelEnabled: false, curveSegments: 12 });
-  return toCreasedNormals(made.translate(0, 0, from), CREASE);
+  const { shape: outline, holes } = shape.extractPoints(12);
+  return drawnOutline([outline, ...holes].map((points) => points.flatMap(({ x, y }) => [x, y])), from, to);
 }
+
+const drawnOutline = once((outlines, from, to) => {
+  const [outline, ...holes] = outlines.map((each) => Array.from({ length: each.length / 2 }, (_, k) => new Vector2(each[2 * k], each[2 * k + 1])));
+  const shape = new Shape(outline);
+  shape.holes = holes.map((hole) => new Path(hole));
+  const made = new ExtrudeGeometry(shape, { depth: to - from, bevelEnabled: false });
+  return toCreasedNormals(made.translate(0, 0, from), CREASE);
+}, "drawn outline");
 
 /** A shape with straight sides. */
 export const polygon = (points) => new Shape(points.map(([x, y]) => new Vector2(x, y)));
@@ -85,7 +109,7 @@ export function trough(inner, outer, from, to, opening = Math.PI) {
 }
 
 /** The ridges of a thread of true lead about z; as many starts as make them lie about `spacing` apart. */
-export function thread(core, height, lead, spacing, from, to) {
+export const thread = once((core, height, lead, spacing, from, to) => {
   const starts = Math.max(1, Math.round(Math.abs(lead) / spacing));
   const turns = Math.min(MOST_TURNS, (to - from) / Math.abs(lead));
   const half = Math.min(spacing, Math.abs(lead) / starts) * 0.32;
@@ -110,4 +134,4 @@ export function thread(core, height, lead, spacing, from, to) {
   made.setAttribute("position", new Float32BufferAttribute(points, 3));
   made.computeVertexNormals();
   return toCreasedNormals(made, CREASE);
-}
+}, "thread");

@@ -18,7 +18,7 @@ export function addShape(body, shape, unit) {
   } else if (shape.kind === "star") {
     const centre = vector(shape.centre);
     points.forEach((point) => addRod(body, centre, point, unit));
-    if (points.length > 2) body.add(ball(1.3 * ROD * unit).translate(...centre.toArray()));
+    if (points.length > 2) body.add(ball(1.3 * ROD * unit).clone().translate(...centre.toArray()));
   } else if (shape.kind === "plate") {
     addPlate(body, points, vector(shape.normal), unit);
   } else if (shape.kind === "cylinder") {

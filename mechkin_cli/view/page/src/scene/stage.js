@@ -79,6 +79,7 @@ export class Stage {
 
   /** Background, floor and lines for light or dark. */
   setTheme({ background, grid }) {
+    this.background = background;
     this.scene.background = new Color(background);
     this.gridColour = grid;
     this.setFloor(this.floorHeight);

@@ -14,6 +14,7 @@ import { diagonal, firstDirection, placesOf, withRoom } from "./viewpoint.js";
 
 const FLOOR = 2.6; // below the lowest joint, in joint sizes
 const LOST = 0.35; // opacity of the mechanism in a row without position
+const BEFORE = "#8b929c"; // the mechanism with the file's dimensions, behind the one with changed ones
 
 /** Draws the state. */
 export class Theatre {
@@ -28,7 +29,11 @@ export class Theatre {
     this.hidden = new Set(this.data.links.flatMap(({ hidden }, link) => (hidden ? [link] : [])));
     this.noPose = host.querySelector("#no-pose");
     [this.noRoom, this.tools, this.legend] = ["#no-room", "#tools", "#legend"].map((each) => host.querySelector(each));
-    this.stage.afterDraw = () => this.#name();
+    this.old = [];
+    this.stage.afterDraw = () => {
+      this.#name();
+      this.old.splice(0).forEach(dispose);
+    };
     this.stage.whenSized = () => this.home();
     // until somebody turns or moves it, the view fits the stage, however large that becomes
     this.stage.whenResized = () => this.fitted && this.lookFrom(this.fitted);
@@ -38,7 +43,12 @@ export class Theatre {
 
   #change(changes) {
     if (changes.has("run")) this.#open();
-    if (changes.has("branch") || changes.has("run")) this.#dress();
+    if (changes.has("branch") || changes.has("run")) {
+      this.#dress();
+      this.#fit();
+    } else if (changes.has("dimensions")) {
+      this.#dress();
+    }
     if (changes.has("compare") || changes.has("branch")) this.#compare();
     this.#pose();
   }
@@ -52,24 +62,55 @@ export class Theatre {
     this.unit = jointUnit(this.data, this.size);
   }
 
-  /** The branch's mechanism, paths and arrows; the view stays unless something is out of it. */
+  /** The branch's mechanism, paths and arrows. */
   #dress() {
     const { scene } = this.stage;
-    const { branch } = this.state;
+    const { branch, run } = this.state;
+    const data = this.state.drawnOf(branch);
     const zoom = this.arrows?.zoom ?? 1;
-    if (this.mechanism) scene.remove(this.mechanism.object);
-    for (const old of [this.paths, this.arrows, this.ties, this.cables]) if (old) dispose(old.object);
-    if (!this.mechanisms.has(branch)) this.mechanisms.set(branch, new Mechanism(this.data, branch, this.unit));
-    this.mechanism = this.mechanisms.get(branch);
+    const before = this.mechanism;
+    for (const old of [this.paths, this.ties]) this.#discard(old?.object);
+    this.mechanism = this.#mechanismOf(branch, data);
+    if (before !== this.mechanism) before?.object.removeFromParent();
     this.mechanism.links.forEach((group, link) => (group.visible = !this.hidden.has(link)));
-    this.paths = new Paths(this.data, branch, this.unit);
-    this.arrows = new Arrows(this.data, branch, this.unit, this.size);
-    this.arrows.zoom = zoom;
-    this.ties = new Ties(this.state.run.ties, this.data, branch, this.unit);
-    this.cables = new Cables(this.data.cables, this.unit);
+    this.drawn = data;
+    this.paths = new Paths(data, branch, this.unit);
+    if (!this.arrows?.turnTo(branch)) {
+      this.#discard(this.arrows?.object);
+      this.arrows = new Arrows(data, branch, this.unit, this.size);
+      this.arrows.zoom = zoom;
+    }
+    this.ties = new Ties(data.ties?.[run.name] ?? run.ties, data, branch, this.unit);
+    if (this.cables?.cables !== data.cables || this.cables.unit !== this.unit) {
+      this.#discard(this.cables?.object);
+      this.cables = new Cables(data.cables, this.unit);
+    }
     this.#choose();
     scene.add(this.cables.object, this.mechanism.object, this.paths.object, this.arrows.object, this.ties.object);
-    this.places = placesOf(this.data, branch);
+  }
+
+  /** Takes an object off, and gives its memory back after the next picture: what that shares with it need not be made again. */
+  #discard(object) {
+    if (!object) return;
+    object.removeFromParent();
+    this.old.push(object);
+  }
+
+  /** The bodies of a branch. */
+  #mechanismOf(branch, data) {
+    if (data !== this.data) {
+      this.#discard(this.changed?.object);
+      this.changed = new Mechanism(data, branch, this.unit);
+      return this.changed;
+    }
+    if (!this.mechanisms.has(branch)) this.mechanisms.set(branch, new Mechanism(data, branch, this.unit));
+    return this.mechanisms.get(branch);
+  }
+
+  /** Where the branch comes to; the view stays unless something is out of it. */
+  #fit() {
+    const { branch } = this.state;
+    this.places = placesOf(this.drawn, branch);
     this.floorHeight = Math.min(...this.places.map((place) => place.dot(this.stage.up))) - FLOOR * this.unit;
     this.#floor();
     if (this.stage.width && !this.stage.sees(this.places)) this.home();
@@ -83,22 +124,24 @@ export class Theatre {
     for (const each of this.arrows.all) each.shown = this.arrowNames?.has(each.arrow.name) ?? false;
   }
 
-  /** The mechanism in the other modes, pale, each with its paths. */
+  /** The mechanism in the other modes, and with the file's own dimensions, pale, each with its paths. */
   #compare() {
     for (const { mechanism, paths } of this.ghosts) {
       dispose(mechanism.object);
       dispose(paths.object);
     }
     this.ghosts = [];
-    if (!this.state.compare) return;
-    const others = this.state.branches().filter((branch) => branch !== this.state.branch && branch.poseCount > 0);
-    this.ghosts = others.map((branch) => {
-      const colour = curveColour(this.state.branches().indexOf(branch));
-      const mechanism = new Mechanism(this.data, branch, this.unit, colour);
-      const paths = new Paths(this.data, branch, this.unit, 0.4);
+    const { shownOriginal, compare, branch: shown } = this.state;
+    const all = this.state.branches();
+    const others = compare ? all.filter((branch) => branch !== shown && branch.poseCount > 0) : [];
+    for (const branch of [...(shownOriginal ? [shownOriginal] : []), ...others]) {
+      const colour = branch === shownOriginal ? BEFORE : curveColour(all.indexOf(branch));
+      const data = this.state.drawnOf(branch);
+      const mechanism = new Mechanism(data, branch, this.unit, colour);
+      const paths = new Paths(data, branch, this.unit, 0.4);
       this.stage.scene.add(mechanism.object, paths.object);
-      return { branch, mechanism, paths };
-    });
+      this.ghosts.push({ branch, mechanism, paths });
+    }
   }
 
   #pose() {
@@ -148,13 +191,13 @@ export class Theatre {
     const { camera, width, height } = this.stage;
     const wanted = [];
     if (this.shown.names && width && this.mechanism.object.visible) {
-      for (const joint of this.data.joints) {
+      for (const joint of this.drawn.joints) {
         const k = this.mechanism.links[joint.links[0]].visible ? 0 : 1;
         if (!this.mechanism.links[joint.links[k]].visible) continue;
         const place = this.mechanism.now(joint.links[k], joint.halves[k].point);
         wanted.push({ key: `joint ${joint.name}`, text: joint.name, places: [place], kind: "joint" });
       }
-      for (const { name, link, place } of this.data.points) {
+      for (const { name, link, place } of this.drawn.points) {
         if (!this.mechanism.links[link].visible) continue;
         wanted.push({ key: `point ${name}`, text: name, places: [this.mechanism.now(link, place)], kind: "point" });
       }
@@ -183,7 +226,8 @@ export class Theatre {
 
   /** Looks from where the page looked first, so that everything is seen. */
   home() {
-    this.lookFrom(firstDirection(this.data, this.places));
+    this.places = placesOf(this.drawn, this.state.branch);
+    this.lookFrom(firstDirection(this.drawn, this.places));
   }
 
   /** Looks along one of the ground axes, or another direction. */
@@ -191,7 +235,7 @@ export class Theatre {
     this.fitted = direction;
     const room = 2.6 * this.unit;
     const back = direction instanceof Array ? vector(direction) : direction;
-    const compared = this.ghosts.flatMap(({ branch }) => placesOf(this.data, branch));
+    const compared = this.ghosts.flatMap(({ branch }) => placesOf(this.state.drawnOf(branch), branch));
     this.stage.look(back, withRoom([...this.places, ...compared], room));
   }
 

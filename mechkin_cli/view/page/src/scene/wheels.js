@@ -124,7 +124,7 @@ function addWorm(body, wheel, on) {
   const ridge = thread(core, (ABOVE + BELOW) * m, lead, Math.abs(lead) / teeth, -width / 2, width / 2);
   body.add(bar(core, -width / 2, width / 2), on);
   // its ridge begins on x at one end, and is wanted there in the middle
-  body.add(ridge.rotateZ((-Math.PI * width) / lead), on);
+  body.add(ridge.clone().rotateZ((-Math.PI * width) / lead), on);
 }
 
 /** Teeth with straight flanks along z, from where to where it is met. */

@@ -1,0 +1,82 @@
+// The panel of dimensions: for each parameter a slider, a field for its number and a way back; undo and redo.
+
+import { element, tick } from "../dom.js";
+import { DimensionRow } from "./row.js";
+
+/** The panel in `host`. */
+export class DimensionPanel {
+  constructor(host, state, dimensions, fixed, acts) {
+    this.dimensions = dimensions;
+    const press = (text, title, click) => element("button", { type: "button", title, "aria-label": title, on: { click } }, text);
+    this.back = press("↶", "Undo (Ctrl+Z)", () => dimensions.undo());
+    this.on = press("↷", "Redo (Ctrl+Shift+Z)", () => dimensions.redo());
+    this.reset = press("Reset", "Reset all dimensions to the file's", () => dimensions.resetAll());
+    this.copied = element("span.copied", { role: "status" });
+    this.words = element("p.words", { role: "status" });
+    this.modes = element("p.remark");
+    this.original = tick("original", state.withOriginal, (on) => state.setWithOriginal(on));
+    this.original.title = "Draw the file's own dimensions pale, and their curves dashed";
+    this.rows = dimensions.parameters.map((parameter) => new DimensionRow(parameter, dimensions));
+    const takes = acts.map(({ text, act }) => press(text, text, () => this.#act(act)));
+    host.append(
+      element("summary", {}, element("h2", {}, "Dimensions")),
+      element("div.actions", { role: "toolbar", "aria-label": "Dimensions" }, this.back, this.on, this.reset, this.original, ...takes, this.copied),
+      this.words,
+      element("div.rows", {}, ...this.rows.map(({ node }) => node)),
+      this.modes,
+      ...fixedList(fixed),
+    );
+    host.hidden = false;
+    for (const event of ["change", "settle"]) dimensions.addEventListener(event, () => this.#show());
+    dimensions.addEventListener("ends", () => this.rows.forEach((row) => row.showEnds()));
+    dimensions.addEventListener("words", () => (this.words.textContent = dimensions.words));
+    state.watch(() => this.#tellModes(state));
+    listen(dimensions);
+    this.#show();
+  }
+
+  async #act(act) {
+    this.copied.textContent = (await act()) ?? "";
+  }
+
+  #show() {
+    const { history, changed } = this.dimensions;
+    this.back.disabled = !history.canUndo;
+    this.on.disabled = !history.canRedo;
+    this.reset.disabled = !changed;
+    this.copied.textContent = "";
+    for (const row of this.rows) row.show();
+  }
+
+  #tellModes(state) {
+    const { changed } = this.dimensions;
+    let text = "";
+    if (changed && !state.original) {
+      const runs = state.branches()[0] === state.fileBranches()[0];
+      text = runs
+        ? "This run is shown with the file's dimensions: only the sweep follows the changed ones."
+        : "This assembly mode is shown with the file's dimensions: only the file's own one follows the changed ones.";
+    }
+    this.modes.textContent = text;
+  }
+}
+
+/** What cannot be changed here, why, and the command that can. */
+function fixedList(fixed) {
+  if (fixed.length === 0) return [];
+  const items = fixed.map(({ name, why, command }) =>
+    element("li", {}, element("b", {}, name), ` ${why} `, ...(command ? [element("code", {}, command)] : [])));
+  return [element("h3", {}, "Changed by a command only"), element("ul.fixed", {}, ...items)];
+}
+
+/** Ctrl+Z and Ctrl+Shift+Z, or Ctrl+Y, wherever no text is being written. */
+function listen(dimensions) {
+  document.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || event.target.matches?.("input[type=search], input.writing, textarea")) return;
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    if (key === "y" || event.shiftKey) dimensions.redo();
+    else dimensions.undo();
+  });
+}

@@ -1,0 +1,72 @@
+// Brings the page to life where it has a kernel: dimensions that can be changed, and all else that follows them.
+
+import { element, find } from "../dom.js";
+import { copy, keep, stemOf } from "../export/save.js";
+import { Dimensions } from "./dimensions.js";
+import { drawnWith } from "./drawn.js";
+import { changedFile, parameterLines } from "./file_text.js";
+import { LiveRun, loadKernel } from "./kernel.js";
+import { speakWithParent } from "./messages.js";
+import { DimensionPanel } from "./panel.js";
+import { Peaks } from "./peaks.js";
+
+/** The run that computes, or null where the data or the browser have none. */
+export async function liveRun(data) {
+  if (!data.live?.parameters?.length) return null;
+  const kernel = await loadKernel();
+  return kernel && new LiveRun(kernel, data);
+}
+
+/** Shows the panel of dimensions and lets everything follow; gives the dimensions. */
+export function showLive(run, { data, state, tabs, menu }) {
+  const live = data.live ?? {};
+  const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found)));
+  const file = live.file;
+  const acts = [{ text: "Copy as parameters", act: () => copy(parameterLines(dimensions)) }];
+  if (file) acts.push({ text: "Download file", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
+  new DimensionPanel(find("#dimensions"), state, dimensions, run.fixed ?? live.fixed ?? [], acts);
+  menu?.add(acts);
+  new Peaks(find("#peaks"), state);
+  tabs.add("peaks", "Peaks", "tables");
+  dimensions.lookForEnds();
+  return dimensions;
+}
+
+/** What was computed, as the state shows it. */
+function changedOf(data, run, found) {
+  const drawing = data.live?.drawing;
+  const drawn = found.drawn ?? (drawing && run.numbers ? drawnWith(data, drawing, run.numbers) : {});
+  const runs = found.runs ?? { [data.live?.run ?? data.runs[0].name]: { branch: found.branch, tables: found.tables } };
+  return { runs, drawn };
+}
+
+/** Lets the parent window, if there is one, hear and set; also where nothing can be changed. */
+export const connect = (state, dimensions) => speakWithParent({ state, dimensions });
+
+/** The menu of what can be taken along, in the head of the page. */
+export class SaveMenu {
+  constructor(host, acts) {
+    this.list = element("div.list");
+    this.said = element("span.copied", { role: "status" });
+    this.node = element("details.menu", {}, element("summary", { title: "Files to take along" }, "Save"), this.list);
+    host.prepend(this.node, this.said);
+    document.addEventListener("pointerdown", ({ target }) => { if (!this.node.contains(target)) this.node.open = false; });
+    this.node.addEventListener("keydown", ({ key }) => { if (key === "Escape") this.node.open = false; });
+    this.add(acts);
+  }
+
+  add(acts) {
+    this.list.append(...acts.map(({ text, act }) => element("button", { type: "button", on: { click: () => this.#do(act) } }, text)));
+  }
+
+  async #do(act) {
+    this.node.open = false;
+    this.said.textContent = "…";
+    try {
+      this.said.textContent = (await act()) ?? "";
+    } catch (error) {
+      this.said.textContent = `not written: ${error.message}`;
+    }
+    setTimeout(() => (this.said.textContent = ""), 6000);
+  }
+}
