@@ -11,6 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
+    from mechkin_cli.view.joints import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
 
@@ -19,7 +20,8 @@ __getattr__, __dir__ = lazy_names(
     {
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
-        "page": "PAGE_NAME",
+        "joints": "drawn_joints half_axis half_frame",
+        "page": "PAGE_NAME packed",
         "scene": "view_page write_view",
     },
 )
