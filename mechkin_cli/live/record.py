@@ -76,7 +76,11 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         data: of the page without this record.
     """
     design = analysis.model.design
-    if analysis.run != SWEEP or isinstance(design, VariedDesign) or not analysis.result.solved.all():
+    if (
+        analysis.run != SWEEP
+        or isinstance(design, VariedDesign)
+        or not analysis.result.solved.all()
+    ):
         return None
     varied, fixed = _variation(design)
     if varied is None:
@@ -87,7 +91,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         recording = _Recording(analysis, data, varied)
         record = recording.record()
     except (LeftOut, TraceLost, ValueError, TypeError) as e:
-        globals()["WHY"]=repr(e)
+        globals()["WHY"] = repr(e)
         return None
     if record is None:
         return None
@@ -96,7 +100,11 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         "run": SWEEP,
         "parameters": [_parameter(problem, name, file.data) for name in names],
         "fixed": [
-            {"name": name, "why": why, "command": f"mechkin analyze {data['file']} --set {name}=..."}
+            {
+                "name": name,
+                "why": why,
+                "command": f"mechkin analyze {data['file']} --set {name}=...",
+            }
             for name, why in fixed.items()
         ],
         **record,
@@ -109,8 +117,13 @@ def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
     value = float(units.from_si(float(quantity.value), quantity.dimension))  # type: ignore[arg-type]
     text = str(data.get("parameters", {}).get(name, ""))
     written = parse(text).number
-    if written is not None and written.unit in (None, units.label(quantity.dimension)):
-        value = float(written.value)  # as it was written, without the rounding of a way to SI and back
+    if written is not None and text.strip().removeprefix(written.text).strip() in (
+        "",
+        units.label(quantity.dimension),
+    ):
+        value = float(
+            written.value
+        )  # as it was written, without the rounding of a way to SI and back
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
     conversion = units.conversion(quantity.dimension)
     return {

@@ -13,6 +13,7 @@ import { Tabs } from "./panels/tabs.js";
 import { Tools } from "./panels/tools.js";
 import { preparePaper } from "./paper.js";
 import { Player } from "./player.js";
+import { csvOf } from "./export/csv.js";
 import { saves } from "./export/save.js";
 import { Drag } from "./scene/drag.js";
 import { NoWebGL } from "./scene/stage.js";
@@ -134,6 +135,7 @@ function hooks({ data, state, player, curves, theatre }) {
     setBranch: (name) => state.setBranch(name),
     play: () => player.play(),
     pause: () => player.pause(),
+    csv: (number) => csvOf(state.tables[number], state.branches()[0]),
   };
 }
 

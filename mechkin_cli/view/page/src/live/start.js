@@ -24,7 +24,7 @@ export function showLive(run, { data, state, tabs, menu }) {
   const acts = [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
   if (file) acts.push({ text: "Download file", short: "Download", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
   document.body.classList.add("live");
-  new DimensionPanel(find("#dimensions"), state, dimensions, run.fixed ?? live.fixed ?? [], acts);
+  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [] }, acts);
   menu?.add(acts);
   new Peaks(find("#peaks"), state);
   tabs.add("peaks", "Peaks", "tables");
