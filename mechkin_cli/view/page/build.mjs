@@ -4,12 +4,10 @@ import { createHash } from "node:crypto";
 import { readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
-import { gzipSync } from "fflate"; // the same bytes with every Node, whatever library that compresses with
 
 const MOST_BYTES = 1_600_000;
 const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 const page = here("../page.html");
-const module = here("../../kernel/wasm/mechkin.wasm");
 
 const options = {
   bundle: true,
@@ -27,13 +25,6 @@ async function bundled(entry, more = {}) {
   return result.outputFiles[0].text.trim().replaceAll(/<\/(script|style)/g, "<\\/$1").replaceAll("<!--", "<\\!--");
 }
 
-/** The kernel as the page reads it (live/kernel.js). */
-async function kernel() {
-  const bytes = await readFile(module).catch(() => null);
-  if (bytes === null) return "";
-  return Buffer.from(gzipSync(bytes, { level: 9, mem: 12, mtime: "1980-01-01" })).toString("base64");
-}
-
 const hash = (text) => createHash("sha256").update(text, "utf8").digest("base64");
 
 async function licences() {
@@ -49,13 +40,13 @@ async function licences() {
 }
 
 async function made() {
-  const [template, script, style, packed] = await Promise.all([
+  const [template, script, style] = await Promise.all([
     readFile(here("index.html"), "utf8"),
     bundled("src/main.js", { format: "iife" }),
     bundled("style/main.css"),
-    kernel(),
   ]);
-  const parts = { style, script, kernel: packed, "style-hash": hash(style), "script-hash": hash(script) };
+  const kernel = await readFile(here("../../kernel/wasm/mechkin.wasm.gz"), "base64");
+  const parts = { kernel, style, script, "style-hash": hash(style), "script-hash": hash(script) };
   const filled = template.replaceAll(/\{\{([a-z-]+)\}\}/g, (_, name) => parts[name]);
   const text = `${filled.trimEnd()}\n${await licences()}\n`;
   const bytes = Buffer.byteLength(text, "utf8");
