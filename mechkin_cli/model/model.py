@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from mechkin_cli import cams, fit, mobility, modes, sensitivities, studies, variants, view
+from mechkin_cli import cams, fit, live, mobility, modes, sensitivities, studies, variants, view
 from mechkin_cli.analysis import (
     Analysis,
     Design,
@@ -384,6 +384,11 @@ class Model(Listed):
         """
         page, _ = view.view_page(self.analyses(run, mode), modes)
         return view.write_view(path, page)
+
+    def live_record(self, analysis: Any, data: Mapping[str, Any]) -> dict[str, Any] | None:
+        """What a page of a run computes it from with other parameters, beside the `data` that it
+        shows; None where it cannot: see `mechkin_cli.live`."""
+        return live.live_record(analysis, data)
 
     # Positions, modes, what can move.
 

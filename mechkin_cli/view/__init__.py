@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.drawing import *
     from mechkin_cli.view.following import *
     from mechkin_cli.view.gallery import *
-    from mechkin_cli.view.joints import link_poses as link_poses
+    from mechkin_cli.view.joints import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
     from mechkin_cli.view.server import *
@@ -25,8 +25,8 @@ __getattr__, __dir__ = lazy_names(
         "drawing": "PICTURE_NAME mechanism_picture",
         "following": "Changed Follower Seen Wish",
         "gallery": "INDEX_NAME Card card_of index_page",
-        "joints": "link_poses",
-        "page": "PAGE_NAME",
+        "joints": "drawn_joints half_axis half_frame link_poses",
+        "page": "PAGE_NAME packed",
         "scene": "view_page write_view",
         "server": "LiveServer",
     },

@@ -1,7 +1,7 @@
-"""Builds the core for a page: `mechkin.wasm`, the interface in C compiled to WebAssembly with 128-bit SIMD.
+"""Builds the core for a page: the interface in C compiled to WebAssembly with 128-bit SIMD.
 
-    python mechkin_cli/kernel/wasm/build.py            # writes mechkin.wasm and lock.json beside this file
-    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the bytes
+    python mechkin_cli/kernel/wasm/build.py            # writes mechkin.wasm.gz and lock.json beside this file
+    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the module, byte by byte
 
 It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for wasm32). Only what a page
 uses is linked: variants of a sweep, tapes and texts of cells, in the narrowest unit; no threads, no exceptions, no library
@@ -11,6 +11,7 @@ for elementary functions, and no contraction of products and sums, so that every
 from __future__ import annotations
 
 import argparse
+import gzip
 import hashlib
 import json
 import os
@@ -23,7 +24,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 KERNEL = HERE.parent
-MODULE = HERE / "mechkin.wasm"
+MODULE = HERE / "mechkin.wasm.gz"
 LOCK = HERE / "lock.json"
 
 COMMON = [
@@ -47,7 +48,7 @@ SMALL = (
 )
 EXPORTED = (
     *("mechkin_plan_create", "mechkin_plan_free", "mechkin_page_sizes", "mechkin_page_run"),
-    *("mechkin_tape_create", "mechkin_tape_free", "mechkin_tape_run", "mechkin_cell_texts"),
+    *("mechkin_tape_create", "mechkin_tape_free", "mechkin_tape_run", "mechkin_tape_outputs", "mechkin_cell_texts"),
     *("malloc", "free"),
 )
 LINKED = [
@@ -106,7 +107,7 @@ def main() -> int:
     given = parser.parse_args()
     lock = json.loads(LOCK.read_text()) if LOCK.exists() else {}
     if given.check and given.quick:
-        digest = hashlib.sha256(MODULE.read_bytes()).hexdigest()
+        digest = hashlib.sha256(gzip.decompress(MODULE.read_bytes())).hexdigest()
         if lock.get("sources") == source_hash() and lock.get("module") == digest:
             return 0
         print("mechkin.wasm is not of these sources: run mechkin_cli/kernel/wasm/build.py", file=sys.stderr)
@@ -122,15 +123,16 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         module = compiled(Path(folder))
     if given.check:
-        if module != MODULE.read_bytes():
+        if module != gzip.decompress(MODULE.read_bytes()):
             print("mechkin.wasm is not what its sources give: run mechkin_cli/kernel/wasm/build.py", file=sys.stderr)
             return 1
         print(f"mechkin.wasm is what its sources give: {len(module)} bytes")
         return 0
-    MODULE.write_bytes(module)
+    # packed here, since not every library packs alike
+    MODULE.write_bytes(gzip.compress(module, 9, mtime=0))
     record = {"ziglang": zig, "sources": source_hash(), "module": hashlib.sha256(module).hexdigest()}
     LOCK.write_text(json.dumps(record, indent=2) + "\n")
-    print(f"mechkin.wasm: {len(module)} bytes")
+    print(f"mechkin.wasm: {len(module)} bytes, {MODULE.stat().st_size} packed")
     return 0
 
 
