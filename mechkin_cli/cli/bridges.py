@@ -87,7 +87,7 @@ def _template(name: str | None) -> tuple[str | None, str]:
 
 def export(
     file: Path,
-    to: str,
+    to: str | None = None,
     out: Path | None = None,
     run: str | None = None,
     row: list[str] | None = None,
@@ -99,6 +99,8 @@ def export(
     """Writes a mechanism in the format of another program."""
     tell_as(messages)
     try:
+        if to is None:
+            raise UsageError(f"name the format: --to {' or --to '.join(bridges.EXPORTS)}")
         options = ExportOptions(run, mode, _rows(row))
         with working(f"{shown(file)}: {to}", quiet):
             model = model_of(file, parameters(set_))
