@@ -450,7 +450,8 @@ class _Writer:
             self.lines["inputs"] = told
             return self._text()
 
-        if self.robot.closings:
+        halves = any(body.whole for body in self.robot.bodies.values())
+        if self.robot.closings or halves:
             text(choose(free, text))
             return
         text(free)

@@ -469,7 +469,7 @@ EXPORT = Command(
     """,
     (
         FILE,
-        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT", required=True),
+        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT"),
         Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
         Word(
             "run",
