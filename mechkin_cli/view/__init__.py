@@ -11,7 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
-    from mechkin_cli.view.joints import link_poses as link_poses
+    from mechkin_cli.view.joints import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
 
@@ -20,7 +20,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
-        "joints": "link_poses",
+        "joints": "carried continuous drawn_joints link_poses link_shape plane_of_motion upwards",
         "page": "PAGE_NAME",
         "scene": "view_page write_view",
     },
