@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -57,7 +58,7 @@ def export(model: Model, options: ExportOptions) -> Exported:
         raise UsageError("--to dxf takes one --row, in whose pose the links are drawn")
     run = options.run or (SWEEP if SWEEP in model.runs else model.runs[0])
     (analysis,) = model.analyses(run, options.mode)
-    drawing = _Drawing(analysis, _row(analysis, options.rows))
+    drawing = _Drawing(model, analysis, _row(analysis, options.rows))
     unit = analysis.result.units.label(LENGTH)
     settings = ezdxf.options
     dated = settings.write_fixed_meta_data_for_testing
@@ -88,10 +89,9 @@ def _text(document: Any, drawing: _Drawing, unit: str) -> str:
 
 def _ezdxf() -> Any:
     try:
-        import ezdxf
+        return import_module("ezdxf")
     except ImportError:
         raise UsageError("--to dxf needs ezdxf: pip install 'mechkin[dxf]'") from None
-    return ezdxf
 
 
 def _row(analysis: Analysis, asked: tuple[int, ...]) -> int:
@@ -115,8 +115,8 @@ def _row(analysis: Analysis, asked: tuple[int, ...]) -> int:
 class _Drawing:
     """What is drawn, in the file's unit of length."""
 
-    def __init__(self, analysis: Analysis, row: int) -> None:
-        self.analysis, self.row = analysis, row
+    def __init__(self, model: Model, analysis: Analysis, row: int) -> None:
+        self.model, self.analysis, self.row = model, analysis, row
         self.problem = analysis.result.problem
         self.mechanism = self.problem.mechanism
         moving = [n for n in self.mechanism.links if is_written(n) and n != GROUND_NAME]
@@ -210,7 +210,7 @@ class _Drawing:
         found, lost = [], []
         for name in self.mechanism.couplings:
             try:
-                found.append(self.analysis.model.cam(name))
+                found.append(self.model.cam(name))
             except UsageError:
                 lost.append(name)
         return found, lost
@@ -228,7 +228,7 @@ class _Drawing:
 
     def _seen(self, places: Floats) -> Floats:
         """In the plane of motion, or in space."""
-        found = self._lengths(places)
+        found: Floats = self._lengths(places)
         return found if self.axis is None else found[..., list(SEEN_ALONG[self.axis])]
 
     def _lengths(self, values: Any) -> Any:

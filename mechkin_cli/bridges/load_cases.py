@@ -91,7 +91,7 @@ def _analysis(model: Model, options: ExportOptions) -> Analysis:
 
 def _joints(analysis: Analysis) -> list[str]:
     mechanism = analysis.result.problem.mechanism
-    known = set(analysis.model.quantities)
+    known = analysis.result.problem.quantities()
     return [n for n in mechanism.joints if is_told(n) and f"{n}.total_force" in known]
 
 

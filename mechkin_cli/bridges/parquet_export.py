@@ -103,7 +103,7 @@ def _columns(analysis: Analysis) -> Iterator[Column]:
 def _names(analysis: Analysis) -> Iterator[str]:
     """Coordinates with their rates, and the efforts of inputs."""
     mechanism = analysis.result.problem.mechanism
-    known = set(analysis.model.quantities)
+    known = analysis.result.problem.quantities()
     for name, joint in mechanism.joints.items():
         if is_written(name):
             for coordinate in joint.coordinates:

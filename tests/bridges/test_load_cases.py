@@ -122,7 +122,7 @@ def test_calculix_reads_a_step(tmp_path: Path) -> None:
         "*MATERIAL, NAME=STEEL",
         *("*ELASTIC", "210000, 0.3", "*DENSITY", "1e-20"),
         "*BEAM SECTION, ELSET=EALL, MATERIAL=STEEL, SECTION=RECT",
-        *("2., 2.", "0., 1., 0.", "*BOUNDARY", "HELD, 1, 6", "*INCLUDE, INPUT=step.inp"),
+        *("2., 2.", "1., 0., 0.", "*BOUNDARY", "HELD, 1, 6", "*INCLUDE, INPUT=step.inp"),
     ]
     (tmp_path / "beam.inp").write_text("\n".join(mesh) + "\n")
     done = subprocess.run([ccx, "beam"], cwd=tmp_path, capture_output=True, text=True, check=False)
