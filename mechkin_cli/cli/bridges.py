@@ -33,6 +33,7 @@ def import_(
     template: str | None = None,
     unit: str | None = None,
     rename: list[str] | None = None,
+    close: list[str] | None = None,
     messages: str | None = None,
     quiet: bool = False,
 ) -> ExitCode:
@@ -44,7 +45,7 @@ def import_(
         target = out or Path(f"{stem_of(file)}.yaml")
         expected = "TABLE=TEMPLATE, for example --rename 'LCA outer=lower_ball'"
         renamed = values_by_name("--rename", rename or (), expected)
-        options = ImportOptions(*_template(template), unit, renamed)
+        options = ImportOptions(*_template(template), unit, renamed, tuple(close or ()))
         with working(f"{file}: reading", quiet):
             found = bridges.imported(file, options)
             # what is written can be read: a file that names others is sought where it will stand

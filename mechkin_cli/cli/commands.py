@@ -83,8 +83,9 @@ IMPORT = Command(
     "bridges:import_",
     """Write the mechanism file that a file of another program becomes.
 
-    FILE.csv is a table of hard points (name, x, y, z) for a template. What cannot be carried over
-    is named. An existing file is never written over.
+    FILE.csv is a table of hard points (name, x, y, z) for a template; FILE.urdf is a robot
+    (URDF), FILE.xml a model of MuJoCo (MJCF). What cannot be carried over is named. An existing
+    file is never written over.
     """,
     (
         Word("file", "The file to import.", kind="path", metavar="FILE", required=True),
@@ -110,6 +111,15 @@ IMPORT = Command(
             ("--rename",),
             "text",
             "TABLE=TEMPLATE",
+            repeated=True,
+        ),
+        Word(
+            "close",
+            "Two links of a URDF whose origins a ball joins, as tip:bar, or tip:bar:R for a hinge "
+            "about their z axes; repeatable.",
+            ("--close",),
+            "text",
+            "LINKS",
             repeated=True,
         ),
         MESSAGES,
