@@ -47,7 +47,7 @@ above this is no rounding of reactions, whose own condition may cost some digits
 _MM: Final = 1e3
 
 
-class Load(NamedTuple):
+class LinkWrench(NamedTuple):
     """What acts on a link: its kind and name, and a force (N) and a moment (N m) about a point (m),
     in ground axes."""
 
@@ -121,7 +121,7 @@ def _rows(analysis: Analysis, asked: tuple[int, ...]) -> list[int]:
     return sorted(peaks)
 
 
-def _loads(analysis: Analysis, row: int) -> Iterator[Load]:
+def _loads(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
     """What acts on each moving link at a row: joints, then what the file applies, gravity, inertia,
     the last three at the mass centre."""
     result = analysis.result
@@ -138,7 +138,7 @@ def _loads(analysis: Analysis, row: int) -> Iterator[Load]:
                 point = np.array(motion.point(joint.point))
                 force = sign * _in_space(analysis, f"{name}.total_force", row)
                 moment = sign * _in_space(analysis, f"{name}.total_moment", row)
-                yield Load(link, "joint", name, point, force, moment)
+                yield LinkWrench(link, "joint", name, point, force, moment)
         centre = np.array(motion[link].point(body.center_of_mass))
         weight = body.mass * np.array(mechanism.gravity)
         inertia = _inertia(body, motion)
@@ -151,11 +151,11 @@ def _loads(analysis: Analysis, row: int) -> Iterator[Load]:
         arm = size * float(np.linalg.norm(centre)) + np.abs(about).max() + np.abs(inertia[1]).max()
         moment = np.where(np.abs(moment) > 1e-12 * arm, moment, 0.0)
         if force.any() or moment.any():
-            yield Load(link, "applied", "loads", centre, force, moment)
+            yield LinkWrench(link, "applied", "loads", centre, force, moment)
         if weight.any():
-            yield Load(link, "gravity", "gravity", centre, weight, np.zeros(3))
+            yield LinkWrench(link, "gravity", "gravity", centre, weight, np.zeros(3))
         if inertia[0].any() or inertia[1].any():
-            yield Load(link, "inertia", "inertia", centre, *inertia)
+            yield LinkWrench(link, "inertia", "inertia", centre, *inertia)
 
 
 def _inertia(body: RigidLink, motion: RowMotion) -> tuple[Floats, Floats]:
@@ -179,7 +179,7 @@ def _in_space(analysis: Analysis, name: str, row: int) -> Floats:
     return np.append(value, 0.0) if value.size == 2 else np.array([0.0, 0.0, value[0]])
 
 
-def _notes(analysis: Analysis, cases: dict[int, list[Load]]) -> Iterator[Diagnostic]:
+def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[Diagnostic]:
     """Links whose sums are not zero, and joints whose reactions are not unique."""
     size = analysis.result.problem.mechanism.box_diagonal()
     empty: dict[str, None] = {}
@@ -213,7 +213,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[Load]]) -> Iterator[Diagnos
         )
 
 
-def _unbalanced(loads: list[Load], size: float) -> float:
+def _unbalanced(loads: list[LinkWrench], size: float) -> float:
     """The sum of forces, or of moments about the first point over the size of the mechanism, over
     the largest force."""
     force = sum((one.force for one in loads), np.zeros(3))
@@ -229,7 +229,7 @@ def _unbalanced(loads: list[Load], size: float) -> float:
     return max(float(np.linalg.norm(force)), float(np.linalg.norm(moment)) / size) / largest
 
 
-def _table(analysis: Analysis, cases: dict[int, list[Load]], on_link: bool) -> str:
+def _table(analysis: Analysis, cases: dict[int, list[LinkWrench]], on_link: bool) -> str:
     """All loads as CSV, in the file's units; of joints without a unique reaction empty cells."""
     units, along = analysis.result.units, run_parameter(analysis.result)
     words = [f"{along.name} [{along.unit}]" if along and along.unit else along and along.name]
@@ -256,7 +256,7 @@ def _table(analysis: Analysis, cases: dict[int, list[Load]], on_link: bool) -> s
     return stream.getvalue()
 
 
-def _on_link(analysis: Analysis, motion: RowMotion, load: Load) -> Load:
+def _on_link(analysis: Analysis, motion: RowMotion, load: LinkWrench) -> LinkWrench:
     """The same in the axes of the drawing, which the link carries along."""
     own, datum = motion[load.link], np.array(analysis.result.problem.mechanism.datum)
     axes = np.array([own.frame.x, own.frame.y, own.frame.z])
@@ -264,7 +264,7 @@ def _on_link(analysis: Analysis, motion: RowMotion, load: Load) -> Load:
     return load._replace(point=point, force=axes @ load.force, moment=axes @ load.moment)
 
 
-def _steps(analysis: Analysis, row: int, link: str, loads: list[Load]) -> str:
+def _steps(analysis: Analysis, row: int, link: str, loads: list[LinkWrench]) -> str:
     """A step of CalculiX with the loads of one link at one row."""
     motion = row_motion(analysis.result, row)
     mechanism = analysis.result.problem.mechanism

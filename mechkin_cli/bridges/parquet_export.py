@@ -7,7 +7,6 @@ unit of a column is in its metadata, as in the results of a study; a missing num
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
@@ -16,6 +15,7 @@ import numpy as np
 from mechkin_cli.bridges.parts import Exported, listed
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import GROUND_NAME, is_written
+from mechkin_cli.studies import Format, Heading, format_of
 from mechkin_cli.tables import Words
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import Status
@@ -40,7 +40,7 @@ def export(model: Model, options: ExportOptions) -> Exported:
     Raises:
         UsageError: pyarrow is not there, or the run does not have a row that is named.
     """
-    arrow = _arrow()
+    kind = format_of("parquet")
     files, notes = {}, []
     for analysis in model.analyses(options.run, options.mode):
         rows = _rows(analysis, options.rows)
@@ -50,7 +50,7 @@ def export(model: Model, options: ExportOptions) -> Exported:
             known = columns.setdefault(label, (unit, values))
             if known[1] is not values and not _same(known, (unit, values)):
                 twice.append(label)
-        files[f"{model.stem}.{analysis.run}.parquet"] = _frame(arrow, columns, rows)
+        files[f"{model.stem}.{analysis.run}.parquet"] = _frame(kind, columns, rows)
         if twice:
             notes.append(
                 Diagnostic(
@@ -62,15 +62,6 @@ def export(model: Model, options: ExportOptions) -> Exported:
                 )
             )
     return Exported(files, tuple(notes))
-
-
-def _arrow() -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise UsageError("--to parquet needs pyarrow: pip install 'mechkin[parquet]'") from None
-    return pyarrow
 
 
 def _rows(analysis: Analysis, asked: tuple[int, ...]) -> list[int]:
@@ -147,20 +138,14 @@ def _same(one: tuple[str, Any], other: tuple[str, Any]) -> bool:
     return bool(np.array_equal(one[1], other[1], equal_nan=True))
 
 
-def _frame(arrow: Any, columns: dict[str, tuple[str, Any]], rows: list[int]) -> bytes:
-    fields, arrays = [], []
+def _frame(kind: Format, columns: dict[str, tuple[str, Any]], rows: list[int]) -> bytes:
+    headings, records = [], {}
     for label, (unit, values) in columns.items():
-        kind = arrow.string() if isinstance(values, list) else arrow.float64()
-        if not isinstance(values, list) and np.asarray(values).dtype == np.int64:
-            kind = arrow.int64()
-        fields.append(arrow.field(label, kind, metadata={"unit": unit} if unit else None))
         if isinstance(values, list):
-            arrays.append(arrow.array([values[row] for row in rows], kind))
+            word, chosen = "text", np.array([values[row] for row in rows], dtype=object)
         else:
             chosen = np.asarray(values)[rows]
-            mask = np.isnan(chosen) if chosen.dtype == np.float64 else None
-            arrays.append(arrow.array(chosen, kind, mask=mask))
-    table = arrow.Table.from_arrays(arrays, schema=arrow.schema(fields))
-    stream = io.BytesIO()
-    arrow.parquet.write_table(table, stream)
-    return stream.getvalue()
+            word = "whole" if chosen.dtype == np.int64 else "number"
+        headings.append(Heading(label, unit, word))
+        records[label] = chosen
+    return kind.piece(headings, records)
