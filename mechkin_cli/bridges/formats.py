@@ -47,7 +47,13 @@ MOST_TRIES: Final = 20
 Export = Callable[["Model", ExportOptions], Exported]
 """Gives the files of a model; raises `UsageError` with words for what cannot be exported."""
 
-EXPORTS: Final[Mapping[str, str]] = {"mjcf": "mjcf_export"}
+EXPORTS: Final[Mapping[str, str]] = {
+    "mjcf": "mjcf_export",
+    "gltf": "gltf_export",
+    "dxf": "dxf_export",
+    "loads": "load_cases",
+    "parquet": "parquet_export",
+}
 """By the name of a format the chapter of this room whose function `export` writes it."""
 
 

@@ -464,12 +464,21 @@ EXPORT = Command(
     "bridges:export",
     """Write a mechanism in the format of another program.
 
-    mjcf: a model for MuJoCo, drawn in the pose of a row, loops closed by equality constraints.
+    mjcf: a model for MuJoCo, in the pose of a row, loops closed by equality constraints. gltf: an
+    animated scene (GLB). dxf: links, paths and cams (needs ezdxf). loads: load cases for finite
+    elements, as CSV and for CalculiX. parquet: a run as a frame (needs pyarrow).
     The files go into out/STEM or a folder of your choice; what they cannot hold is named.
     """,
     (
         FILE,
-        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT"),
+        Word(
+            "to",
+            "Format: mjcf, gltf, dxf, loads or parquet.",
+            ("--to",),
+            "text",
+            "FORMAT",
+            required=True,
+        ),
         Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
         Word(
             "run",

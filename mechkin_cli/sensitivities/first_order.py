@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep import Readable
+    from mechkin_cli.sweep import Result
 
 
 def bending_notes(s: Sensitivities) -> list[str]:
@@ -197,7 +197,7 @@ class Sensitivities(Listed):
         return self._derivative((quantity, parameter), "curvature")
 
     @property
-    def results(self) -> Readable:
+    def results(self) -> Result:
         """The rows of the run."""
         return self._analysis.result
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -19,8 +19,29 @@ from mechkin_cli.tables import (
 )
 
 if TYPE_CHECKING:
-    from mechkin_cli.sensitivities.tolerance_stack import Tolerances
-    from mechkin_cli.show import Floats
+    from mechkin_cli.sensitivities.first_order import Sensitivities
+    from mechkin_cli.show import Bools, Floats
+
+
+class _Stack(Protocol):
+    """What tables and pictures read of `Tolerances`, whose docstrings say what it is."""
+
+    slopes: Sensitivities
+    bands: dict[str, Any]
+    samples: int
+
+    def nominal(self, quantity: str) -> Floats: ...
+    def worst(self, quantity: str) -> tuple[Floats, Floats]: ...
+    def root_sum_square(self, quantity: str) -> tuple[Floats, Floats]: ...
+    def scatter(self, quantity: str) -> Floats: ...
+    def shares(self, quantity: str) -> dict[str, Floats]: ...
+    def sampled(self, quantity: str) -> Any: ...
+    def quantile(self, quantity: str, part: float) -> Floats: ...
+    def left_out(self, quantity: str) -> Floats: ...
+    def misleads(self, quantity: str) -> Bools: ...
+    def widest(self, quantity: str) -> int: ...
+    def place_of(self, row: int) -> str: ...
+
 
 SAMPLED_PART = 0.95
 """Middle part of the samples that tables and pictures give the ends of."""
@@ -29,13 +50,13 @@ NAME = "tolerances"
 """What files of a stack are called."""
 
 
-def sampled_ends(t: Tolerances, quantity: str) -> tuple[Floats, Floats]:
+def sampled_ends(t: _Stack, quantity: str) -> tuple[Floats, Floats]:
     """The values between which `SAMPLED_PART` of the samples lie, with as many below as above."""
     outside = 0.5 * (1.0 - SAMPLED_PART)
     return t.quantile(quantity, outside), t.quantile(quantity, 1.0 - outside)
 
 
-def numbers_of(t: Tolerances, quantity: str) -> dict[str, Floats]:
+def numbers_of(t: _Stack, quantity: str) -> dict[str, Floats]:
     """Columns of a quantity in its unit (rows,), by label."""
     (least, largest), root = t.worst(quantity), t.root_sum_square(quantity)
     sampled, ends = t.sampled(quantity), sampled_ends(t, quantity)
@@ -54,7 +75,7 @@ def numbers_of(t: Tolerances, quantity: str) -> dict[str, Floats]:
     }
 
 
-def rows_table(t: Tolerances, quantities: Sequence[str] = (), short: bool = False) -> Columns:
+def rows_table(t: _Stack, quantities: Sequence[str] = (), short: bool = False) -> Columns:
     """A line for each row: the place, and all numbers of some quantities, or of all.
 
     Args:
@@ -81,7 +102,7 @@ def rows_table(t: Tolerances, quantities: Sequence[str] = (), short: bool = Fals
     return Columns(NAME, title, tuple(columns), of_rows=False)
 
 
-def extremes_table(t: Tolerances) -> Columns:
+def extremes_table(t: _Stack) -> Columns:
     """A line for each quantity, where it scatters most."""
     quantities, rows = t.slopes.quantities, [t.widest(q) for q in t.slopes.quantities]
     pairs = list(zip(quantities, rows, strict=True))
@@ -97,7 +118,7 @@ def extremes_table(t: Tolerances) -> Columns:
     return Columns("extremes", "Where each quantity scatters most", tuple(columns), of_rows=False)
 
 
-def contributions_table(t: Tolerances) -> Columns:
+def contributions_table(t: _Stack) -> Columns:
     """A line for each quantity and parameter, where the quantity scatters most: the slope, how far
     the worst ends of the band move the quantity, and the share of its squared scatter."""
     slopes, units = t.slopes, t.slopes.unit_of
@@ -128,7 +149,7 @@ def contributions_table(t: Tolerances) -> Columns:
     return Columns("contributions", "What each tolerance contributes", columns, of_rows=False)
 
 
-def files_of(t: Tolerances, formats: Collection[str]) -> dict[str, bytes]:
+def files_of(t: _Stack, formats: Collection[str]) -> dict[str, bytes]:
     """Files by name, in some of the formats `csv` and `md`: of CSV the rows and the contributions,
     of Markdown a page with both."""
     source = t.slopes.results
@@ -143,7 +164,7 @@ def files_of(t: Tolerances, formats: Collection[str]) -> dict[str, bytes]:
     return files
 
 
-def record_of(t: Tolerances) -> dict[str, Any]:
+def record_of(t: _Stack) -> dict[str, Any]:
     """Plain data: bands, rows, and of each quantity what `rows_table` has."""
     slopes = t.slopes
     quantities = {}
@@ -185,7 +206,7 @@ def _plain(values: Floats) -> list[float | None]:
     return [float(one) if np.isfinite(one) else None for one in values]
 
 
-def picture_of(t: Tolerances) -> Bands:
+def picture_of(t: _Stack) -> Bands:
     """The bands of all quantities over the rows, with the shares where each scatters most."""
     slopes = t.slopes
 

@@ -25,7 +25,8 @@ __getattr__, __dir__ = lazy_names(
         "drawing": "PICTURE_NAME mechanism_picture",
         "following": "Changed Follower Seen Wish",
         "gallery": "INDEX_NAME Card card_of index_page",
-        "joints": "drawn_joints half_axis half_frame link_poses",
+        "joints": "carried continuous drawn_joints half_axis half_frame link_poses link_shape "
+        "plane_of_motion upwards",
         "page": "PAGE_NAME packed",
         "scene": "view_page write_view",
         "server": "LiveServer",
