@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
     from mechkin_cli.view.following import *
+    from mechkin_cli.view.notebook import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
     from mechkin_cli.view.server import *
@@ -22,6 +23,7 @@ __getattr__, __dir__ = lazy_names(
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
         "following": "Changed Follower Seen Wish",
+        "notebook": "Page widget_of",
         "page": "PAGE_NAME",
         "scene": "view_page write_view",
         "server": "LiveServer",

@@ -46,8 +46,8 @@ async function start() {
   if (shown) keepPlace(place, shown);
   tellShown();
   if (!shown) return;
-  await enliven(shown);
-  tellLive();
+  const dimensions = await enliven(shown);
+  tellLive(dimensions ? dimensions.parameters.map(({ name }) => name) : []);
 }
 
 /** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
@@ -62,6 +62,7 @@ async function enliven(shown) {
   }
   connect(shown.state, dimensions);
   Object.assign(window.mechkin, { dimensions, bring: (run) => (window.mechkin.dimensions = bring(run)) });
+  return dimensions;
 }
 
 function showRuns(data, theme, tabs) {
