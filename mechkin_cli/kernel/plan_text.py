@@ -11,12 +11,17 @@ from numbers import Integral
 from typing import Any
 
 FIRST_LINE = "mechkin plan 1"
+FIRST_LINE_OF_TAPE = "mechkin tape 1"
+
+Record = tuple[str, Sequence[Any]]
+"""A name and its values, a line of the text."""
 
 
 def plan_text(
-    calls: Iterable[tuple[str, Sequence[Any]]],
+    calls: Iterable[Record],
     outputs: Iterable[Sequence[Any]] = (),
     tape: Sequence[Any] | None = None,
+    variants: Iterable[Record] = (),
 ) -> str:
     """The text of a plan, the quantities that its runs write, and the tape of its constants.
 
@@ -24,6 +29,7 @@ def plan_text(
         calls: `plan` with the arguments of `PlanBuilder`, then its calls by name with theirs.
         outputs: the records that `Outputs` takes.
         tape: the arguments of `Tape`, which gives the constants of plan and outputs.
+        variants: what variants have in common: `variants`, `way` and `course` with their values.
 
     Example:
         >>> print(plan_text([("plan", (1.0, (0, 0, 0), 0.5)), ("set_rest", ([],))]), end="")
@@ -34,7 +40,16 @@ def plan_text(
     records = [*calls, *(("output", record) for record in outputs)]
     if tape is not None:
         records.append(("tape", tape))
-    lines = [FIRST_LINE, *(" ".join([name, *map(_word, values)]) for name, values in records)]
+    return _text(FIRST_LINE, [*records, *variants])
+
+
+def tape_text(tape: Sequence[Any]) -> str:
+    """The text of a tape alone, of the arguments of `Tape`."""
+    return _text(FIRST_LINE_OF_TAPE, [("tape", tape)])
+
+
+def _text(first: str, records: Iterable[Record]) -> str:
+    lines = [first, *(" ".join([name, *map(_word, values)]) for name, values in records)]
     return "".join(f"{line}\n" for line in lines)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, overload
 
-from mechkin_cli import cams, fit, mobility, modes, sensitivities, studies, variants, view
+from mechkin_cli import cams, fit, live, mobility, modes, sensitivities, studies, variants, view
 from mechkin_cli.analysis import (
     Analysis,
     Design,
@@ -417,6 +417,11 @@ class Model(Listed):
             InvalidFile: the mechanism cannot be solved as it is driven.
         """
         return view.widget_of(self, run, mode, modes)
+
+    def live_record(self, analysis: Any, data: Mapping[str, Any]) -> dict[str, Any] | None:
+        """What a page of a run computes it from with other parameters, beside the `data` that it
+        shows; None where it cannot: see `mechkin_cli.live`."""
+        return live.live_record(analysis, data)
 
     # Positions, modes, what can move.
 

@@ -28,7 +28,7 @@ __getattr__, __dir__ = lazy_names(
         "cells": "Formula cells_of jumps_of",
         "double_double": "Precise PreciseInputs ShiftingPrecise precise_inputs",
         "followers": "InputPath angle_slots followers_of input_path input_rest",
-        "following": "Ending Followed Runaway follow step_limits",
+        "following": "Ending Followed Runaway follow step_limits step_numbers",
         "inputs": "KernelInputs ORIENTATION continuous_angle continuous_signs drawn_quaternion "
         "held_values input_number input_numbers input_text input_unit kernel_inputs "
         "quaternion_product reduce_angle round_of turn_count turn_of turned_quaternion",

@@ -4,9 +4,10 @@ where the motion turns or bends, and their course in kernel units.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from mechkin_cli.mechanism import CellKind, Course, Parameter
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session.cells import Cells, Formula
 from mechkin_cli.show import Floats
-from mechkin_cli.tape import compiled
+from mechkin_cli.tape import compiled, tape_values
 from mechkin_cli.tolerances import COURSE_JUMP
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class FollowedPath(NamedTuple):
         course: the kernel's, None where all is straight.
         cells: (places - 1,) the cell from each place to the next, -1 for none.
         route: that it is part of.
+        pieces: of the course.
+        numbers: the cell of each.
     """
 
     rows: NDArray[np.int64]
@@ -47,11 +50,21 @@ class FollowedPath(NamedTuple):
     course: _kernel.Course | None
     cells: NDArray[np.int64]
     route: Route
+    pieces: Sequence[Piece] = ()
+    numbers: Sequence[int] = ()
 
     @property
     def real(self) -> NDArray[np.int64]:
         """Places that are rows."""
         return np.flatnonzero(self.rows >= 0)
+
+    @property
+    def course_values(self) -> tuple[Any, ...]:
+        """The course as its text has it (kernel/plan_text.py): tape, pieces and arrays."""
+        course, numbers = self.route.course, self.numbers
+        arrays = (course.constants[numbers], course.ways[numbers], self.route.units, self.at)
+        lists = (array.ravel().tolist() for array in arrays)
+        return (tape_values(course.tape), self.pieces, *lists)
 
     def parameter_of(self, place: int, inputs: Floats) -> float:
         """The course's parameter between a place and the next, where the inputs are as given."""
@@ -106,15 +119,10 @@ class Route:
         course = self.course
         native = None
         if pieces:
-            native = _kernel.Course(
-                self._tape,
-                pieces,
-                np.ascontiguousarray(course.constants[numbers]),
-                np.ascontiguousarray(course.ways[numbers]),
-                self.units,
-                np.ascontiguousarray(at),
-            )
-        return FollowedPath(rows, at, np.ascontiguousarray(values), native, cells, self)
+            arrays = (course.constants[numbers], course.ways[numbers], self.units, at)
+            native = _kernel.Course(self._tape, pieces, *map(np.ascontiguousarray, arrays))
+        values = np.ascontiguousarray(values)
+        return FollowedPath(rows, at, values, native, cells, self, pieces, numbers)
 
     def _pieces(self, at: Floats, cells: NDArray[np.int64]) -> tuple[list[Piece], list[int]]:
         """Runs of places on one curved cell that are passed in one direction."""

@@ -28,7 +28,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": "FloatArray RunParameter TableColumn Words column_of column_of_numbers "
-        "column_texts row_words run_parameter solved_rows unique_cells words_of",
+        "column_texts row_words run_parameter solved_rows table_sizes unique_cells words_of",
         "compare": "compare_files read_committed report stale_in",
         "csv": "COMMITTED_DIGITS csv_bytes",
         "errata": "MARK NAME OVERVIEW_PAGE OverviewRow PAGE PrintedTable against_print "

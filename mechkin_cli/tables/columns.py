@@ -357,7 +357,7 @@ def rounding_of(
 
     Inputs are as written, and the measures of accuracy are small by nature: these have none.
     """
-    sizes = _sizes(source)
+    sizes = table_sizes(source)
     for column in columns:
         if not isinstance(column.values, Words) and column.unit:
             finite = np.isfinite(column.values)
@@ -379,7 +379,7 @@ def _is_rounded(layout: ColumnLayout, column: TableColumn, source: TableSource) 
     return not (measured and column.unit == "")
 
 
-def _sizes(source: TableSource) -> dict[str, float]:
+def table_sizes(source: TableSource) -> dict[str, float]:
     """By their labels in the file's units: lengths, angles and their rates of the mechanism's size,
     and 1 for what has none."""
     rates = [0.0]

@@ -37,6 +37,7 @@ __getattr__, __dir__ = lazy_names(
         "scalars": "Recorded Undecided advice as_recorded by_rounding cos either is_finite "
         "is_number is_settled largest next_power_of_two nonzero of_one of_two plain sin smallest "
         "square_root",
-        "tape": "CONDITIONS ExactTape Operation Tape Verdict compiled replay replay_precise",
+        "tape": "CONDITIONS ExactTape Operation Tape Verdict compiled replay replay_precise "
+        "tape_values",
     },
 )

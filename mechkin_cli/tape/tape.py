@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -215,6 +215,19 @@ def compiled(tape: Tape) -> _kernel.Tape:
         tape.guards,
         tape.expected.astype(np.uint8),
         tape.advice.astype(np.uint8),
+    )
+
+
+def tape_values(tape: Tape) -> tuple[Any, ...]:
+    """The tape as its text has it (`kernel.plan_text`): the arguments of the kernel's `Tape` in
+    lists."""
+    arrays = (tape.constants, tape.operations, tape.operands, tape.outputs, tape.guards)
+    lists = [array.tolist() for array in arrays]
+    return (
+        len(tape.inputs),
+        *lists,
+        tape.expected.astype(int).tolist(),
+        tape.advice.astype(int).tolist(),
     )
 
 

@@ -7,7 +7,7 @@ the straight line in the parameters (kernel/core/stepping/variants.hpp).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from mechkin_cli.expressions import Quantity
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.functions import width
+from mechkin_cli.kernel.plan_text import plan_text
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, flatten, plan_records
 from mechkin_cli.record import NamedTuple, replace
@@ -29,17 +30,20 @@ from mechkin_cli.session import (
     angle_slots,
     kernel_inputs,
     step_limits,
+    step_numbers,
 )
 from mechkin_cli.structure import graph_of
 from mechkin_cli.tape import (
     Filling,
     Recorder,
+    Tape,
     TraceLost,
     compiled,
     is_traced,
     next_power_of_two,
     register,
     replay,
+    tape_values,
 )
 
 if TYPE_CHECKING:
@@ -71,7 +75,8 @@ class VariantReadout:
         for quantity in wanted:
             plan.add(quantity)
         constants = [*variation.constants, *flatten(plan.records)]
-        self.tape = variation.tape([*constants, *variation.moving_inputs])
+        self.recorded = variation.recorded_tape([*constants, *variation.moving_inputs])
+        self.tape = compiled(self.recorded)
         self.first = len(variation.constants)
         self.last = len(constants)
 
@@ -84,6 +89,45 @@ class VariantReadout:
         """What a run of one variant writes."""
         constants = replay(self.tape, values[:, None])[0][0]
         return self.readout.outputs.with_constants(constants[self.first : self.last])
+
+    def text(self, demand: Demand) -> str:
+        """What a run of variants rests on, for the core without Python (kernel/plan_text.py)."""
+        variation = self.variation
+        base, time = variation.base, variation.base.problem.motion.time
+        calls = [
+            ("plan" if call == "units" else call, arguments)
+            for call, arguments in plan_records(base.layout, variation.size)
+        ]
+        plan = OutputPlan(base.layout, None, base.driven)
+        for quantity in self.readout.wanted:
+            plan.add(quantity)
+        inputs = base.inputs
+        arrays = (inputs.reduced, inputs.rates, inputs.accelerations, inputs.jerks, inputs.whole)
+        limits = (
+            step_numbers(tolerances.LONGEST_DIMENSION_STEP),
+            step_numbers(straight=base.problem.assembly.straight),
+        )
+        values = [
+            variation.values.tolist(),
+            *(array.ravel().tolist() for array in (*arrays, inputs.values)),
+            [] if time is None else time.values.tolist(),
+            variation.state.tolist(),
+            float(variation.size),
+            base.problem.motion.rows,
+            variation.row,
+            int(demand),
+            tolerances.NEWTON_ITERATIONS,
+            *([float(number) for number in numbers.values()] for numbers in limits),
+            [(slot, turn, int(of)) for slot, turn, of in angle_slots(base, self.slots)],
+            float(tolerances.HALF_TURN_SIDE),
+        ]
+        records: list[tuple[str, Sequence[Any]]] = [("variants", values)]
+        for step in (1, -1) if base.route is not None else ():
+            way = base.route.way(variation.row, step)  # type: ignore[union-attr]
+            records.append(("way", (step, way.rows.tolist(), way.values.ravel().tolist())))
+            if way.course is not None:
+                records.append(("course", way.course_values))
+        return plan_text(calls, plan.records, tape_values(self.recorded), records)
 
     def runs(self, demand: Demand) -> _kernel.Variants:
         """The kernel's variants of this reading."""
@@ -166,7 +210,11 @@ class SessionVariation:
 
     def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
         """The tape from the parameters to some numbers of the recording."""
-        return compiled(self.recorder.tape(register(self.recorder, n) for n in numbers))
+        return compiled(self.recorded_tape(numbers))
+
+    def recorded_tape(self, numbers: Iterable[Any]) -> Tape:
+        """The same as plain data."""
+        return self.recorder.tape(register(self.recorder, n) for n in numbers)
 
     def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
         """The reading of some quantities."""

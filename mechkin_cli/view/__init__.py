@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
     from mechkin_cli.view.following import *
+    from mechkin_cli.view.joints import *
     from mechkin_cli.view.notebook import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
@@ -23,8 +24,9 @@ __getattr__, __dir__ = lazy_names(
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
         "following": "Changed Follower Seen Wish",
+        "joints": "drawn_joints half_axis half_frame",
         "notebook": "Page widget_of",
-        "page": "PAGE_NAME",
+        "page": "PAGE_NAME packed",
         "scene": "view_page write_view",
         "server": "LiveServer",
     },

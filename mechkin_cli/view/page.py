@@ -309,6 +309,10 @@ class ShownModel(Protocol):
         """All assembly modes at the first row of a run."""
         ...
 
+    def live_record(self, analysis: ShownAnalysis, data: Plain) -> Plain | None:
+        """What the page of a run computes it from with other parameters; None where it cannot."""
+        ...
+
     def analyze(self, *, tables: Sequence[str], mode: str) -> ShownAnalysis:
         """Runs the sweep in a mode."""
         ...

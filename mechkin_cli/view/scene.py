@@ -405,16 +405,27 @@ def view_page(
     analyses: Sequence[ShownAnalysis], modes: bool = True
 ) -> tuple[bytes, list[Diagnostic]]:
     """The page of runs of one model, and the notes on what it leaves out."""
+    data, notes = page_data(analyses, modes)
+    return filled(template(), data), notes
+
+
+def page_data(
+    analyses: Sequence[ShownAnalysis], modes: bool = True
+) -> tuple[Plain, list[Diagnostic]]:
+    """The data of the page, and the notes on what it leaves out; `live` is what the page computes a
+    sweep with other parameters from."""
     scene, notes = view_scene(analyses, modes)
-    return filled(template(), scene.record()), notes
+    data = scene.record()
+    live = analyses[0].model.live_record(analyses[0], data)
+    return (data if live is None else {**data, "live": live}), notes
 
 
 def view_data(
     analyses: Sequence[ShownAnalysis], modes: bool = True
 ) -> tuple[bytes, list[Diagnostic]]:
     """What the page of runs of one model shows, as JSON, and the notes as of `view_page`."""
-    scene, notes = view_scene(analyses, modes)
-    return script_json(scene.record()).encode("ascii"), notes
+    data, notes = page_data(analyses, modes)
+    return script_json(data).encode("ascii"), notes
 
 
 def view_scene(

@@ -8,12 +8,15 @@
 
 #include "rows/run.hpp"
 #include "stepping/stepper.hpp"
+#include "stepping/variants.hpp"
 #include "text/plan_text.hpp"
+#include "text/table_text.hpp"
 
 struct mechkin_plan {
   PlanText of;
   mechkin_sizes sizes;
   std::vector<double> replayed;  // what the tape gave last
+  std::optional<Variants> variants;
   std::size_t constants() const { return of.plan.constants() + of.outputs.constants(); }
 };
 
@@ -57,7 +60,7 @@ Refusal assign(mechkin_plan* plan, const double* constants) {
 Refusal create(std::string_view text, mechkin_plan** to) {
   Result<PlanText> read = read_plan(text);
   CHECK(read.refusal());
-  auto plan = std::make_unique<mechkin_plan>(mechkin_plan{std::move(*read), {}, {}});
+  auto plan = std::make_unique<mechkin_plan>(mechkin_plan{std::move(*read), {}, {}, {}});
   const Plan& p = plan->of.plan.view();
   mechkin_sizes& s = plan->sizes;
   s.inputs = (size_t)p.inputs, s.states = (size_t)p.states, s.columns = (size_t)p.columns;
@@ -68,6 +71,11 @@ Refusal create(std::string_view text, mechkin_plan** to) {
     REQUIRE((size_t)tape.outputs >= s.constants, "the tape does not give the constants of plan and outputs");
     s.parameters = (size_t)tape.inputs, s.moving = (size_t)tape.outputs - s.constants;
     plan->replayed.resize((size_t)tape.outputs);
+  }
+  if (plan->of.variants) {
+    s.variant_rows = (size_t)std::max(plan->of.variants->rows, 0L);
+    plan->variants.emplace(*plan->of.tape, plan->of.plan, plan->of.outputs, std::move(*plan->of.variants));
+    CHECK(plan->variants->prepare());
   }
   *to = plan.release();
   return {};
@@ -107,7 +115,32 @@ Refusal run(const mechkin_plan& plan, const mechkin_rows& rows) {
   return {};
 }
 
+Refusal run_variant(const mechkin_plan& plan, const double* parameters, mechkin_variant& v) {
+  REQUIRE(plan.variants, "the text of the plan does not say what its variants have in common");
+  REQUIRE(parameters || !plan.sizes.parameters, "parameters are given");
+  REQUIRE((v.values || !plan.sizes.values) && v.residual && v.condition, "values, residual and condition have their arrays");
+  VariantReach reach = {0, 0, {}};
+  int end = 0;
+  FloatingPointState state;
+  plan.variants->run(1, parameters, *kernel_unit(), 1, {v.values, v.residual, v.condition, &end, v.power_error, &reach});
+  v.end = (mechkin_end)end;
+  v.first = (size_t)reach.first, v.last = (size_t)reach.last;
+  if (v.end == MECHKIN_COMPLETE) v.first = 0, v.last = plan.sizes.variant_rows;
+  if (v.end == MECHKIN_BUILT_ANEW || v.end == MECHKIN_LOST) v.first = v.last = 0;
+  for (int side : {0, 1}) {
+    const VariantStop& stop = reach.stops[side];
+    v.stops[side] = (mechkin_stop)(int)stop.kind;
+    for (std::size_t i = 0; v.stopped && i < plan.sizes.inputs; ++i)
+      v.stopped[side * plan.sizes.inputs + i] = i < stop.inputs.size() ? stop.inputs[i] : __builtin_nan("");
+  }
+  return {};
+}
+
 }  // namespace
+
+struct mechkin_tape {
+  TapeStore of;
+};
 
 mechkin_status mechkin_plan_create(const char* text, size_t length, mechkin_plan** plan, mechkin_message* message) {
   *plan = nullptr;
@@ -154,4 +187,62 @@ mechkin_status mechkin_plan_set_size(mechkin_plan* plan, double size, mechkin_me
 
 mechkin_status mechkin_run(const mechkin_plan* plan, const mechkin_rows* rows, mechkin_message* message) {
   return answer(message, [&] { return run(*plan, *rows); });
+}
+
+mechkin_status mechkin_run_variant(const mechkin_plan* plan, const double* parameters, mechkin_variant* variant,
+                                   mechkin_message* message) {
+  return answer(message, [&] { return run_variant(*plan, parameters, *variant); });
+}
+
+mechkin_status mechkin_tape_create(const char* text, size_t length, mechkin_tape** tape, mechkin_message* message) {
+  *tape = nullptr;
+  return answer(message, [&]() -> Refusal {
+    Result<TapeStore> read = read_tape({text, length});
+    CHECK(read.refusal());
+    *tape = new mechkin_tape{std::move(*read)};
+    return {};
+  });
+}
+
+void mechkin_tape_free(mechkin_tape* tape) { delete tape; }
+
+size_t mechkin_tape_inputs(const mechkin_tape* tape) { return (size_t)tape->of.view().inputs; }
+size_t mechkin_tape_outputs(const mechkin_tape* tape) { return (size_t)tape->of.view().outputs; }
+
+mechkin_status mechkin_tape_run(const mechkin_tape* tape, size_t count, const double* inputs, double* outputs,
+                                unsigned char* other_way, mechkin_message* message) {
+  return answer(message, [&]() -> Refusal {
+    REQUIRE(count <= (std::size_t)MOST_ROWS, "more than 100000000 rows");
+    const Tape& of = tape->of.view();
+    const KernelUnit& unit = *kernel_unit();
+    std::vector<char> memory((std::size_t)unit.replay_size(of));
+    std::vector<double> found(count * (std::size_t)of.outputs);
+    std::vector<std::uint8_t> verdicts(count);
+    FloatingPointState state;
+    unit.replay(of, {(long)count, inputs, found.data(), verdicts.data()}, memory.data());
+    for (std::size_t row = 0; row < count; ++row) {
+      for (int k = 0; k < of.outputs; ++k) outputs[(std::size_t)k * count + row] = found[row * (std::size_t)of.outputs + (std::size_t)k];
+      if (other_way) other_way[row] = verdicts[row] == TAPE_OTHER_WAY;
+    }
+    return {};
+  });
+}
+
+size_t mechkin_cell_texts(const double* numbers, size_t rows, mechkin_notation notation, unsigned digits, char* text,
+                          size_t room) {
+  size_t size = 0;
+  const mechkin_status status = answer(nullptr, [&]() -> Refusal {
+    TextColumn column;
+    column.numbers = numbers;
+    constexpr Notation notations[] = {Notation::shortest, Notation::fixed, Notation::fixed, Notation::scientific};
+    column.style = {notations[notation & 3], (int)std::min(digits, 300u), notation == MECHKIN_TRIMMED};
+    const std::vector<std::string> cells = column_texts(column, rows);
+    for (const std::string& cell : cells) size += cell.size() + 1;
+    for (const std::string& cell : cells) {
+      if (size > room) break;
+      std::memcpy(text, cell.data(), cell.size()), text += cell.size(), *text++ = '\n';
+    }
+    return {};
+  });
+  return status == MECHKIN_OK ? size : 0;
 }

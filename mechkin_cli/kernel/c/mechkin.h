@@ -1,4 +1,5 @@
-/* mechkin's core for other languages: a plan, a tape and constants in, rows out.
+/* mechkin's core for other languages: a plan, a tape and constants in, rows out; and variants of a plan, whose rows are
+ * found from nothing but its parameters.
  *
  * A plan comes as text (core/text/plan_text.hpp), which Python writes (mechkin_cli/kernel/plan_text.py), with the
  * quantities that its runs write and, where it has parameters, the tape that gives its constants. Units are SI, lengths of
@@ -45,6 +46,7 @@ typedef struct mechkin_sizes {
   size_t constants;  /* of the plan, then of the quantities */
   size_t parameters; /* of the tape, 0 without one */
   size_t moving;     /* numbers that the tape gives behind the constants: inputs that move with the parameters */
+  size_t variant_rows; /* rows of a variant, 0 where the text does not say what variants have in common */
 } mechkin_sizes;
 
 /* A message may be null wherever one is asked for. */
@@ -111,6 +113,61 @@ typedef struct mechkin_rows {
 } mechkin_rows;
 
 MECHKIN_API mechkin_status mechkin_run(const mechkin_plan* plan, const mechkin_rows* rows, mechkin_message* message);
+
+typedef enum mechkin_end {
+  MECHKIN_COMPLETE = 0,
+  MECHKIN_BUILT_ANEW = 1, /* with these parameters the file is computed in another way: the plan is to be built anew */
+  MECHKIN_LOST = 2,       /* the assembly could not be followed from the file's parameters to these */
+  MECHKIN_INCOMPLETE = 3  /* some row was not reached, or did not close near its guess */
+} mechkin_end;
+
+typedef enum mechkin_stop { /* why rows end on one side of the first assembly's */
+  MECHKIN_GOES_ON = 0,      /* they come to the last one */
+  MECHKIN_DEAD_CENTRE = 1,
+  MECHKIN_BRANCH_POINT = 2,
+  MECHKIN_UNKNOWN = 3
+} mechkin_stop;
+
+/* The rows of one variant, on the branch that leads to the file's own; nan outside of [first, last). The power error is
+ * there where the variants demand it, the condition likewise. */
+typedef struct mechkin_variant {
+  double* values;      /* values x variant_rows, SI, angles with their whole turns */
+  double* residual;    /* variant_rows */
+  double* condition;   /* variant_rows */
+  double* power_error; /* variant_rows, optional */
+  double* stopped;     /* 2 x inputs, optional: where the inputs stop before and behind the rows, as they are given */
+  mechkin_end end;
+  size_t first, last;    /* the rows that are closed */
+  mechkin_stop stops[2]; /* before and behind them */
+} mechkin_variant;
+
+/* Runs the plan's variant with some parameters (SI); what became of it is in `end`. One at a time for each plan. */
+MECHKIN_API mechkin_status mechkin_run_variant(const mechkin_plan* plan, const double* parameters, mechkin_variant* variant,
+                                               mechkin_message* message);
+
+/* A tape by itself, which computes cells of a table from a row's quantities. */
+typedef struct mechkin_tape mechkin_tape;
+
+MECHKIN_API mechkin_status mechkin_tape_create(const char* text, size_t length, mechkin_tape** tape,
+                                               mechkin_message* message);
+MECHKIN_API void mechkin_tape_free(mechkin_tape* tape); /* or null */
+MECHKIN_API size_t mechkin_tape_inputs(const mechkin_tape* tape);
+MECHKIN_API size_t mechkin_tape_outputs(const mechkin_tape* tape);
+/* inputs x count to outputs x count, a column contiguous; `other_way` (count), or null, tells where a guard failed. */
+MECHKIN_API mechkin_status mechkin_tape_run(const mechkin_tape* tape, size_t count, const double* inputs, double* outputs,
+                                            unsigned char* other_way, mechkin_message* message);
+
+typedef enum mechkin_notation {
+  MECHKIN_SHORTEST = 0,  /* that reads back as the same double */
+  MECHKIN_FIXED = 1,     /* with so many decimals */
+  MECHKIN_TRIMMED = 2,   /* the same without the zeros that end every number */
+  MECHKIN_SCIENTIFIC = 3 /* a digit, so many decimals, an exponent */
+} mechkin_notation;
+
+/* The texts of a column's cells, each ended by a line feed; what is not finite has none. Returns their size, which is
+ * written where there is room for it, 0 where memory ran out. */
+MECHKIN_API size_t mechkin_cell_texts(const double* numbers, size_t rows, mechkin_notation notation, unsigned digits,
+                                      char* text, size_t room);
 
 #ifdef __cplusplus
 }

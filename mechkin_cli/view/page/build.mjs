@@ -45,7 +45,8 @@ async function made() {
     bundled("src/main.js", { format: "iife" }),
     bundled("style/main.css"),
   ]);
-  const parts = { style, script, "style-hash": hash(style), "script-hash": hash(script) };
+  const kernel = await readFile(here("../../kernel/wasm/mechkin.wasm.gz"), "base64");
+  const parts = { kernel, style, script, "style-hash": hash(style), "script-hash": hash(script) };
   const filled = template.replaceAll(/\{\{([a-z-]+)\}\}/g, (_, name) => parts[name]);
   const text = `${filled.trimEnd()}\n${await licences()}\n`;
   const bytes = Buffer.byteLength(text, "utf8");

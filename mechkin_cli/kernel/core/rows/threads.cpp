@@ -1,5 +1,15 @@
 #include "rows/threads.hpp"
 
+#if MECHKIN_ONE_THREAD  // WebAssembly in a page: the caller does all
+
+void over_rows(long rows, long, int, const std::function<void(long, long, int)>& work) {
+  if (rows > 0) work(0, rows, 0);
+}
+
+int available_processors() { return 1; }
+
+#else
+
 #include <atomic>
 #include <condition_variable>
 #include <cstdlib>
@@ -191,3 +201,5 @@ int available_processors() {
   const unsigned count = std::thread::hardware_concurrency();
   return count ? (int)count : 1;
 }
+
+#endif

@@ -34,6 +34,7 @@ class Worker {
     turn_slots_ = turn_slots(plan.view(), narrow_);
     turn_.resize(turn_slots_ * base.rows), way_turn_.resize(turn_.size());
     way_whole_.resize(way_inputs_.size()), nothing_.resize(way_inputs_.size());
+    if (base.demand & DEMAND_POWER) power_.resize(base.rows);
   }
 
   // Variants [begin, end) of `count`.
@@ -51,7 +52,8 @@ class Worker {
                                    ? VariantEnd::other_way
                                    : one(&parameters_[v * given], &replayed_[v * tape_.outputs], begin + v, out);
       out.end[begin + v] = (int)ended;
-      if (ended != VariantEnd::complete) clear(begin + v, out);
+      const bool partly = ended == VariantEnd::incomplete && out.reach;
+      if (ended != VariantEnd::complete && !partly) clear(begin + v, out, 0, base_.rows);
     }
   }
 
@@ -71,13 +73,14 @@ class Worker {
     return start_inputs_.data();
   }
 
-  // Nothing of what a variant left behind that did not end well.
-  void clear(long number, const VariantArrays& out) const {
-    const long rows = base_.rows, cells = rows * outputs_.view().slots;
-    const double nothing = __builtin_nan("");
-    std::fill_n(out.outputs + number * cells, cells, nothing);
-    std::fill_n(out.residual + number * rows, rows, nothing);
-    std::fill_n(out.condition + number * rows, rows, nothing);
+  // Nothing in rows [first, last) of what a variant left behind that did not end well there.
+  void clear(long number, const VariantArrays& out, long first, long last) const {
+    const long rows = base_.rows, slots = outputs_.view().slots;
+    const auto nothing = [&](double* column) {
+      if (column) std::fill(column + first, column + last, __builtin_nan(""));
+    };
+    for (long s = 0; s < slots; ++s) nothing(out.outputs + (number * slots + s) * rows);
+    for (double* column : {out.residual, out.condition, out.power_error}) nothing(column ? column + number * rows : column);
   }
 
   VariantEnd one(const double* parameters, const double* replayed, long number, const VariantArrays& out) {
@@ -87,9 +90,13 @@ class Worker {
     const double* const moved = replayed + moving_;
     const double* const inputs = moves_ ? moved : base_.inputs.data();
     const double* const whole = moves_ ? nothing_.data() : base_.whole.data();
-    if (moves_ && turns(inputs)) return VariantEnd::incomplete;
-    if (!follow_all(inputs, whole)) return VariantEnd::incomplete;
-    count_from_first();
+    reach_ = out.reach ? out.reach + number : nullptr;
+    if (reach_) *reach_ = {base_.start_row, base_.start_row, {}};
+    if (moves_ && turns(inputs)) return nowhere(number, out);
+    const bool followed = follow_all(inputs, whole);
+    if (!followed && !reach_) return VariantEnd::incomplete;
+    const long first = followed ? 0 : reach_->first, last = followed ? rows : reach_->last;
+    count_from(first, last);
     Request r = {};
     r.rows = rows;
     r.inputs = inputs;
@@ -103,22 +110,39 @@ class Worker {
     r.wanted = outputs_.view();
     r.outputs = out.outputs + number * (long)r.wanted.slots * rows;
     r.residual = out.residual + number * rows, r.condition = out.condition + number * rows;
+    r.power_error = out.power_error ? out.power_error + number * rows : power_.data();
     r.correction = correction_.data(), r.side = side_.data(), r.flags = flags_.data();
     r.demand = base_.demand;
     r.iterations = base_.iterations;
     r.tight = base_.following.tight, r.coarse = base_.following.coarse, r.accept = base_.following.accept;
     std::fill(side_.begin(), side_.end(), 1.0);
-    wide_.run_rows(plan_.view(), r, 0, rows, memory_.data());
-    for (long row = 0; row < rows; ++row)
-      if (flags_[row] || !(correction_[row] <= limit_[row])) return VariantEnd::incomplete;
-    // sides change where a branch point is passed
-    for (int b = 0; b < plan_.view().blocks; ++b)
-      for (long row = 1; row < rows; ++row)
-        if (section_[row] == section_[row - 1] && side_[b * rows + row] != side_[b * rows + row - 1])
-          return VariantEnd::incomplete;
-    add_turns(r.outputs, whole);
+    if (first < last) wide_.run_rows(plan_.view(), r, first, last, memory_.data());
+    long from = base_.start_row, to = from;
+    while (from > first && is_good(from - 1, to > from ? from : -1)) --from;
+    while (to < last && is_good(to, to > from ? to - 1 : -1)) ++to;
+    const bool complete = from == 0 && to == rows;
+    if (!complete && !reach_) return VariantEnd::incomplete;
+    add_turns(r.outputs, whole, from, to);
     if (!(r.demand & DEMAND_CONDITION)) std::fill_n(r.condition, rows, __builtin_nan(""));
-    return VariantEnd::complete;
+    if (complete) return VariantEnd::complete;
+    reach_->first = from, reach_->last = to;
+    clear(number, out, 0, from), clear(number, out, to, rows);
+    return VariantEnd::incomplete;
+  }
+
+  VariantEnd nowhere(long number, const VariantArrays& out) const {
+    if (out.reach) clear(number, out, 0, base_.rows);
+    return VariantEnd::incomplete;
+  }
+
+  // Whether a row closed near its guess, and on the branch of its `neighbour` (-1: none); sides change where a branch
+  // point is passed.
+  bool is_good(long row, long neighbour) const {
+    if (flags_[row] || !(correction_[row] <= limit_[row])) return false;
+    if (neighbour < 0 || section_[row] != section_[neighbour]) return true;
+    for (int b = 0; b < plan_.view().blocks; ++b)
+      if (side_[b * base_.rows + row] != side_[b * base_.rows + neighbour]) return false;
+    return true;
   }
 
   // The plan with the variant's constants and size, and its first assembly in `state_`.
@@ -142,8 +166,24 @@ class Worker {
   // Guesses of all rows, both ways from the start's.
   bool follow_all(const double* inputs, const double* whole) {
     const long rows = base_.rows, start = base_.start_row;
-    if (start && !follow_way(inputs, whole, start, -1, start + 1)) return false;
-    return follow_way(inputs, whole, start, 1, rows - start);
+    const bool back = !start || follow_way(inputs, whole, start, -1, start + 1);
+    if (!back && !reach_) return false;
+    return follow_way(inputs, whole, start, 1, rows - start) && back;
+  }
+
+  // Whether a way came to its end; if not, where it stopped.
+  bool has_ended(const Followed& found, long step) {
+    if (found.end == TrackEnd::finished) return true;
+    if (reach_) {
+      const bool known = found.limit.kind == PassageEnd::dead_centre || found.limit.kind == PassageEnd::branch_point;
+      reach_->stops[step > 0] = {known ? found.limit.kind : PassageEnd::lost,
+                                 known ? found.limit.at.inputs : found.inputs};
+    }
+    return false;
+  }
+
+  void note_reached(long row) {
+    if (reach_) reach_->first = std::min(reach_->first, row), reach_->last = std::max(reach_->last, row + 1);
   }
 
   bool follow_way(const double* inputs, const double* whole, long first, long direction, long count) {
@@ -158,15 +198,18 @@ class Worker {
       }
     const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
     const Followed found = follow_rows(p, narrow_, way_inputs_.data(), way_whole_.data(), state_.data(), {}, false, base_.following, guesses);
-    if (found.end != TrackEnd::finished) return false;
+    const bool ended = has_ended(found, direction);
+    const long known = ended ? count : found.reached;
+    if (!ended && !reach_) return false;
+    for (long k = 0; k < known; ++k) note_reached(first + direction * k);
     const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
       for (long c = 0; c < columns; ++c)
-        for (long k = 0; k < count; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
+        for (long k = 0; k < known; ++k) (*to)[c * rows + first + direction * k] = from[c * count + k];
     };
     put(way_, p.states, &guess_), put(way_limit_, 1, &limit_);
-    for (long k = 0; k < count; ++k) section_[first + direction * k] = direction * sections_before(found, k);
+    for (long k = 0; k < known; ++k) section_[first + direction * k] = direction * sections_before(found, k);
     put(way_turn_, turn_slots_, &turn_);
-    return true;
+    return ended;
   }
 
   // Branch points that a way passed before a row of it.
@@ -182,16 +225,20 @@ class Worker {
     const RowGuesses guesses = {count, way_.data(), way_limit_.data(), way_turn_.data()};
     const Followed found = follow_rows(p, narrow_, way.values.data(), nullptr, state_.data(), {}, false,
                                        base_.following, guesses, way.course.get());
-    if (found.end != TrackEnd::finished) return false;
+    const bool ended = has_ended(found, way.step);
+    const long known = ended ? count : found.reached;
+    if (!ended && !reach_) return false;
+    for (long k = 0; k < known; ++k)
+      if (way.rows[k] >= 0) note_reached(way.rows[k]);
     const auto put = [&](const std::vector<double>& from, long columns, std::vector<double>* to) {
       for (long c = 0; c < columns; ++c)
-        for (long k = 0; k < count; ++k)
+        for (long k = 0; k < known; ++k)
           if (way.rows[k] >= 0) (*to)[c * rows + way.rows[k]] = from[c * count + k];
     };
     put(way_, p.states, &guess_), put(way_limit_, 1, &limit_), put(way_turn_, turn_slots_, &turn_);
-    for (long k = 0; k < count; ++k)
+    for (long k = 0; k < known; ++k)
       if (way.rows[k] >= 0) section_[way.rows[k]] = way.step * sections_before(found, k);
-    return true;
+    return ended;
   }
 
   // Whether an input that moves with the parameters turns farther than half a turn: its whole turns are taken off in the
@@ -207,29 +254,30 @@ class Worker {
     return false;
   }
 
-  // Turns count from the first row, whose angles lie in (-pi, pi].
-  void count_from_first() {
+  // Turns of rows [from, to) count from the first of them, whose angles lie in (-pi, pi].
+  void count_from(long from, long to) {
+    if (from == to) return;
     const long rows = base_.rows;
     for (const TreeTurn& t : tree_turns(plan_.view(), narrow_)) {
       double* const turn = &turn_[t.slot * rows];
-      const double first = turn[0] - (guess_[t.state * rows] <= base_.half_turn_side - 0.5 * FULL_TURN ? 1.0 : 0.0);
-      for (long r = 0; r < rows; ++r) turn[r] -= first;
+      const double first = turn[from] - (guess_[t.state * rows + from] <= base_.half_turn_side - 0.5 * FULL_TURN ? 1.0 : 0.0);
+      for (long r = from; r < to; ++r) turn[r] -= first;
     }
     for (const ClosingTurn& t : closing_turns(plan_.view(), narrow_)) {
       if (t.freedom < 0) continue;
       double* const turn = &turn_[t.slot * rows];
-      const double first = std::ceil((turn[0] - 0.5 * FULL_TURN - base_.half_turn_side) / FULL_TURN);
-      for (long r = 0; r < rows; ++r) turn[r] -= first * FULL_TURN;
+      const double first = std::ceil((turn[from] - 0.5 * FULL_TURN - base_.half_turn_side) / FULL_TURN);
+      for (long r = from; r < to; ++r) turn[r] -= first * FULL_TURN;
     }
   }
 
-  // Angles with their whole turns.
-  void add_turns(double* outputs, const double* whole) const {
+  // Angles of rows [from, to) with their whole turns.
+  void add_turns(double* outputs, const double* whole, long from, long to) const {
     const long rows = base_.rows;
     for (const ClosingAngle& a : base_.angles) {
       double* const value = outputs + a.slot * rows;
       const double* const known = a.turn >= 0 ? &turn_[a.turn * rows] : whole + (-2 - a.turn) * rows;
-      for (long r = 0; r < rows; ++r)
+      for (long r = from; r < to; ++r)
         value[r] = a.closing ? value[r] - std::rint((value[r] - known[r]) / FULL_TURN) * FULL_TURN
                              : value[r] + known[r] * FULL_TURN;
     }
@@ -246,8 +294,9 @@ class Worker {
   DimensionPath path_;
   std::vector<char> memory_, replay_memory_;
   SizeMemory size_memory_;
-  std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_;
+  std::vector<double> guess_, way_, limit_, way_limit_, correction_, side_, power_;
   std::vector<unsigned char> flags_;
+  VariantReach* reach_ = nullptr;  // of the variant at hand, where it is asked for
   std::vector<long> section_;  // of each row: branch points passed before it
   std::vector<double> way_inputs_, way_whole_, nothing_, turn_, way_turn_, state_;
   std::vector<double> parameters_, by_tape_, replayed_;
@@ -279,7 +328,6 @@ Refusal Variants::prepare() const {
   REQUIRE(!(base_.demand & DEMAND_FORCES) || !(program_demand(p.law) & ~base_.demand), "loads that vary need more than is demanded");
   REQUIRE(!(base_.demand & DEMAND_FORCES) || p.input_constraints == 0, "rates of led inputs by row have no place here");
   REQUIRE(base_.time.empty() || (long)base_.time.size() == base_.rows, "time: one for each row");
-  REQUIRE(!(base_.demand & DEMAND_POWER), "no place for the power error");
   const unsigned demand = base_.demand;
   REQUIRE(!(demand & ~(unsigned)DEMAND_EVERYTHING), "demand: unknown");
   REQUIRE(!(demand & DEMAND_ACCELERATION) || demand & DEMAND_VELOCITY, "accelerations need velocities");

@@ -63,12 +63,27 @@ struct VariantStart {
   std::vector<double> state;
 };
 
-// Arrays over variants, one after the other; nan for those that are not complete.
+// Where the rows of an incomplete variant end on one side of the first assembly: a dead centre or a branch point, or
+// `lost` where nothing is known; `through` where they come to their last row.
+struct VariantStop {
+  PassageEnd kind = PassageEnd::through;
+  std::vector<double> inputs;  // there, or where the branch was seen last; angles without whole turns
+};
+
+// How far an incomplete variant comes: rows [first, last) about the start's, and where it stops before and behind them.
+struct VariantReach {
+  long first, last;
+  VariantStop stops[2];
+};
+
+// Arrays over variants, one after the other; nan for those that are not complete, but for the rows of `reach`.
 struct VariantArrays {
   double* outputs;    // slots x rows each
   double* residual;   // rows each
   double* condition;  // rows each
   int* end;
+  double* power_error = nullptr;  // rows each, with DEMAND_POWER, or null
+  VariantReach* reach = nullptr;  // null: incomplete variants need no rows
 };
 
 class Variants {
@@ -83,6 +98,7 @@ class Variants {
   VariantStart start(const double* parameters) const;
 
   long rows() const { return base_.rows; }
+  unsigned demand() const { return base_.demand; }
   int slots() const { return outputs_.view().slots; }
   int parameters() const { return tape_.view().inputs; }
   const FrozenPlan& plan() const { return plan_; }

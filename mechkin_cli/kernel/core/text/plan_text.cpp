@@ -1,13 +1,15 @@
 #include "text/plan_text.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <memory>
 #include <tuple>
 #include <type_traits>
 
 namespace {
 
-constexpr std::string_view FIRST_LINE = "mechkin plan 1";
+constexpr std::string_view FIRST_LINE = "mechkin plan 1", FIRST_LINE_OF_TAPE = "mechkin tape 1";
 constexpr std::size_t BITS = 17;  // characters of a real number
 
 // The words of one line, read off one after the other; what is not there, or no such thing, is a fault that stays.
@@ -112,6 +114,13 @@ struct Values {
   }
 };
 
+// All values of a line.
+template <class... T>
+Refusal read_all(Words& words, std::tuple<T...>* values) {
+  std::apply([&](T&... item) { (read(words, &item), ...); }, *values);
+  return words.end();
+}
+
 const Refusal& refusal_of(const Refusal& refusal) { return refusal; }
 template <class T>
 const Refusal& refusal_of(const Result<T>& result) {
@@ -160,6 +169,41 @@ constexpr Verb VERBS[] = {
     {"add_size_point", said<&PlanBuilder::add_size_point>},
 };
 
+using Numbers = std::vector<double>;
+using Bytes = std::vector<std::uint8_t>;
+using Registers = std::vector<int>;
+using TapeRows = std::vector<std::array<int, 3>>;
+// The arguments of TapeStore::make.
+using TapeValues = std::tuple<int, Numbers, Bytes, TapeRows, Registers, TapeRows, Bytes, Bytes>;
+
+Result<TapeStore> tape_of(TapeValues& values) {
+  auto& [inputs, constants, operations, operands, outputs, guards, expected, advice] = values;
+  const auto flat = [](const TapeRows& rows) {
+    Registers all;
+    for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
+    return all;
+  };
+  return TapeStore::make(inputs, constants, operations, flat(operands), outputs, flat(guards), expected, advice);
+}
+
+// The limits of a step in the order of their struct; counts and truths are numbers, too.
+constexpr std::size_t STEP_LIMITS = 26;
+
+Refusal read_limits(const Numbers& from, StepLimits* to) {
+  REQUIRE(from.size() == STEP_LIMITS, "there are 26 limits of steps");
+  for (const double number : from) REQUIRE(number >= -1.0 && number <= 1e15, "a limit of steps is a number from -1 on");
+  const double* at = from.data();
+  for (double* one : {&to->turn_cosine, &to->turn, &to->bend, &to->jump, &to->infill, &to->longest_step, &to->least_step})
+    *one = *at++;
+  to->most_steps = (int)std::fmin(*at++, 1e6);
+  for (double* one : {&to->tight, &to->coarse, &to->accept, &to->pivot, &to->arc_pivot, &to->radius, &to->narrow}) *one = *at++;
+  to->arc_steps = (int)std::fmin(*at++, 1e6), to->straight = *at++ != 0.0, to->iterations = (int)std::fmin(*at++, 1e4);
+  for (double* one : {&to->same_line, &to->knot, &to->corner_cosine, &to->stray, &to->angle_step, &to->angle_miss,
+                      &to->angle_bend, &to->plan_step})
+    *one = *at++;
+  return {};
+}
+
 // Takes one line after the other; the parts come in their order.
 class Reading {
  public:
@@ -170,6 +214,9 @@ class Reading {
     if (name == "plan") return begin(words);
     if (name == "output") return add_output(words);
     if (name == "tape") return set_tape(words);
+    if (name == "variants") return set_variants(words);
+    if (name == "way") return add_way(words);
+    if (name == "course") return set_course(words);
     for (const Verb& verb : VERBS)
       if (verb.name == name) {
         REQUIRE(builder_ && outputs_.empty() && !tape_, "records of a plan stand behind `plan` and before all else");
@@ -184,7 +231,7 @@ class Reading {
     CHECK(plan.refusal());
     Result<OutputList> outputs = OutputList::make(*plan, outputs_);
     CHECK(outputs.refusal());
-    return PlanText{std::move(*plan), std::move(*outputs), std::move(tape_)};
+    return PlanText{std::move(*plan), std::move(*outputs), std::move(tape_), std::move(variants_), std::move(course_tapes_)};
   }
 
  private:
@@ -208,42 +255,103 @@ class Reading {
   }
   Refusal set_tape(Words& words) {
     REQUIRE(!tape_, "there is one tape");
-    using Bytes = std::vector<std::uint8_t>;
-    using Registers = std::vector<int>;
-    using Rows = std::vector<std::array<int, 3>>;
-    Values<int, std::vector<double>, Bytes, Rows, Registers, Rows, Bytes, Bytes> values;
-    CHECK(values.read_from(words));
-    auto& [inputs, constants, operations, operands, outputs, guards, expected, advice] = values.value;
-    const auto flat = [](const Rows& rows) {
-      Registers all;
-      for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
-      return all;
-    };
-    Result<TapeStore> tape = TapeStore::make(inputs, constants, operations, flat(operands), outputs, flat(guards),
-                                             expected, advice);
+    TapeValues values;
+    CHECK(read_all(words, &values));
+    Result<TapeStore> tape = tape_of(values);
     CHECK(tape.refusal());
     tape_.emplace(std::move(*tape));
+    return {};
+  }
+
+  Refusal set_variants(Words& words) {
+    REQUIRE(tape_ && !variants_, "variants stand once, behind the tape");
+    using Angles = std::vector<std::tuple<int, int, bool>>;
+    std::tuple<Numbers, Numbers, Numbers, Numbers, Numbers, Numbers, Numbers, Numbers, Numbers> arrays;
+    std::tuple<double, int, int, int, int, Numbers, Numbers, Angles, double> others;
+    auto all = std::tuple_cat(std::move(arrays), std::move(others));
+    CHECK(read_all(words, &all));
+    VariantBase base = {};
+    Numbers continuation, following;
+    Angles angles;
+    int rows, start, demand;
+    std::tie(base.parameters, base.inputs, base.rates, base.accelerations, base.jerks, base.whole, base.full, base.time,
+             base.state, base.size, rows, start, demand, base.iterations, continuation, following, angles,
+             base.half_turn_side) = std::move(all);
+    base.rows = rows, base.start_row = start, base.demand = (unsigned)demand;
+    CHECK(read_limits(continuation, &base.continuation));
+    CHECK(read_limits(following, &base.following));
+    for (const auto& [slot, turn, closing] : angles) base.angles.push_back({slot, turn, closing});
+    variants_.emplace(std::move(base));
+    return {};
+  }
+  Refusal add_way(Words& words) {
+    REQUIRE(variants_, "ways stand behind `variants`");
+    std::tuple<int, std::vector<int>, Numbers> values;
+    CHECK(read_all(words, &values));
+    auto& [step, rows, inputs] = values;
+    variants_->ways.push_back({step, {rows.begin(), rows.end()}, std::move(inputs), nullptr});
+    return {};
+  }
+  Refusal set_course(Words& words) {
+    REQUIRE(variants_ && !variants_->ways.empty() && !variants_->ways.back().course, "a course stands behind its way");
+    using Pieces = std::vector<std::tuple<int, int, double, double, double, double>>;
+    std::tuple<TapeValues, Pieces, Numbers, Numbers, Numbers, Numbers> values;
+    CHECK(read_all(words, &values));
+    auto& [tape, pieces, constants, ways, units, parameter] = values;
+    Result<TapeStore> store = tape_of(tape);
+    CHECK(store.refusal());
+    std::vector<CoursePiece> list;
+    for (const auto& [first, last, begin, end, scale, power] : pieces) list.push_back({first, last, begin, end, scale, power});
+    course_tapes_.push_back(std::move(*store));
+    Result<Course> course = make<Course>(course_tapes_.back(), list, constants, ways, units, parameter);
+    CHECK(course.refusal());
+    variants_->ways.back().course = std::make_shared<const Course>(std::move(*course));
     return {};
   }
 
   std::optional<PlanBuilder> builder_;
   std::vector<OutputRecord> outputs_;
   std::optional<TapeStore> tape_;
+  std::optional<VariantBase> variants_;
+  std::deque<TapeStore> course_tapes_;
 };
 
-}  // namespace
-
-Result<PlanText> read_plan(std::string_view text) {
-  Reading reading;
+// Calls take(line) for every line behind the first, which must be the one of its kind of text.
+template <class Take>
+Refusal each_line(std::string_view text, std::string_view first, const Take& take) {
   for (long number = 1; !text.empty(); ++number) {
     const std::size_t size = text.find('\n');
     const std::string_view line = text.substr(0, size);
     text.remove_prefix(size == std::string_view::npos ? text.size() : size + 1);
     if (number == 1) {
-      REQUIRE(line == FIRST_LINE, "the text does not begin with '" + std::string(FIRST_LINE) + "'");
-    } else if (const Refusal refused = reading.take(line)) {
+      REQUIRE(line == first, "the text does not begin with '" + std::string(first) + "'");
+    } else if (const Refusal refused = take(line)) {
       return Refusal("line " + std::to_string(number) + ": " + *refused);
     }
   }
+  return {};
+}
+
+}  // namespace
+
+Result<PlanText> read_plan(std::string_view text) {
+  Reading reading;
+  CHECK(each_line(text, FIRST_LINE, [&](std::string_view line) { return reading.take(line); }));
   return reading.end();
+}
+
+Result<TapeStore> read_tape(std::string_view text) {
+  std::optional<TapeStore> found;
+  CHECK(each_line(text, FIRST_LINE_OF_TAPE, [&](std::string_view line) -> Refusal {
+    Words words(line);
+    REQUIRE(words.next() == "tape" && !found, "there is one tape and nothing else");
+    TapeValues values;
+    CHECK(read_all(words, &values));
+    Result<TapeStore> tape = tape_of(values);
+    CHECK(tape.refusal());
+    found.emplace(std::move(*tape));
+    return {};
+  }));
+  REQUIRE(found, "there is no tape");
+  return std::move(*found);
 }

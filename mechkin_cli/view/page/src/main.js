@@ -5,13 +5,15 @@ import { givenData, keepPlace, tellLive, tellShown } from "./held.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
-import { SaveMenu, connect, liveRun, showLive } from "./live/start.js";
+import { ParentWindow } from "./live/messages.js";
+import { SaveMenu, liveRun, showLive } from "./live/start.js";
 import { showHelp, showNotes } from "./panels/notes.js";
 import { Tables } from "./panels/tables.js";
 import { Tabs } from "./panels/tabs.js";
 import { Tools } from "./panels/tools.js";
 import { preparePaper } from "./paper.js";
 import { Player } from "./player.js";
+import { csvOf } from "./export/csv.js";
 import { saves } from "./export/save.js";
 import { Drag } from "./scene/drag.js";
 import { NoWebGL } from "./scene/stage.js";
@@ -46,23 +48,24 @@ async function start() {
   if (shown) keepPlace(place, shown);
   tellShown();
   if (!shown) return;
-  const dimensions = await enliven(shown);
-  tellLive(dimensions ? dimensions.parameters.map(({ name }) => name) : []);
+  await enliven(shown);
+  tellLive((window.mechkin.dimensions?.parameters ?? []).map(({ name }) => name));
 }
 
 /** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
 async function enliven(shown) {
-  let dimensions = null;
-  const bring = (run) => (dimensions = showLive(run, shown));
+  const parent = new ParentWindow(shown.state);
+  const bring = (run) => {
+    window.mechkin.dimensions = showLive(run, shown);
+    parent.follow(window.mechkin.dimensions);
+  };
+  window.mechkin.bring = bring;
   try {
     const run = await liveRun(shown.data);
     if (run) bring(run);
   } catch (error) {
     console.warn(`dimensions cannot be changed here: ${error.message}`);
   }
-  connect(shown.state, dimensions);
-  Object.assign(window.mechkin, { dimensions, bring: (run) => (window.mechkin.dimensions = bring(run)) });
-  return dimensions;
 }
 
 function showRuns(data, theme, tabs) {
@@ -139,6 +142,7 @@ function hooks({ data, state, player, curves, theatre }) {
     setBranch: (name) => state.setBranch(name),
     play: () => player.play(),
     pause: () => player.pause(),
+    csv: (number) => csvOf(state.tables[number], state.branches()[0]),
   };
 }
 

@@ -1,0 +1,191 @@
+"""What hangs on parameters in a page's picture: poses, arrows, and places as drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from mechkin_cli.derived import displacement
+from mechkin_cli.expressions import Vector
+from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, is_angle, reference_point, scale
+from mechkin_cli.tables import effort_names
+from mechkin_cli.tape import Recorded
+from mechkin_cli.units import FORCE, LENGTH, MOMENT
+from mechkin_cli.view import drawn_joints, half_axis, half_frame
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import Joint, Mechanism
+
+    Plain = dict[str, Any]
+
+Later = Callable[[], list["Plain"]]
+"""Makes records once it is known where the kernel's run writes what they need."""
+
+
+def pose_records(recording: Any, data: Mapping[str, Any]) -> Later:
+    """The poses of links: where the run writes a link's place and the ground axes as drawn on it,
+    and the place as drawn, numbers of the recording."""
+    mechanism: Mechanism = recording.problem.mechanism
+    drawn: Mechanism = recording.recorded.mechanism
+    links = [one["name"] for one in data["links"]]
+    moving = [name for name in links if name != GROUND_NAME and name in mechanism.links]
+    for name in moving:
+        recording.wanted |= {quantity.name: quantity for quantity in displacement(name)}
+
+    def records() -> list[Plain]:
+        slots = recording.reading.slots
+        found = []
+        for name in moving:
+            axes = [slots[quantity.name].start for quantity in displacement(name)]
+            place = reference_point(drawn, name).vector
+            found.append(
+                {
+                    "link": links.index(name),
+                    "axes": axes[:3],
+                    "place": axes[3],
+                    "drawn": [recording.number(number) for number in place],
+                }
+            )
+        return found
+
+    return records
+
+
+def arrows_of(recording: Any, data: Mapping[str, Any]) -> Later:
+    """The arrows among those of the data that follow from quantities: what joints and drives exert."""
+    problem = recording.problem
+    names = {arrow["name"]: at for at, arrow in enumerate(data["runs"][0]["branches"][0]["arrows"])}
+    known: list[tuple[int, str, str, Any]] = []
+    joints: Mapping[str, Joint] = recording.recorded.mechanism.joints
+    for name, at in names.items():
+        joint, _, word = name.rpartition(".")
+        if word in ("force", "moment") and joint in joints and _takes(recording, [name]):
+            known.append((at, name, "", joints[joint].point))
+    driven = [f"{joint}.{coordinate}" for joint, coordinate in problem.acting]
+    for name, effort in zip(driven, effort_names(driven), strict=True):
+        own = joints[name.rpartition(".")[0]]
+        axis = f"{own.name}.axis"
+        if effort in names and axis in recording.known and _takes(recording, [effort, axis]):
+            known.append((names[effort], effort, axis, own.point))
+
+    def records() -> list[Plain]:
+        return [
+            {"arrow": at, "cells": _cells(recording, name, axis), "place": _place(recording, place)}
+            for at, name, axis, place in sorted(known)
+        ]
+
+    return records
+
+
+def _takes(recording: Any, names: list[str]) -> bool:
+    try:
+        recording.need(names)
+    except Exception as refused:
+        if type(refused).__name__ != "LeftOut":
+            raise
+        return False
+    return True
+
+
+def _place(recording: Any, place: Any) -> list[int | None]:
+    return [recording.number(x) if isinstance(x, Recorded) else None for x in place.vector]
+
+
+def _cells(recording: Any, name: str, axis: str) -> list[int]:
+    """The three components of a vector in the file's units, or of a number along an axis."""
+    units = recording.problem.units
+    quantity = recording.resolve(name)
+    along = _in_space(recording, axis) if axis else _in_space(recording, name)
+    if axis:
+        size = units.from_si(quantity.value, quantity.dimension)
+        values = [size * part for part in along]
+    else:
+        values = [units.from_si(part, quantity.dimension) for part in along]
+    return [recording.cell(value) for value in values]
+
+
+def _in_space(recording: Any, name: str) -> list[Any]:
+    value = recording.resolve(name).value
+    parts = value.components if isinstance(value, Vector) else (value,)
+    found: list[Any] = [0.0, 0.0, 0.0]
+    for place, part in zip(recording.known[name].places, parts, strict=True):
+        found[place] = part
+    return found
+
+
+def drawing_of(recording: Any, data: Mapping[str, Any]) -> Plain:
+    """Numbers of the page's data that hang on parameters: their paths in the data, their places
+    among the recording's numbers, and what these are divided by."""
+    units = recording.problem.units
+    places = []
+    for path, value, is_length in _drawn(recording, data):
+        if isinstance(value, Recorded):
+            number = units.from_si(value, LENGTH) if is_length else value
+            places.append([path, recording.number(number), 1])
+    return {"first": 0, "places": places}
+
+
+def _drawn(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any], Any, bool]]:
+    drawn: Mechanism = recording.recorded.mechanism
+    own: Mechanism = recording.problem.mechanism
+    for at, joint in enumerate(drawn_joints(drawn)):
+        for side in (FIRST, SECOND):
+            frame, axis = half_frame(joint, side), half_axis(joint, side)
+            base = half_frame(own.joints[joint.name], side)
+            base_axis = half_axis(own.joints[joint.name], side)
+            across = frame.z if base_axis == base.x else frame.x
+            path = ["joints", at, "halves", side]
+            yield from _vector([*path, "point"], frame.o, True)
+            yield from _vector([*path, "axis"], axis, False)
+            yield from _vector([*path, "x"], across, False)
+            if data["joints"][at]["halves"][side].get("axis2"):
+                yield from _vector([*path, "axis2"], scale(-1.0, frame.y), False)
+    for at, (_, point) in enumerate(drawn.points.items()):
+        yield from _vector(["points", at, "place"], point.vector, True)
+    yield from _links(recording, data, own, drawn)
+
+
+def _vector(path: list[Any], vector: Any, is_length: bool) -> Iterator[tuple[list[Any], Any, bool]]:
+    for k, number in enumerate(vector):
+        yield [*path, k], number, is_length
+
+
+def _links(
+    recording: Any, data: Mapping[str, Any], own: Mechanism, drawn: Mechanism
+) -> Iterator[tuple[list[Any], Any, bool]]:
+    """The points through which links are drawn: each is a joint's or a named point."""
+    units = recording.problem.units
+    shown = recording.analysis.model.view_settings.shapes
+    for at, link in enumerate(data["links"]):
+        if link["name"] in shown and shown[link["name"]].points is not None:
+            continue
+        own_points = _points(own, link["name"])
+        drawn_points = _points(drawn, link["name"])
+        chosen = []
+        for place in link["shape"]["points"]:
+            near = (
+                now
+                for was, now in zip(own_points, drawn_points, strict=True)
+                if all(
+                    abs(float(units.from_si(a, LENGTH)) - b) <= 1e-12 * (1.0 + abs(b))
+                    for a, b in zip(was, place, strict=True)
+                )
+            )
+            chosen.append(next(near, None))
+        for k, vector in enumerate(chosen):
+            if vector is not None:
+                yield from _vector(["links", at, "shape", "points", k], vector, True)
+        if link["shape"].get("centre") is not None and chosen and None not in chosen:
+            count = float(len(chosen))
+            for k in range(3):
+                total = sum((v[k] for v in chosen[1:]), start=chosen[0][k])
+                yield ["links", at, "shape", "centre", k], total / count, True
+
+
+def _points(mechanism: Mechanism, link: str) -> list[Any]:
+    found = [at.vector for _, at in mechanism.joint_points() if at.link == link]
+    found += [at.vector for at in mechanism.points.values() if at.link == link]
+    body = mechanism.links.get(link)
+    if body is not None:
+        found.append(body.center_of_mass)
+    return found
