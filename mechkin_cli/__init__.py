@@ -21,7 +21,7 @@ Of a model
     m.tolerances({"P1": 0.01}, [...])  what tolerances add up to, with samples
     m.fit({"of": "pen.position", "is": points}, {"a": (30, 50)})   dimensions that fit
     m.certify()                        proofs of the sweep's rows
-    m.view()                           a page that shows it in motion
+    m.view()                           a page that shows it in motion; m.widget(): in a notebook
 
 Of an analysis
     r["O4.theta"]  r["norm(O3.force)"] any quantity or expression over the rows, in the file's units

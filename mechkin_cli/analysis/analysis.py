@@ -503,10 +503,19 @@ class Analysis(Listed):
         number = known[name]
         return plots.table_picture(self, self.layouts[number], self.tables[number], x)
 
-    def view(self, path: str | PathLike[str], *, modes: bool = True) -> Path:
-        """Writes a page that shows this run in motion, with curves, tables and notes; arguments,
+    @overload
+    def view(self, path: None = None, *, modes: bool = True) -> view.Page: ...
+
+    @overload
+    def view(self, path: str | PathLike[str], *, modes: bool = True) -> Path: ...
+
+    def view(
+        self, path: str | PathLike[str] | None = None, *, modes: bool = True
+    ) -> view.Page | Path:
+        """Makes a page that shows this run in motion, with curves, tables and notes; arguments,
         result and errors as those of `Model.view`."""
-        return view.write_view(path, view.view_page([self], modes)[0])
+        page = view.view_page([self], modes)[0]
+        return view.Page(page) if path is None else view.write_view(path, page)
 
     @property
     def listing(self) -> Listing:

@@ -8,7 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli.diagnostics import UsageError, nearest
-from mechkin_cli.expressions import ExpressionError, NumberNode, parse_nodes
+from mechkin_cli.expressions import ExpressionError, NumberNode, evaluate_parameters, parse_nodes
 from mechkin_cli.reading import KeyPath, edited, value_spans
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import UnitSystem, conversion
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from mechkin_cli.building.builder import Built
 
 _UNIT_BEHIND = re.compile(r"[ \t]*[-+]?[ \t]*(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+
+_ROUNDING = 1e-14
+"""By this part, an expression that follows others may be off the value that it is to have."""
 
 _MOST_DIGITS = 15
 """Digits of a value in another unit than the file's: more would write down its rounding."""
@@ -28,7 +31,8 @@ class Edited(NamedTuple):
     Attributes:
         text: of the file.
         written: what parameters say now, by name.
-        expressions: what those say that were left alone, since they are written with others.
+        expressions: what those say that were left alone, since they are written with others and do
+            not have their values by following these.
     """
 
     text: str
@@ -74,6 +78,11 @@ def edit_parameters(
             expressions[name] = known[name]
         else:
             written[name] = new
+    found = evaluate_parameters(known | written, units)
+    for name in list(expressions):
+        follows = units.from_si(float(found[name].value), found[name].dimension)  # type: ignore[arg-type]
+        if abs(follows - values[name]) <= _ROUNDING * abs(values[name]):
+            del expressions[name]
     places: dict[KeyPath, str] = {(*_SECTION, name): new for name, new in written.items()}
     return Edited(edited(text, places), written, expressions)
 

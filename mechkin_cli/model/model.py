@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from mechkin_cli import cams, fit, live, mobility, modes, sensitivities, studies, variants, view
 from mechkin_cli.analysis import (
@@ -350,6 +350,17 @@ class Model(Listed):
         run = self.analyze(mode=mode, closed_at=closed_at, lanes=lanes, threads=threads)
         return run.certificate
 
+    @overload
+    def view(
+        self,
+        path: None = None,
+        *,
+        run: str | None = None,
+        mode: str | None = None,
+        modes: bool = True,
+    ) -> view.Page: ...
+
+    @overload
     def view(
         self,
         path: str | PathLike[str],
@@ -357,19 +368,28 @@ class Model(Listed):
         run: str | None = None,
         mode: str | None = None,
         modes: bool = True,
-    ) -> Path:
-        """Writes a page that shows the mechanism in motion, with curves, tables and notes: one file
-        of HTML that needs nothing else.
+    ) -> Path: ...
+
+    def view(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        run: str | None = None,
+        mode: str | None = None,
+        modes: bool = True,
+    ) -> view.Page | Path:
+        """Makes a page that shows the mechanism in motion, with curves, tables and notes: one file
+        of HTML that needs nothing else. A notebook shows it in its cell.
 
         Args:
-            path: of the page.
+            path: of the page; None: it is not written.
             run: `sweep` or a response alone; None: all runs of the file.
             mode: assembly mode at the first row instead of the file's choice: its letter, or
                 home for the one drawn.
             modes: show the other assembly modes, too.
 
         Returns:
-            The path of the page, which is written whole or not at all.
+            The path of the page, which is written whole or not at all; without one the page.
 
         Raises:
             InvalidFile: the mechanism cannot be solved as it is driven.
@@ -383,7 +403,20 @@ class Model(Listed):
             'rcsr.html'
         """
         page, _ = view.view_page(self.analyses(run, mode), modes)
-        return view.write_view(path, page)
+        return view.Page(page) if path is None else view.write_view(path, page)
+
+    def widget(self, *, run: str | None = None, mode: str | None = None, modes: bool = True) -> Any:
+        """The page as a widget of a notebook (anywidget: Jupyter, marimo), which Python hears and
+        moves: `w.parameters` (a dict of values in the file's units) and `w.row` follow the page,
+        and the page follows them; `w.model` is the model with these parameters.
+
+        Args: as those of `view`.
+
+        Raises:
+            UsageError: anywidget is not installed (extra `notebook`), an unknown run or mode.
+            InvalidFile: the mechanism cannot be solved as it is driven.
+        """
+        return view.widget_of(self, run, mode, modes)
 
     def live_record(self, analysis: Any, data: Mapping[str, Any]) -> dict[str, Any] | None:
         """What a page of a run computes it from with other parameters, beside the `data` that it

@@ -337,7 +337,8 @@ class _Look(NamedTuple):
             found = os.stat(path)
         except (OSError, ValueError):
             return _MISSING
-        state = (found.st_mtime_ns, found.st_size, found.st_ino, found.st_mode)
+        times = found.st_mtime_ns, found.st_ctime_ns
+        state = (*times, found.st_size, found.st_ino, found.st_mode)
         if state == self.state and not self.is_fresh:
             return self
         is_fresh = abs(time_ns() - found.st_mtime_ns) < GRAIN

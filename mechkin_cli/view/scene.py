@@ -424,8 +424,8 @@ def view_data(
     analyses: Sequence[ShownAnalysis], modes: bool = True
 ) -> tuple[bytes, list[Diagnostic]]:
     """What the page of runs of one model shows, as JSON, and the notes as of `view_page`."""
-    scene, notes = view_scene(analyses, modes)
-    return script_json(scene.record()).encode("ascii"), notes
+    data, notes = page_data(analyses, modes)
+    return script_json(data).encode("ascii"), notes
 
 
 def view_scene(

@@ -35,7 +35,10 @@ MOST_ASKED = 1 << 16
 """Bytes of a request that writes: some hundred parameters."""
 
 LIVE = Path(__file__).with_name("live")
-FRAME_POLICY = "sandbox allow-scripts allow-downloads allow-modals; frame-ancestors 'self'"
+FRAME_RIGHTS = "allow-scripts allow-downloads allow-modals"
+"""Of a page in a frame: it has no origin, so that it reaches nothing of the page around it."""
+
+FRAME_POLICY = f"sandbox {FRAME_RIGHTS}; frame-ancestors 'self'"
 
 _HEADERS = {
     "Cache-Control": "no-store",
@@ -140,18 +143,20 @@ class _Answer(BaseHTTPRequestHandler):
     def _steps(self) -> list[str] | None:
         """The steps of the address behind the token; None, refused, where the request has none or
         does not come from a page of this server or from the address line."""
+        own = f"http://{self.server.place}"
+        _, token, *steps = self.path.partition("?")[0].split("/")
         if self.headers.get("Host") != self.server.place:
-            return self._refuse(421, "this server answers at its own address alone")
-        origin = self.headers.get("Origin")
-        if origin is not None and origin != f"http://{self.server.place}":
-            return self._refuse(403, "another page may not ask")
-        if self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin"):
-            return self._refuse(403, "another page may not ask")
-        path = self.path.partition("?")[0]
-        _, token, *steps = path.split("/")
-        if not steps or not compare_digest(token.encode(), self.server.token.encode()):
-            return self._refuse(403, "the address is not whole: mechkin prints it when it starts")
-        return steps
+            self._refuse(421, "this server answers at its own address alone")
+        elif self.headers.get("Origin", own) != own or self._is_sent_by_another():
+            self._refuse(403, "another page may not ask")
+        elif not steps or not compare_digest(token.encode(), self.server.token.encode()):
+            self._refuse(403, "the address is not whole: mechkin prints it when it starts")
+        else:
+            return steps
+        return None
+
+    def _is_sent_by_another(self) -> bool:
+        return self.headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
 
     def _body(self) -> bytes:
         length = self.headers.get("Content-Length", "")

@@ -71,6 +71,8 @@ ORDER = [
 """The rooms; each knows those before it."""
 
 HOMES = {
+    "anywidget": {"view"},
+    "traitlets": {"view"},
     "yaml": {"reading"},
     "pydantic": {"schema"},
     "pydantic_core": {"schema"},

@@ -71,13 +71,18 @@ def test_expressions_are_replaced_when_they_are_named() -> None:
     assert dict(mk.loads(second.text).parameters) == values
 
 
+def test_an_expression_that_follows_has_its_value() -> None:
+    found = edit_parameters(FILE, mk.loads(FILE).built, {"r": 44.2, "e": 22.1})
+    assert (found.written, found.expressions) == ({"r": "44.2 mm"}, {})
+
+
 def test_values_that_are_there_already_change_nothing() -> None:
     m = mk.loads(FILE)
     found = edit_parameters(FILE, m.built, dict(m.parameters), replace=["e"])
     assert (found.text, found.written, found.expressions) == (FILE, {}, {})
 
 
-@pytest.mark.parametrize("name", ["rcsr", "planar_four_bar", "sevenr", "stewart"])
+@pytest.mark.parametrize("name", ["rcsr", "planar_four_bar"])
 def test_a_kept_file_reads_as_what_was_set(name: str) -> None:
     path = Path(FILE_OF[name])
     text = path.read_bytes().decode("utf-8")

@@ -54,6 +54,14 @@ class Browser:
         """Opens a page; `width`, `height`, `dark`, `touch`."""
         self._ask("open", url=path.resolve().as_uri(), **options)
 
+    def visit(self, address: str, **options: Any) -> None:
+        """Opens an address; options as those of `open`."""
+        self._ask("open", url=address, waits=False, **options)
+
+    def inside(self, script: str) -> Any:
+        """Evaluates in the frame that is seen, of those that the page holds; None: in none."""
+        return self._ask("inside", script=script)
+
     def evaluate(self, script: str) -> Any:
         return self._ask("evaluate", script=script)
 

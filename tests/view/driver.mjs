@@ -28,7 +28,7 @@ async function touched(way) {
 }
 
 const does = {
-  async open({ url, width = 1280, height = 800, dark = false, touch = false }) {
+  async open({ waits = true, url, width = 1280, height = 800, dark = false, touch = false }) {
     await context?.close();
     context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? "dark" : "light", hasTouch: touch, isMobile: touch });
     page = await context.newPage();
@@ -38,7 +38,17 @@ const does = {
     page.on("dialog", (dialog) => { said.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
     page.on("request", (request) => { if (!request.url().startsWith("data:")) asked.push(request.url()); });
     await page.goto(url);
-    await page.evaluate(() => window.mechkin.ready);
+    if (waits) await page.evaluate(() => window.mechkin.ready);
+  },
+  // in the frame that is seen, of those that a page holds
+  async inside({ script }) {
+    for (const frame of page.frames().slice(1)) {
+      const element = await frame.frameElement().catch(() => null);
+      const isSeen = await element?.evaluate((each) => !each.inert).catch(() => false);
+      // a frame may go while it is asked
+      if (isSeen) return frame.evaluate(script).catch((error) => (/detached/.test(error) ? null : Promise.reject(error)));
+    }
+    return null;
   },
   evaluate: ({ script }) => page.evaluate(script),
   press: ({ key }) => page.keyboard.press(key),

@@ -31,6 +31,7 @@ class Frames {
     frame.setAttribute("sandbox", FRAME_RIGHTS);
     frame.allow = "clipboard-write; fullscreen";
     frame.inert = true;
+    Object.assign(frame.style, { position: "absolute", inset: 0, width: "100%", height: "100%", border: 0 });
     const held = { frame, place: null };
     held.ready = new Promise((done) => (held.isReady = done));
     held.shown = new Promise((done) => (held.isShown = done));
@@ -46,13 +47,13 @@ class Frames {
     if (data.mechkin === "ready") held.isReady();
     else if (data.mechkin === "shown") held.isShown();
     else if (data.mechkin === "place") held.place = data.place;
-    else if (data.mechkin === "live") this.#enliven(held);
+    else if (data.mechkin === "live") this.#enliven(held, data);
     else if (held === this.seen) this.hear(data);
   }
 
-  #enliven(held) {
-    held.isLive = true;
-    if (held === this.seen) this.hear({ mechkin: "live" });
+  #enliven(held, message) {
+    held.live = message;
+    if (held === this.seen) this.hear(message);
   }
 
   /** Where the reader is in the page that is seen: run, mode, row, tab, camera. */
@@ -83,7 +84,7 @@ class Frames {
     for (const each of [...this.all]) if (each !== held) this.#close(each);
     this.seen = held;
     held.frame.inert = false;
-    if (held.isLive) this.hear({ mechkin: "live" });
+    if (held.live) this.hear(held.live);
     setTimeout(() => (this.#spare ??= this.#open()), 100);
   }
 

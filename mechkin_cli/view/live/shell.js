@@ -51,7 +51,7 @@ class Live {
     this.shown = 0;
     this.wished = null;
     this.frames = new Frames(find("#page"), (frame) => (frame.src = "frame"), (message) => this.#hear(message));
-    find("#write").addEventListener("click", () => this.#write([]));
+    find("#write").addEventListener("click", () => this.#write(Object.fromEntries(this.#changed), []));
     // a browser opens only a few connections to one place: pages that nobody sees need none
     document.addEventListener("visibilitychange", () => this.#follow());
     this.#follow();
@@ -129,6 +129,7 @@ class Live {
     if (message.mechkin !== "parameters" || typeof message.values !== "object" || message.values === null) return;
     this.#values = message.values;
     this.#texts = message.texts ?? {};
+    if (this.asked?.some(([name, value]) => message.values[name] !== value)) this.#ask({}, {});
     this.#offer();
   }
 
@@ -138,12 +139,10 @@ class Live {
     button.hidden = names.length === 0;
     button.textContent = `Write ${names.length === 1 ? names[0] : counted(names.length, "value")} into the file`;
     button.title = names.map((name) => `${name}: ${this.#texts[name] ?? this.#values[name]}`).join("\n");
-    if (names.length === 0) this.#ask([]);
   }
 
-  async #write(replace) {
-    const values = Object.fromEntries(this.#changed);
-    this.#ask([]);
+  async #write(values, replace) {
+    this.#ask({}, {});
     const hash = this.#seen.picture.hash;
     let words;
     let expressions = {};
@@ -161,16 +160,17 @@ class Live {
       words = `nothing was written: ${error.message}`;
     }
     find("#said").textContent = words;
-    this.#ask(Object.entries(expressions));
+    this.#ask(expressions, values);
   }
 
   /** Offers to replace what is written with other parameters. */
-  #ask(expressions) {
-    const buttons = expressions.map(([name, text]) => {
-      const button = element("button", `Replace ${name}: ${text}`);
+  #ask(expressions, values) {
+    this.asked = Object.keys(expressions).map((name) => [name, values[name]]);
+    const buttons = this.asked.map(([name, value]) => {
+      const button = element("button", `Replace ${name}: ${expressions[name]}`);
       button.type = "button";
-      button.title = `${name} is written as ${text}: write ${this.#texts[name] ?? this.#values[name]} in its place`;
-      button.addEventListener("click", () => this.#write([name]));
+      button.title = `${name} is written as ${expressions[name]}: write ${this.#texts[name] ?? value} in its place`;
+      button.addEventListener("click", () => this.#write({ [name]: value }, [name]));
       return button;
     });
     find("#acts").replaceChildren(...buttons, find("#write"));

@@ -38,8 +38,8 @@ export function tellShown() {
   setTimeout(tell, 250); // frames that are behind others may have to wait for pictures
 }
 
-/** Tells the holder that dimensions can be set from now on, where they can. */
-export const tellLive = () => post({ mechkin: "live" });
+/** Tells the holder the names of the parameters that can be set from now on. */
+export const tellLive = (names) => post({ mechkin: "live", names });
 
 /** Goes to the reader's place in the page before, as far as it is here, and tells the holder of each new one. */
 export function keepPlace(place, shown) {

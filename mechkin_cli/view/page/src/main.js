@@ -49,7 +49,7 @@ async function start() {
   tellShown();
   if (!shown) return;
   await enliven(shown);
-  tellLive();
+  tellLive((window.mechkin.dimensions?.parameters ?? []).map(({ name }) => name));
 }
 
 /** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */

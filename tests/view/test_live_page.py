@@ -1,0 +1,161 @@
+"""Pages that hold the mechanism's in a frame, in a real browser: the server's and a widget's."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from view.browser import Browser
+from view.test_following import CRANK
+from view.test_server import server as server
+
+import mechkin_cli as mk
+from mechkin_cli.view import LiveServer
+from mechkin_cli.view.page import waiting_page
+from mechkin_cli.view.server import frames_source
+
+ROWS = "window.mechkin.row ? window.mechkin.row() : null"
+OFF = "window.mechkin.data ? window.mechkin.data.points[0].place[0] : null"
+"""The r of the file that the page shows."""
+
+
+def eventually(ask: Callable[[], Any], wanted: Any) -> None:
+    deadline = time.monotonic() + 60
+    found = ask()
+    while found != wanted and time.monotonic() < deadline:
+        time.sleep(0.02)
+        found = ask()
+    assert found == wanted
+
+
+def test_the_page_follows_the_file(server: LiveServer, browser: Browser) -> None:
+    path = server.follower.path
+    browser.visit(server.address)
+    eventually(lambda: browser.inside(OFF), 40)
+    assert browser.evaluate("document.querySelector('#state').textContent") == "follows the file"
+    browser.inside("window.mechkin.seek(2), document.querySelector('#tab-tables').click()")
+    browser.inside(
+        "window.mechkin.theatre.fitted = null, window.mechkin.theatre.stage.moveTo("
+        "{position: [3, 4, 500], up: [0, 1, 0], target: [3, 4, 0]})"
+    )
+    eventually(lambda: browser.evaluate("window.live.frames.place?.row"), 2)
+    eventually(lambda: browser.evaluate("window.live.frames.place?.camera?.position[2]"), 500)
+    # a fault beside the picture, shown as text
+    path.write_text(CRANK.replace("name: crank", "nam: '<img src=x>'"))
+    line = "document.querySelector('#faults pre')?.textContent"
+    eventually(lambda: browser.evaluate(line), "2 | nam: '<img src=x>'")
+    assert browser.evaluate("document.querySelectorAll('#faults img').length") == 0
+    assert browser.inside(OFF) == 40
+    # the next picture, where the reader was
+    path.write_text(CRANK.replace("40 mm", "41 mm"))
+    eventually(lambda: browser.inside(OFF), 41)
+    assert browser.evaluate("document.querySelector('#faults').hidden")
+    assert browser.inside(ROWS) == 2
+    assert browser.inside("document.querySelector('#tables').hidden") is False
+    position = "window.mechkin.theatre.stage.camera.position.toArray()"
+    assert browser.inside(position) == pytest.approx([3, 4, 500])
+    # what the page says it was set to is written on request; an expression only when it is named
+    write_from_the_page(browser, {"r": 44, "e": 30})
+    browser.click("#write")
+    said = "document.querySelector('#said').textContent"
+    eventually(lambda: browser.evaluate(said), "written: r: 44 mm")
+    assert path.read_text() == CRANK.replace("40 mm", "44 mm")
+    eventually(lambda: browser.inside(OFF), 44)
+    browser.click("#acts button")
+    eventually(lambda: browser.evaluate(said), "written: e: 30 mm")
+    assert path.read_text() == CRANK.replace("40 mm", "44 mm").replace("r/2", "30 mm")
+    server.close()
+    state = "document.querySelector('#state').textContent"
+    eventually(lambda: "mechkin has ended" in browser.evaluate(state), True)
+    told = browser.told()
+    # what is asked of a server that has ended, and no more
+    assert all("ERR_" in each for each in told["said"])
+    assert all(each.startswith(server.address) for each in told["asked"])
+
+
+def write_from_the_page(browser: Browser, values: dict[str, float]) -> None:
+    """Lets the page tell that it was set to other values, as it does when they are dragged."""
+    message = json.dumps({"mechkin": "parameters", "values": values, "texts": {}})
+    browser.inside(f"window.parent.postMessage({message}, '*')")
+    hidden = "document.querySelector('#write').hidden"
+    eventually(lambda: browser.evaluate(hidden), False)
+
+
+def test_others_are_not_heard(server: LiveServer, browser: Browser) -> None:
+    browser.visit(server.address)
+    eventually(lambda: browser.inside(OFF), 40)
+    message = {"mechkin": "parameters", "values": {"r": 44}}
+    browser.evaluate(f"window.postMessage({json.dumps(message)}, '*')")
+    browser.evaluate("new Promise((done) => setTimeout(done, 100))")
+    assert browser.evaluate("document.querySelector('#write').hidden") is True
+    # nor does the frame reach anything
+    tries = "try { return String(window.parent.document.title) } catch (e) { return e.name }"
+    assert browser.inside(f"(() => {{ {tries} }})()") == "SecurityError"
+    asked = f"fetch({server.address!r} + 'news').then(() => 'open', (e) => e.name)"
+    assert browser.inside(asked) == "TypeError"
+
+
+HARNESS = """\
+<!doctype html><meta charset="utf-8"><title>notebook</title><div id="cell"></div>
+<script type="module">
+const given = {given};
+const acts = {};
+// what anywidget gives a widget: values, saved changes, and who hears of them
+const model = {
+  get: (name) => given[name],
+  set(name, value) {
+    if (JSON.stringify(given[name]) === JSON.stringify(value)) return;
+    given[name] = value;
+    for (const act of acts["change:" + name] ?? []) act();
+  },
+  save_changes() {
+    window.saved = structuredClone({ row: given.row, parameters: given.parameters });
+  },
+  on: (name, act) => (acts[name] ??= []).push(act),
+  off: () => {},
+};
+const esm = {esm};
+const widget = await import(URL.createObjectURL(new Blob([esm], { type: "text/javascript" })));
+window.model = model;
+window.end = widget.default.render({ model, el: document.querySelector("#cell") });
+</script>
+"""
+
+
+def test_a_widget_hands_over_what_changes(browser: Browser, tmp_path: Path) -> None:
+    def data(r: float) -> str:
+        page = mk.loads(CRANK.replace("40 mm", f"{r} mm")).view(modes=False)
+        (found,) = re.findall(r'id="mechkin-data">(.*?)</script>', page.html, re.DOTALL)
+        return str(found)
+
+    def script(value: Any) -> str:
+        return json.dumps(value).replace("<", "\\u003c")
+
+    given = {"_page": waiting_page().decode(), "_data": data(40), "row": 1, "parameters": {"r": 40}}
+    page = HARNESS.replace("{given}", script(given)).replace(
+        "{esm}", script(frames_source("widget.js"))
+    )
+    place = tmp_path / "notebook.html"
+    place.write_text(page, encoding="utf-8")
+    browser.visit(place.as_uri())
+    eventually(lambda: browser.inside(ROWS), 1)  # as Python has it
+    browser.inside("window.mechkin.seek(2)")
+    eventually(lambda: browser.evaluate("window.saved?.row"), 2)
+    browser.evaluate("window.model.set('row', 0)")
+    eventually(lambda: browser.inside(ROWS), 0)
+    message = {"mechkin": "parameters", "values": {"r": 43}}
+    browser.inside(f"window.parent.postMessage({json.dumps(message)}, '*')")
+    eventually(lambda: browser.evaluate("window.saved.parameters"), {"r": 43})
+    # what Python computes is shown where the reader was
+    browser.inside("window.mechkin.seek(2)")
+    eventually(lambda: browser.evaluate("window.saved.row"), 2)
+    browser.evaluate(f"window.model.set('_data', {json.dumps(data(42))})")
+    eventually(lambda: browser.inside(OFF), 42)
+    assert browser.inside(ROWS) == 2
+    browser.evaluate("window.end()")
+    assert browser.evaluate("document.querySelectorAll('iframe').length") == 0
