@@ -6,6 +6,7 @@ network and works from a folder. Texts of the files stand in it as text, picture
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import groupby
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
 
 INDEX_NAME = "index.html"
 """Name of the index in the folder of a gallery."""
+
+
+MOST_LETTERS = 8
+"""Joints that a card lists one by one: more are counted by type, so that they fill no lines."""
 
 
 class Card(NamedTuple):
@@ -59,10 +64,13 @@ def card_of(analyses: Sequence[ShownAnalysis], file: PurePath) -> tuple[Card, st
     """
     model = analyses[0].model
     joints = model.problem.mechanism.joints
-    letters = " ".join(
+    letters = [
         joint.letter for name, joint in joints.items() if is_told(name) and not joint.is_play
-    )
-    line = "; ".join(part for part in (letters, model.built.source) if part)
+    ]
+    words = " ".join(letters)
+    if len(letters) > MOST_LETTERS:
+        words = ", ".join(f"{count} {letter}" for letter, count in Counter(letters).items())
+    line = "; ".join(part for part in (words, model.built.source) if part)
     card = Card(file.with_suffix("").as_posix(), model.name, line)
     return card, mechanism_picture(analyses[0].result, model.view_settings)
 
