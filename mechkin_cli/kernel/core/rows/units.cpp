@@ -1,7 +1,7 @@
 #include "rows/units.hpp"
 
 #if MECHKIN_X86
-#include <immintrin.h>
+#include <xmmintrin.h>
 #endif
 
 namespace {
