@@ -30,8 +30,8 @@ DOUBLE_DOUBLE = {
 FUSED = re.compile(r"\bv?fn?m(add|sub)[a-z0-9]*\b")
 
 MOST_BYTES = 3_700_000
-"""Of the module for x86-64: docs/internals.md says what it is made of. A new pair is compiled twelve
-times; what exceeds this is mostly something that every unit has a copy of and needs none."""
+"""Of the module for x86-64: docs/internals.md says what it is made of. A new pair is compiled
+twelve times; what exceeds this is mostly something that every unit has a copy of and needs none."""
 
 pytestmark = pytest.mark.skipif(
     platform.machine() not in ("x86_64", "AMD64"), reason="units of x86-64"
