@@ -12,7 +12,7 @@ KERNEL = ROOT / "kernel"
 CORE = sorted(path for path in (KERNEL / "core").rglob("*.?pp"))
 SKINS = sorted(path for skin in ("python", "c") for path in (KERNEL / skin).glob("*.[ch]*"))
 INCLUDE = re.compile(r'^ *# *include *([<"])([^>"]+)[>"]', re.MULTILINE)
-SYSTEM = {"cpuid.h", "immintrin.h", "pthread.h", "sched.h", "signal.h"}
+SYSTEM = {"cpuid.h", "immintrin.h", "xmmintrin.h", "pthread.h", "sched.h", "signal.h"}
 """What the core takes beyond C++'s own headers, whose names have no ending: one instruction set's
 registers and one family of systems' threads, where there are such."""
 THREADS = KERNEL / "core/rows/threads.cpp"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from importlib.util import find_spec
 from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "mechkin_cli" / "kernel" / "core"
@@ -14,6 +15,11 @@ FLAGS += ["-fvisibility=hidden", "-Wno-psabi"]
 NARROW = "--config-settings=cmake.define.MECHKIN_NARROW=ON"
 """For `pip install` of a changed copy: its narrowest units alone, in less than half the
 time; what is computed does not depend on the width."""
+
+TOOLS_HERE = shutil.which("cmake") is not None and all(
+    find_spec(name) for name in ("scikit_build_core", "nanobind")
+)
+"""What `pip install` builds with is here, and need not be brought for a build of its own."""
 
 COMPILER = shutil.which(os.environ.get("CXX", "c++"))
 

@@ -22,7 +22,7 @@ from typing import Any
 
 import pytest
 from kernel.added_pair import ADDITIONS, GENERATED, LETTER, MECHANISM
-from kernel.compiler import COMPILER, NARROW
+from kernel.compiler import COMPILER, NARROW, TOOLS_HERE
 from kernel.test_power_balance import MECHANISM as LOADED
 
 ROOT = Path(__file__).parents[2]
@@ -80,9 +80,13 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = (folder / SOURCE).read_text(encoding="utf-8")
     assert text.count(WEIGHT) == 1
     (folder / SOURCE).write_text(text.replace(WEIGHT, FAULT), encoding="utf-8")
-    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", NARROW, "--target"]
+    install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", NARROW]
+    install += ["--no-build-isolation"] if TOOLS_HERE else []
     done = subprocess.run(
-        [*install, str(folder / "site"), str(folder)], capture_output=True, text=True, check=False
+        [*install, "--target", str(folder / "site"), str(folder)],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr[-4000:]
     return folder

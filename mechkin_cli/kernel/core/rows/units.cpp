@@ -2,7 +2,7 @@
 
 #if MECHKIN_X86
 #include <cpuid.h>
-#include <immintrin.h>
+#include <xmmintrin.h>
 #endif
 
 namespace {
