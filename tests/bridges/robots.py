@@ -114,8 +114,9 @@ def check(text: str, seed: int) -> int:
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     found = imported_robot(text, "robot").text
     moving = {}
-    names = re.findall(r"^  (\w+): \{(?:mass|inertia|\})", found, re.MULTILINE)
-    bodies = [name for name in names if mujoco.mj_name2id(model, 1, name) >= 0]
+    links = re.findall(r"^  (\w+):", found.partition("joints:")[0], re.MULTILINE)
+    bodies = [name for name in links if mujoco.mj_name2id(model, 1, name) >= 0]
+    assert len(bodies) == model.nbody - 1 - ("urdf" in found.casefold())
     points = {f"{body}_mark{k}": (body, mark) for body in bodies for k, mark in enumerate(MARKS)}
     section = "points:\n" + "".join(
         f"  {name}: {{link: {body}, at: {list(mark)}}}\n" for name, (body, mark) in points.items()
