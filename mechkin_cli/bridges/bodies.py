@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.bridges.markup import about
 from mechkin_cli.bridges.parts import Imported, listed, refuse
 from mechkin_cli.diagnostics import Diagnostic, Place
@@ -26,9 +27,6 @@ WORLD: Final = ""
 
 WIDTH: Final = 96
 """Columns of a line that is not broken."""
-
-SAME: Final = 1e-9
-"""m or rad up to which places and directions are the same: what other programs round."""
 
 
 class Turning(NamedTuple):
@@ -255,7 +253,7 @@ class _Writer:
             told = [
                 f"{key}: {_number(inertia[i, j])}"
                 for key, i, j in keys
-                if abs(inertia[i, j]) > 1e-15 * scale
+                if abs(inertia[i, j]) > tolerances.IMPORT_ROUNDING * scale
             ]
             parts.append(f"inertia: {{{', '.join(told)}}}")
         return parts
@@ -288,7 +286,7 @@ class _Writer:
         apart = any(joint.ref for joint in joints) or not _is_none(shift)
         if sorted(motions) == ["slide", "turn"]:
             turn, slide = sorted(joints, key=lambda joint: joint.motion != "turn")
-            if float(turn.axis @ slide.axis) < 1.0 - SAME**2:
+            if float(turn.axis @ slide.axis) < 1.0 - tolerances.SAME_PLACE**2:
                 return False
             lead = self._lead(turn, slide)
             kind, more = ("C", "") if lead is None else ("H", f"lead: {_number(lead)}")
@@ -300,7 +298,10 @@ class _Writer:
             return True
         if motions == ["turn", "turn"] and not apart:
             one, two = joints
-            if np.linalg.norm(one.anchor - two.anchor) > SAME or abs(one.axis @ two.axis) > 0.999:
+            if (
+                np.linalg.norm(one.anchor - two.anchor) > tolerances.SAME_PLACE
+                or abs(one.axis @ two.axis) > 0.999
+            ):
                 return False
             places = f"point: {_vector(one.anchor)}", f"axis: {_vector(one.axis)}"
             own = self._joint(
@@ -311,7 +312,7 @@ class _Writer:
             return True
         if motions == ["slide", "slide", "turn"]:
             x, y, turn = joints
-            if np.linalg.norm(np.cross(x.axis, y.axis) - turn.axis) > SAME:
+            if np.linalg.norm(np.cross(x.axis, y.axis) - turn.axis) > tolerances.SAME_PLACE:
                 return False
             place = shift @ [*(turn.anchor + x.ref * x.axis + y.ref * y.axis), 1.0]
             ways = about(turn.axis, turn.ref) @ x.axis
@@ -333,7 +334,7 @@ class _Writer:
                 continue
             slope = -one.factors[turn.name] / one.factors[slide.name]
             total = one.total / one.factors[slide.name]
-            if slope and abs(total) <= SAME:
+            if slope and abs(total) <= tolerances.SAME_PLACE:
                 self.robot.sums.remove(one)
                 return slope * 2.0 * np.pi
         return None
@@ -388,7 +389,7 @@ class _Writer:
             refuse("same-link", f"{closing.name} joins {first} to itself", closing.at, hint)
         one, other = closing.on_first, closing.on_second
         if closing.kind == "weld":
-            if closing.shift is not None and not _is_none(closing.shift, 1e-6):
+            if closing.shift is not None and not _is_none(closing.shift, tolerances.WELD_GAP):
                 apart = float(np.max(np.abs(closing.shift - np.eye(4))))
                 told = f"the weld {closing.name} is apart in the drawing"
                 hint = "draw both bodies where they are welded"
@@ -421,7 +422,7 @@ class _Writer:
                 terms.append(f"{name}: {_number(value / leading)}{unit}")
             told = f"type: linear, terms: {{{', '.join(terms)}}}"
             total = one.total / leading
-            if abs(total) > 1e-15:
+            if abs(total) > tolerances.IMPORT_ROUNDING:
                 told += f", sum: {_number(total)} {'rad' if first_is_angle else 'm'}"
             self._put("couplings", f"{self._name(one.name)}: {{{told}}}")
 
@@ -523,7 +524,7 @@ def _stem(joints: Iterable[Turning]) -> str:
     return next(iter(stems)) if len(stems) == 1 and "" not in stems else names[0]
 
 
-def _is_none(shift: Any, most: float = 1e-13) -> bool:
+def _is_none(shift: Any, most: float = tolerances.DRAWN_APART) -> bool:
     """Whether a displacement is none."""
     return bool(np.max(np.abs(shift - np.eye(4))) <= most)
 
@@ -549,18 +550,22 @@ def _on_axis(
 
 def _either(key: str, first: str, one: Any, second: str, other: Any) -> str:
     """A place or direction, or one for each link where they are apart."""
-    if float(np.max(np.abs(np.asarray(one) - other))) <= 1e-15:
+    if float(np.max(np.abs(np.asarray(one) - other))) <= tolerances.IMPORT_ROUNDING:
         return f"{key}: {_vector(one)}"
     return f"{key}: {{{first}: {_vector(one)}, {second}: {_vector(other)}}}"
 
 
 def _vector(values: Any) -> str:
     """Three numbers; what is rounding of the largest is zero."""
-    largest = float(np.max(np.abs(values)))
-    return f"[{', '.join(_number(v if abs(v) > 1e-16 * largest else 0.0) for v in values)}]"
+    least = tolerances.IMPORT_ROUNDING * float(np.max(np.abs(values)))
+    return f"[{', '.join(_number(v if abs(v) > least else 0.0) for v in values)}]"
 
 
 def _number(value: float) -> str:
     """The number in at most 17 digits, in 15 where these give it to rounding."""
     short = f"{float(value) + 0.0:.15g}"
-    return short if abs(float(short) - value) <= 2.5e-16 * abs(value) else repr(float(value))
+    return (
+        short
+        if abs(float(short) - value) <= tolerances.FIFTEEN_DIGITS * abs(value)
+        else repr(float(value))
+    )
