@@ -18,7 +18,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.bridges.parts import Exported, listed
+from mechkin_cli.bridges.parts import Exported, ExportOptions, listed
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import (
     GROUND_NAME,
@@ -38,7 +38,6 @@ from mechkin_cli.view import link_poses
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
-    from mechkin_cli.bridges.formats import ExportOptions
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats
 

@@ -35,6 +35,27 @@ class Exported(NamedTuple):
     notes: tuple[Diagnostic, ...] = ()
 
 
+class ImportOptions(NamedTuple):
+    """What the command line says of an import: the text and the name of the template that takes
+    hard points, their unit, and points that the template calls otherwise; pairs of links of a
+    robot that close loops."""
+
+    template: str | None = None
+    template_name: str = ""
+    unit: str | None = None
+    renamed: Mapping[str, str] | None = None
+    closed: tuple[str, ...] = ()
+
+
+class ExportOptions(NamedTuple):
+    """What the command line says of an export: the run (`sweep` or a response; None: the first),
+    the assembly mode (None: the file's), and rows by number from 1 (none: all, or the first)."""
+
+    run: str | None = None
+    mode: str | None = None
+    rows: tuple[int, ...] = ()
+
+
 def text_of(path: Path) -> str:
     """The text of a file that is imported, in UTF-8.
 
