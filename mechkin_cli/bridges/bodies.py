@@ -15,6 +15,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.bridges.markup import about
 from mechkin_cli.bridges.parts import Imported, listed, refuse
 from mechkin_cli.diagnostics import Diagnostic, Place
@@ -24,8 +25,8 @@ from mechkin_cli.schema import RESERVED
 WORLD: Final = ""
 """The body that does not move, which is `ground`."""
 
-SAME: Final = 1e-9
-"""m or rad up to which places and directions are the same: what other programs round."""
+WIDTH: Final = 96
+"""Columns of a line that is not broken."""
 
 
 class Turning(NamedTuple):
@@ -195,7 +196,7 @@ class _Writer:
         for name, one in robot.bodies.items():
             if one.whole is None:
                 self.links[name] = self._name(name)
-                self._put("links", f"{self.links[name]}: {self._link(one)}")
+                self._put("links", _entry(self.links[name], self._link(one)))
         for each in robot.bodies.values():
             self._carry(each)
         for closing in robot.closings:
@@ -230,7 +231,7 @@ class _Writer:
     def _whole(self, body: str) -> str:
         return self.robot.bodies[body].whole or body if body else body
 
-    def _link(self, body: Body) -> str:
+    def _link(self, body: Body) -> list[str]:
         mass, inertia = body.mass, body.inertia
         if body.name in self.robot.exact:
             mass, *entries = self.robot.exact[body.name]
@@ -252,10 +253,10 @@ class _Writer:
             told = [
                 f"{key}: {_number(inertia[i, j])}"
                 for key, i, j in keys
-                if abs(inertia[i, j]) > 1e-15 * scale
+                if abs(inertia[i, j]) > tolerances.IMPORT_ROUNDING * scale
             ]
             parts.append(f"inertia: {{{', '.join(told)}}}")
-        return f"{{{', '.join(parts)}}}"
+        return parts
 
     # Joints.
 
@@ -285,7 +286,7 @@ class _Writer:
         apart = any(joint.ref for joint in joints) or not _is_none(shift)
         if sorted(motions) == ["slide", "turn"]:
             turn, slide = sorted(joints, key=lambda joint: joint.motion != "turn")
-            if float(turn.axis @ slide.axis) < 1.0 - SAME**2:
+            if float(turn.axis @ slide.axis) < 1.0 - tolerances.SAME_PLACE**2:
                 return False
             lead = self._lead(turn, slide)
             kind, more = ("C", "") if lead is None else ("H", f"lead: {_number(lead)}")
@@ -297,7 +298,10 @@ class _Writer:
             return True
         if motions == ["turn", "turn"] and not apart:
             one, two = joints
-            if np.linalg.norm(one.anchor - two.anchor) > SAME or abs(one.axis @ two.axis) > 0.999:
+            if (
+                np.linalg.norm(one.anchor - two.anchor) > tolerances.SAME_PLACE
+                or abs(one.axis @ two.axis) > 0.999
+            ):
                 return False
             places = f"point: {_vector(one.anchor)}", f"axis: {_vector(one.axis)}"
             own = self._joint(
@@ -308,7 +312,7 @@ class _Writer:
             return True
         if motions == ["slide", "slide", "turn"]:
             x, y, turn = joints
-            if np.linalg.norm(np.cross(x.axis, y.axis) - turn.axis) > SAME:
+            if np.linalg.norm(np.cross(x.axis, y.axis) - turn.axis) > tolerances.SAME_PLACE:
                 return False
             place = shift @ [*(turn.anchor + x.ref * x.axis + y.ref * y.axis), 1.0]
             ways = about(turn.axis, turn.ref) @ x.axis
@@ -330,7 +334,7 @@ class _Writer:
                 continue
             slope = -one.factors[turn.name] / one.factors[slide.name]
             total = one.total / one.factors[slide.name]
-            if slope and abs(total) <= SAME:
+            if slope and abs(total) <= tolerances.SAME_PLACE:
                 self.robot.sums.remove(one)
                 return slope * 2.0 * np.pi
         return None
@@ -352,14 +356,8 @@ class _Writer:
 
     def _joint(self, name: str, kind: str, first: str, second: str, *more: str) -> str:
         own = self._name(name)
-        told = ", ".join(each for each in more if each)
-        head = f"{own}: {{type: {kind}, links: [{first}, {second}]"
-        line = f"{head}, {told}}}" if told else f"{head}}}"
-        if len(line) > 96:
-            keys = [f"type: {kind}", f"links: [{first}, {second}]", *(m for m in more if m)]
-            flat = [key for each in keys for key in each.split("\n")]
-            line = f"{own}:\n" + "\n".join(f"    {key}" for key in flat)
-        self._put("joints", line)
+        keys = [f"type: {kind}", f"links: [{first}, {second}]", *(each for each in more if each)]
+        self._put("joints", _entry(own, keys))
         return own
 
     def _coordinate(self, joint: Turning, name: str, is_angle: bool) -> None:
@@ -391,7 +389,7 @@ class _Writer:
             refuse("same-link", f"{closing.name} joins {first} to itself", closing.at, hint)
         one, other = closing.on_first, closing.on_second
         if closing.kind == "weld":
-            if closing.shift is not None and not _is_none(closing.shift, 1e-6):
+            if closing.shift is not None and not _is_none(closing.shift, tolerances.WELD_GAP):
                 apart = float(np.max(np.abs(closing.shift - np.eye(4))))
                 told = f"the weld {closing.name} is apart in the drawing"
                 hint = "draw both bodies where they are welded"
@@ -424,7 +422,7 @@ class _Writer:
                 terms.append(f"{name}: {_number(value / leading)}{unit}")
             told = f"type: linear, terms: {{{', '.join(terms)}}}"
             total = one.total / leading
-            if abs(total) > 1e-15:
+            if abs(total) > tolerances.IMPORT_ROUNDING:
                 told += f", sum: {_number(total)} {'rad' if first_is_angle else 'm'}"
             self._put("couplings", f"{self._name(one.name)}: {{{told}}}")
 
@@ -513,6 +511,12 @@ def _told(item: tuple[str, list[str]]) -> str:
     return f"{what}: {listed(known)}" if known else what
 
 
+def _entry(name: str, keys: list[str]) -> str:
+    """A named entry in one line, or in one for each key where it would be long."""
+    line = f"{name}: {{{', '.join(keys)}}}"
+    return line if len(line) <= WIDTH else "\n".join([f"{name}:", *(f"    {key}" for key in keys)])
+
+
 def _stem(joints: Iterable[Turning]) -> str:
     """`O2` of O2.theta and O2.s; the first name of others."""
     names = [joint.name for joint in joints]
@@ -520,7 +524,7 @@ def _stem(joints: Iterable[Turning]) -> str:
     return next(iter(stems)) if len(stems) == 1 and "" not in stems else names[0]
 
 
-def _is_none(shift: Any, most: float = 1e-13) -> bool:
+def _is_none(shift: Any, most: float = tolerances.DRAWN_APART) -> bool:
     """Whether a displacement is none."""
     return bool(np.max(np.abs(shift - np.eye(4))) <= most)
 
@@ -546,18 +550,22 @@ def _on_axis(
 
 def _either(key: str, first: str, one: Any, second: str, other: Any) -> str:
     """A place or direction, or one for each link where they are apart."""
-    if float(np.max(np.abs(np.asarray(one) - other))) <= 1e-15:
+    if float(np.max(np.abs(np.asarray(one) - other))) <= tolerances.IMPORT_ROUNDING:
         return f"{key}: {_vector(one)}"
     return f"{key}: {{{first}: {_vector(one)}, {second}: {_vector(other)}}}"
 
 
 def _vector(values: Any) -> str:
     """Three numbers; what is rounding of the largest is zero."""
-    largest = float(np.max(np.abs(values)))
-    return f"[{', '.join(_number(v if abs(v) > 1e-16 * largest else 0.0) for v in values)}]"
+    least = tolerances.IMPORT_ROUNDING * float(np.max(np.abs(values)))
+    return f"[{', '.join(_number(v if abs(v) > least else 0.0) for v in values)}]"
 
 
 def _number(value: float) -> str:
     """The number in at most 17 digits, in 15 where these give it to rounding."""
     short = f"{float(value) + 0.0:.15g}"
-    return short if abs(float(short) - value) <= 2.5e-16 * abs(value) else repr(float(value))
+    return (
+        short
+        if abs(float(short) - value) <= tolerances.FIFTEEN_DIGITS * abs(value)
+        else repr(float(value))
+    )

@@ -9,33 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.bridges.hard_points import with_hard_points
-from mechkin_cli.bridges.parts import Exported, Imported, listed, refuse, text_of
+from mechkin_cli.bridges.parts import (
+    Exported,
+    ExportOptions,
+    Imported,
+    ImportOptions,
+    listed,
+    refuse,
+    text_of,
+)
 from mechkin_cli.diagnostics import MechkinError, UsageError, nearest_hint
-from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
     from mechkin_cli.model import Model
-
-
-class ImportOptions(NamedTuple):
-    """What the command line says of an import: the text and the name of the template that takes
-    hard points, their unit, and points that the template calls otherwise; pairs of links of a
-    robot that close loops."""
-
-    template: str | None = None
-    template_name: str = ""
-    unit: str | None = None
-    renamed: Mapping[str, str] | None = None
-    closed: tuple[str, ...] = ()
-
-
-class ExportOptions(NamedTuple):
-    """What the command line says of an export: the run (`sweep` or a response; None: the first),
-    the assembly mode (None: the file's), and rows by number from 1 (none: all, or the first)."""
-
-    run: str | None = None
-    mode: str | None = None
-    rows: tuple[int, ...] = ()
 
 
 MOST_COORDINATES: Final = 60

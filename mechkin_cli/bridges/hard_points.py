@@ -14,7 +14,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from mechkin_cli.bridges.parts import LARGEST, NUMBER, Imported, listed, number_text, refuse
+from mechkin_cli import tolerances
+from mechkin_cli.bridges.parts import NUMBER, Imported, listed, number_text, refuse
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError, nearest
 from mechkin_cli.reading import Document, KeyPath, document_from_text, edited, shortened
 from mechkin_cli.record import NamedTuple
@@ -325,9 +326,10 @@ def _point(
         cell = cells[column]
         number = cell.replace(",", ".") if decimal_comma else cell
         value = float(number) if NUMBER.fullmatch(number) else math.nan
-        if not abs(value) <= LARGEST:
+        if not abs(value) <= tolerances.LARGEST_IMPORTED:
             where = at._replace(column=max(line.find(cell), 0) + 1)
-            hint = f"write a number without a unit, such as 12.5, below {LARGEST:g}"
+            most = f"{tolerances.LARGEST_IMPORTED:g}"
+            hint = f"write a number without a unit, such as 12.5, below {most}"
             message = f"{axis} of {shortened(name)} is no number: {shortened(cell)!r}"
             return Diagnostic("not-a-number", "error", message, where, hint=hint)
         place.append(value)

@@ -11,7 +11,8 @@ from xml.parsers import expat
 
 import numpy as np
 
-from mechkin_cli.bridges.parts import LARGEST, NUMBER, refuse
+from mechkin_cli import tolerances
+from mechkin_cli.bridges.parts import NUMBER, refuse
 from mechkin_cli.diagnostics import Place
 from mechkin_cli.reading import shortened
 from mechkin_cli.record import NamedTuple
@@ -21,9 +22,6 @@ MOST_LEVELS: Final = 150
 
 MOST_ELEMENTS: Final = 20_000
 """Elements of a file."""
-
-LEAST_DIRECTION: Final = 1e-10
-"""Length below which a vector has no direction."""
 
 
 class Element(NamedTuple):
@@ -64,8 +62,9 @@ class Element(NamedTuple):
         values = []
         for word in words:
             value = float(word) if NUMBER.fullmatch(word) else float("nan")
-            if not abs(value) <= LARGEST:
-                told = f"{name} of <{self.tag}> is no finite number below {LARGEST:g}"
+            if not abs(value) <= tolerances.LARGEST_IMPORTED:
+                most = f"{tolerances.LARGEST_IMPORTED:g}"
+                told = f"{name} of <{self.tag}> is no finite number below {most}"
                 refuse("not-a-number", told, self.at, "correct it", shortened(word))
             values.append(value)
         return np.array(values)
@@ -81,7 +80,7 @@ class Element(NamedTuple):
         if found is None:
             return None
         length = float(np.linalg.norm(found))
-        if length < LEAST_DIRECTION:
+        if length < tolerances.NO_DIRECTION:
             refuse("no-direction", f"{name} of <{self.tag}> is zero", self.at, "give a direction")
         return found / length
 

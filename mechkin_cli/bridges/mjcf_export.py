@@ -17,7 +17,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from mechkin_cli.bridges.parts import Exported, listed
+from mechkin_cli import tolerances
+from mechkin_cli.bridges.parts import Exported, ExportOptions, listed
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import (
     GROUND_NAME,
@@ -37,22 +38,14 @@ from mechkin_cli.view import link_poses
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
-    from mechkin_cli.bridges.formats import ExportOptions
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats
 
-LEAST_SHARE: Final = 1e-3
-"""Of the heaviest link's mass: what a link without mass is given, which MuJoCo does not take."""
-
-STEP: Final = 2e-5
-"""Of time (s). MuJoCo's constraints give way by the load they bear times the square of the step: at
-this one by less than 2e-7 m in the mechanisms kept here,"""
-
-STIFFNESS: Final = {"solref": f"{2.0 * STEP!r} 1", "solimp": "0.9999 0.9999 0.001"}
+STIFFNESS: Final = {
+    "solref": f"{2.0 * tolerances.MUJOCO_STEP!r} 1",
+    "solimp": "0.9999 0.9999 0.001",
+}
 """Of the constraints, as stiff as MuJoCo takes them at that step."""
-
-CLOSE: Final = 1e-9
-"""Parts of the mechanism's size and rad by which a chain of displacements may miss its link."""
 
 INERTIA: Final = "mechkin.inertia."
 """Begins the names of numbers that tell what a link has where MuJoCo needs another: mass (kg) and
@@ -215,13 +208,20 @@ class _Drawing:
         root.append(ElementTree.Comment(f" {version} "))
         _add(root, "compiler", angle="radian", autolimits="true")
         gravity = _numbers(self.mechanism.gravity)
-        _add(root, "option", timestep=repr(STEP), gravity=gravity, integrator="implicitfast")
+        _add(
+            root,
+            "option",
+            timestep=repr(tolerances.MUJOCO_STEP),
+            gravity=gravity,
+            integrator="implicitfast",
+        )
         default = _add(root, "default")
         # bodies are drawn thin, without mass and without contact
         thin = {"contype": "0", "conaffinity": "0", "mass": "0", "rgba": "0.3 0.5 0.7 1"}
         _add(default, "geom", type="capsule", size=repr(0.01 * self.size), **thin)
         _add(default, "site", size=repr(0.015 * self.size))
         _add(default, "equality", **STIFFNESS)
+        _add(_add(root, "visual"), "headlight", ambient="0.5 0.5 0.5", diffuse="0.5 0.5 0.5")
         self.world = _add(root, "worldbody")
         self.elements: dict[str, tuple[Any, Floats]] = {GROUND_NAME: (self.world, np.zeros(3))}
         self.names: dict[str, str] = {}
@@ -271,7 +271,7 @@ class _Drawing:
             if j.type.has_point
         ]
         for end in ends:
-            if float(np.linalg.norm(end - own)) > 1e-6 * self.size:
+            if float(np.linalg.norm(end - own)) > tolerances.SHORT_BAR * self.size:
                 _add(element, "geom", fromto=_numbers([0.0, 0.0, 0.0, *(end - own)]))
 
     def _anchor(self, body: _Carried) -> Floats:
@@ -305,7 +305,9 @@ class _Drawing:
             place = place @ np.linalg.inv(_matrix(part.after))
         if joint.type.is_oriented:
             frames = self._frames_of_ball(known, parent, body.link)
-        elif not np.allclose(place, self.poses[body.link], atol=CLOSE * max(self.size, 1.0)):
+        elif not np.allclose(
+            place, self.poses[body.link], atol=tolerances.CHAIN_GAP * max(self.size, 1.0)
+        ):
             raise UsageError(
                 f"the coordinates of {joint.name} do not lead from {parent} to {body.link} in "
                 f"row {self.row + 1}; choose another --row"
@@ -383,7 +385,7 @@ class _Drawing:
         if not mass > 0.0:
             mass = self._least
         if mass != body.mass or not np.allclose(
-            tensor, drawn, rtol=0.0, atol=1e-9 * np.max(tensor)
+            tensor, drawn, rtol=0.0, atol=tolerances.CHANGED_INERTIA * np.max(tensor)
         ):
             self.changed[link] = (body.mass, *_entries(drawn))
         share = 1.0 / self.pieces[link]
@@ -395,7 +397,7 @@ class _Drawing:
     def _least(self) -> float:
         """What a link without mass is given (kg)."""
         masses = (each.mass for each in self.mechanism.links.values())
-        return LEAST_SHARE * max(masses, default=0.0) or 1.0
+        return tolerances.MUJOCO_LEAST_SHARE * max(masses, default=0.0) or 1.0
 
     def _real(self, tensor: Any) -> Any:
         """A tensor that MuJoCo takes as that of a body: principal moments that are positive, none
@@ -403,11 +405,11 @@ class _Drawing:
         moments, axes = np.linalg.eigh(tensor)
         tensors = (_tensor(each) for each in self.mechanism.links.values())
         largest = max(float(np.max(np.abs(each))) for each in tensors)
-        least = LEAST_SHARE * largest or self._least * (0.1 * self.size) ** 2
-        raised = np.maximum(moments, max(least, 0.01 * moments[2]))
+        least = tolerances.MUJOCO_LEAST_SHARE * largest or self._least * (0.1 * self.size) ** 2
+        raised = np.maximum(moments, max(least, tolerances.MUJOCO_LEAST_MOMENT * moments[2]))
         lack = raised[2] - raised[0] - raised[1]
-        if lack > -1e-12 * raised[2]:
-            raised[:2] += 0.5 * max(lack, 0.0) + 1e-12 * raised[2]
+        if lack > -tolerances.MUJOCO_TRIANGLE * raised[2]:
+            raised[:2] += 0.5 * max(lack, 0.0) + tolerances.MUJOCO_TRIANGLE * raised[2]
         return tensor if np.array_equal(raised, moments) else (axes * raised) @ axes.T
 
     def _site(self, body: str, name: str, place: Floats) -> str:

@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.bridges.markup import Element, about, pose
 from mechkin_cli.bridges.parts import refuse
 
@@ -57,12 +58,16 @@ def _between(geom: Element, ends: Any) -> tuple[Any, float]:
     """The frame in the middle of two points with z towards the first, and half their distance."""
     way = ends[:3] - ends[3:]
     length = float(np.linalg.norm(way))
-    if length < 1e-10:
+    if length < tolerances.NO_DIRECTION:
         refuse("no-direction", "fromto has twice the same point", geom.at, "correct it")
     z = way / length
     across = np.cross([0.0, 0.0, 1.0], z)
     far = float(np.linalg.norm(across))
-    turn = np.eye(3) if far < 1e-12 else about(across / far, float(np.arctan2(far, z[2])))
+    turn = (
+        np.eye(3)
+        if far < tolerances.PARALLEL_AXIS
+        else about(across / far, float(np.arctan2(far, z[2])))
+    )
     return pose(turn, 0.5 * (ends[:3] + ends[3:])), 0.5 * length
 
 

@@ -11,6 +11,7 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.bridges.bodies import WORLD, Body, Closing, Line, Robot, Sum, Turning
 from mechkin_cli.bridges.markup import Element, about, from_quaternion, pose
 from mechkin_cli.bridges.mjcf_export import INERTIA
@@ -71,6 +72,7 @@ class _Reader:
         self.model.gravity = np.array(_GRAVITY) if gravity is None else gravity
         for world in self.root.all("worldbody"):
             self._children(world, WORLD, np.eye(4), "")
+        self._scale_masses()
         for element in self.root.all("equality"):
             self._equality(element)
         for element in self.root.all("tendon"):
@@ -96,8 +98,17 @@ class _Reader:
         if self.compiler.get("coordinate", "local") != "local":
             place = next(self.root.all("compiler")).at
             refuse("not-read", "global coordinates are not read", place, "use local ones")
-        if self.compiler.get("settotalmass", "-1") != "-1":
-            self.model.leave_out("settotalmass of the compiler")
+
+    def _scale_masses(self) -> None:
+        """Brings the mass of all bodies to what the compiler says."""
+        for element in self.root.all("compiler"):
+            wanted = element.number("settotalmass", "-1") or 0.0
+            total = sum(body.mass for body in self.bodies.values())
+            if wanted > 0.0 and total > 0.0:
+                for body in self.bodies.values():
+                    if body.inertia is not None:
+                        body.mass *= wanted / total
+                        body.inertia = body.inertia * (wanted / total)
 
     # Defaults.
 
@@ -170,12 +181,12 @@ class _Reader:
         """The orientation of an element, in whichever way it is written."""
         quaternion = element.numbers("quat", (4,))
         if quaternion is not None:
-            if float(np.linalg.norm(quaternion)) < 1e-10:
+            if float(np.linalg.norm(quaternion)) < tolerances.NO_DIRECTION:
                 refuse("no-direction", "the quaternion is zero", element.at, "correct it")
             return from_quaternion(quaternion)
         turned = element.numbers("axisangle", (4,))
         if turned is not None:
-            if float(np.linalg.norm(turned[:3])) < 1e-10:
+            if float(np.linalg.norm(turned[:3])) < tolerances.NO_DIRECTION:
                 refuse("no-direction", "the axis of axisangle is zero", element.at, "correct it")
             return about(turned[:3] / np.linalg.norm(turned[:3]), self._angle(turned[3]))
         axes = element.numbers("xyaxes", (6,))
@@ -199,9 +210,9 @@ class _Reader:
 
     def _from_axes(self, element: Element, x: Any, y: Any) -> Any:
         length = float(np.linalg.norm(x))
-        x = x / length if length > 1e-10 else x
+        x = x / length if length > tolerances.NO_DIRECTION else x
         y = y - (y @ x) * x
-        if length <= 1e-10 or float(np.linalg.norm(y)) <= 1e-10:
+        if length <= tolerances.NO_DIRECTION or float(np.linalg.norm(y)) <= tolerances.NO_DIRECTION:
             refuse(
                 "no-direction",
                 "the axes of xyaxes are parallel or zero",
@@ -470,7 +481,7 @@ def _joined(points: list[Closing]) -> list[Closing]:
     first = np.vstack([each.on_first for each in points])
     second = np.vstack([each.on_second for each in points])
     far = max(range(len(points)), key=lambda k: float(np.linalg.norm(first[k] - first[0])))
-    if float(np.linalg.norm(first[far] - first[0])) < 1e-9:
+    if float(np.linalg.norm(first[far] - first[0])) < tolerances.SAME_PLACE:
         return [one]
     if len(points) == 2:
         return [one._replace(kind="hinge", on_first=first, on_second=second)]
@@ -481,6 +492,6 @@ def shortest_from_z(z: Any) -> Any:
     """The shortest turn that carries z onto a unit vector."""
     across = np.cross([0.0, 0.0, 1.0], z)
     length = float(np.linalg.norm(across))
-    if length < 1e-12:
+    if length < tolerances.PARALLEL_AXIS:
         return np.eye(3) if z[2] > 0.0 else about(np.array([1.0, 0.0, 0.0]), np.pi)
     return about(across / length, float(np.arctan2(length, z[2])))

@@ -17,9 +17,6 @@ MOST_BYTES: Final = 1 << 20
 NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """A number as tables and robot files have it."""
 
-LARGEST: Final = 1e9
-"""Of numbers: beyond it no mechanism is meant, and squares stay far from the end of doubles."""
-
 MOST_NAMED: Final = 12
 """Names that a message lists before it counts the others."""
 
@@ -36,6 +33,27 @@ class Exported(NamedTuple):
 
     files: Mapping[str, bytes]
     notes: tuple[Diagnostic, ...] = ()
+
+
+class ImportOptions(NamedTuple):
+    """What the command line says of an import: the text and the name of the template that takes
+    hard points, their unit, and points that the template calls otherwise; pairs of links of a
+    robot that close loops."""
+
+    template: str | None = None
+    template_name: str = ""
+    unit: str | None = None
+    renamed: Mapping[str, str] | None = None
+    closed: tuple[str, ...] = ()
+
+
+class ExportOptions(NamedTuple):
+    """What the command line says of an export: the run (`sweep` or a response; None: the first),
+    the assembly mode (None: the file's), and rows by number from 1 (none: all, or the first)."""
+
+    run: str | None = None
+    mode: str | None = None
+    rows: tuple[int, ...] = ()
 
 
 def text_of(path: Path) -> str:

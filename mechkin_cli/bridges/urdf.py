@@ -221,8 +221,8 @@ def _mimic(robot: Robot, joint: Element, joints: dict[str, Element]) -> None:
 
 def _closing(robot: Robot, pair: str, root: Element) -> Closing:
     first, colon, rest = pair.partition(":")
-    second, _, kind = rest.partition(":")
-    if not colon or kind not in ("", "S", "R"):
+    second, _, how = rest.partition(":")
+    if not colon or how not in ("", "S", "R"):
         raise UsageError(
             f"--close {pair}: expected two links, as --close tip:bar for a ball at the origins of "
             "their frames, or tip:bar:R for a hinge about their z axes"
@@ -243,9 +243,9 @@ def _closing(robot: Robot, pair: str, root: Element) -> Closing:
     if first == second:
         raise UsageError(f"--close {pair}: a link cannot close a loop with itself; name two")
     points = [frame[:3, 3] for frame in frames]
-    if kind == "R":
+    if how == "R":
         points = [np.array([frame[:3, 3], frame[:3, 3] + frame[:3, 2]]) for frame in frames]
     one, other = (np.atleast_2d(point) for point in points)
     name = f"{first}_{second}"
-    joint: Literal["hinge", "ball"] = "hinge" if kind == "R" else "ball"
+    joint: Literal["hinge", "ball"] = "hinge" if how == "R" else "ball"
     return Closing(name, joint, ends[0], ends[1], one, other, root.at)

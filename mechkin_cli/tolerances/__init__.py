@@ -29,6 +29,7 @@ stands beside it with its reason (`kernel/core/`):
 
 from __future__ import annotations
 
+from mechkin_cli.tolerances.bridges import *
 from mechkin_cli.tolerances.closing import *
 from mechkin_cli.tolerances.mobility import *
 from mechkin_cli.tolerances.reading import *

@@ -19,6 +19,7 @@ from mechkin_cli.mechanism.model import Load
 KINDS = {kind.__name__ for kind in get_args(Load)}
 MAY_ASK = {
     "balances/dense.py": "wrenches",
+    "bridges/mjcf_export.py": "what MuJoCo has for each",
     "idle/idle.py": "what acts on a link that moves idly",
     "plan/plan.py": "records of the plan",
     "plan/programs.py": "values of the plan",
