@@ -83,6 +83,24 @@ def test_inertia_is_that_of_differences_of_positions() -> None:
     assert np.abs(inertia["force"] - expected).max() < 1e-4 * np.abs(expected).max()
 
 
+def test_what_gears_do_is_the_remainder() -> None:
+    """Spur gears of pitch radii 20 and 40 mm, 2 N m at the pinion: 100 N along the tangent, and
+    that by the cosine of the pressure angle along the line of action, at each wheel's bearing."""
+    _, found = cases_of("couplings/spur_gears", rows=(2,))
+    assert [note.code for note in found.notes] == ["remainder"]
+    loads = read(found, "ground")
+    pinion, wheel = (
+        next(one for one in loads[2, name] if one["kind"] == "remainder")
+        for name in ("pinion", "wheel")
+    )
+    assert np.allclose(pinion["point"], [0, 0, 0])
+    assert np.allclose(wheel["point"], [60, 0, 0])
+    assert np.abs(pinion["force"] + wheel["force"]).max() < 1e-9
+    assert np.linalg.norm(pinion["force"]) == pytest.approx(100.0 / np.cos(np.radians(20.0)))
+    assert np.abs(pinion["moment"]) == pytest.approx([0, 0, 2000.0])
+    assert np.abs(wheel["moment"]) == pytest.approx([0, 0, 4000.0])
+
+
 def test_reactions_that_are_not_unique_are_empty_and_named() -> None:
     _, found = cases_of("plane/slider_crank", rows=(3,))
     (note,) = [note for note in found.notes if note.code == "empty-load"]
