@@ -24,6 +24,9 @@ from mechkin_cli.schema import RESERVED
 WORLD: Final = ""
 """The body that does not move, which is `ground`."""
 
+WIDTH: Final = 96
+"""Columns of a line that is not broken."""
+
 SAME: Final = 1e-9
 """m or rad up to which places and directions are the same: what other programs round."""
 
@@ -195,7 +198,7 @@ class _Writer:
         for name, one in robot.bodies.items():
             if one.whole is None:
                 self.links[name] = self._name(name)
-                self._put("links", f"{self.links[name]}: {self._link(one)}")
+                self._put("links", _entry(self.links[name], self._link(one)))
         for each in robot.bodies.values():
             self._carry(each)
         for closing in robot.closings:
@@ -230,7 +233,7 @@ class _Writer:
     def _whole(self, body: str) -> str:
         return self.robot.bodies[body].whole or body if body else body
 
-    def _link(self, body: Body) -> str:
+    def _link(self, body: Body) -> list[str]:
         mass, inertia = body.mass, body.inertia
         if body.name in self.robot.exact:
             mass, *entries = self.robot.exact[body.name]
@@ -255,7 +258,7 @@ class _Writer:
                 if abs(inertia[i, j]) > 1e-15 * scale
             ]
             parts.append(f"inertia: {{{', '.join(told)}}}")
-        return f"{{{', '.join(parts)}}}"
+        return parts
 
     # Joints.
 
@@ -352,14 +355,8 @@ class _Writer:
 
     def _joint(self, name: str, kind: str, first: str, second: str, *more: str) -> str:
         own = self._name(name)
-        told = ", ".join(each for each in more if each)
-        head = f"{own}: {{type: {kind}, links: [{first}, {second}]"
-        line = f"{head}, {told}}}" if told else f"{head}}}"
-        if len(line) > 96:
-            keys = [f"type: {kind}", f"links: [{first}, {second}]", *(m for m in more if m)]
-            flat = [key for each in keys for key in each.split("\n")]
-            line = f"{own}:\n" + "\n".join(f"    {key}" for key in flat)
-        self._put("joints", line)
+        keys = [f"type: {kind}", f"links: [{first}, {second}]", *(each for each in more if each)]
+        self._put("joints", _entry(own, keys))
         return own
 
     def _coordinate(self, joint: Turning, name: str, is_angle: bool) -> None:
@@ -450,7 +447,8 @@ class _Writer:
             self.lines["inputs"] = told
             return self._text()
 
-        if self.robot.closings:
+        halves = any(body.whole for body in self.robot.bodies.values())
+        if self.robot.closings or halves:
             text(choose(free, text))
             return
         text(free)
@@ -510,6 +508,12 @@ def _told(item: tuple[str, list[str]]) -> str:
     what, names = item
     known = [re.sub(r"[^\w ./+-]+", "_", name, flags=re.ASCII) for name in names if name]
     return f"{what}: {listed(known)}" if known else what
+
+
+def _entry(name: str, keys: list[str]) -> str:
+    """A named entry in one line, or in one for each key where it would be long."""
+    line = f"{name}: {{{', '.join(keys)}}}"
+    return line if len(line) <= WIDTH else "\n".join([f"{name}:", *(f"    {key}" for key in keys)])
 
 
 def _stem(joints: Iterable[Turning]) -> str:

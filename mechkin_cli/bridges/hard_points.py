@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from mechkin_cli.bridges.parts import NUMBER, Imported, listed, number_text, refuse
+from mechkin_cli.bridges.parts import LARGEST, NUMBER, Imported, listed, number_text, refuse
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError, nearest
 from mechkin_cli.reading import Document, KeyPath, document_from_text, shortened, with_values
 from mechkin_cli.record import NamedTuple
@@ -325,9 +325,9 @@ def _point(
         cell = cells[column]
         number = cell.replace(",", ".") if decimal_comma else cell
         value = float(number) if NUMBER.fullmatch(number) else math.nan
-        if not math.isfinite(value):
+        if not abs(value) <= LARGEST:
             where = at._replace(column=max(line.find(cell), 0) + 1)
-            hint = "write a finite number without a unit, such as 12.5"
+            hint = f"write a number without a unit, such as 12.5, below {LARGEST:g}"
             message = f"{axis} of {shortened(name)} is no number: {shortened(cell)!r}"
             return Diagnostic("not-a-number", "error", message, where, hint=hint)
         place.append(value)

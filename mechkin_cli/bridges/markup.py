@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from mechkin_cli.bridges.parts import NUMBER, refuse
+from mechkin_cli.bridges.parts import LARGEST, NUMBER, refuse
 from mechkin_cli.diagnostics import Place
 from mechkin_cli.reading import shortened
 from mechkin_cli.record import NamedTuple
@@ -21,10 +21,6 @@ MOST_LEVELS: Final = 150
 
 MOST_ELEMENTS: Final = 20_000
 """Elements of a file."""
-
-LARGEST: Final = 1e9
-"""Of numbers, in SI: beyond it no mechanism is meant, and squares stay far from the end of
-doubles."""
 
 LEAST_DIRECTION: Final = 1e-10
 """Length below which a vector has no direction."""

@@ -71,6 +71,7 @@ class _Reader:
         self.model.gravity = np.array(_GRAVITY) if gravity is None else gravity
         for world in self.root.all("worldbody"):
             self._children(world, WORLD, np.eye(4), "")
+        self._scale_masses()
         for element in self.root.all("equality"):
             self._equality(element)
         for element in self.root.all("tendon"):
@@ -96,8 +97,17 @@ class _Reader:
         if self.compiler.get("coordinate", "local") != "local":
             place = next(self.root.all("compiler")).at
             refuse("not-read", "global coordinates are not read", place, "use local ones")
-        if self.compiler.get("settotalmass", "-1") != "-1":
-            self.model.leave_out("settotalmass of the compiler")
+
+    def _scale_masses(self) -> None:
+        """Brings the mass of all bodies to what the compiler says."""
+        for element in self.root.all("compiler"):
+            wanted = element.number("settotalmass", "-1") or 0.0
+            total = sum(body.mass for body in self.bodies.values())
+            if wanted > 0.0 and total > 0.0:
+                for body in self.bodies.values():
+                    if body.inertia is not None:
+                        body.mass *= wanted / total
+                        body.inertia = body.inertia * (wanted / total)
 
     # Defaults.
 

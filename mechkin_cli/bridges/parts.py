@@ -17,6 +17,9 @@ MOST_BYTES: Final = 1 << 20
 NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """A number as tables and robot files have it."""
 
+LARGEST: Final = 1e9
+"""Of numbers: beyond it no mechanism is meant, and squares stay far from the end of doubles."""
+
 MOST_NAMED: Final = 12
 """Names that a message lists before it counts the others."""
 

@@ -463,7 +463,6 @@ EXPORT = Command(
             ("--to",),
             "text",
             "FORMAT",
-            required=True,
         ),
         Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
         Word(
