@@ -67,7 +67,7 @@ def export(model: Model, options: ExportOptions) -> Exported:
     """
     analysis = _analysis(model, options)
     rows = _rows(analysis, options.rows)
-    cases = {row: list(_loads(analysis, row)) for row in rows}
+    cases = {row: list(_whole(analysis, row)) for row in rows}
     files = {
         f"loads_{axes}.csv": _table(analysis, cases, axes == "link").encode()
         for axes in ("link", "ground")
@@ -115,8 +115,8 @@ def _rows(analysis: Analysis, asked: tuple[int, ...]) -> list[int]:
             peaks.add(int(np.nanargmax(sizes)))
     if not peaks:
         raise UsageError(
-            f"no joint of {analysis.model.name} has a force in any row; give links mass or loads, "
-            "or name a --row"
+            f"no joint of {analysis.model.name} has a unique reaction in any row; write the file "
+            "in a plane (plane: xy), free the joints that hold twice, or name a --row"
         )
     return sorted(peaks)
 
@@ -139,7 +139,7 @@ def _loads(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
                 force = sign * _in_space(analysis, f"{name}.total_force", row)
                 moment = sign * _in_space(analysis, f"{name}.total_moment", row)
                 yield LinkWrench(link, "joint", name, point, force, moment)
-        centre = np.array(motion[link].point(body.center_of_mass))
+        centre = _middle(analysis, link, motion)
         weight = body.mass * np.array(mechanism.gravity)
         inertia = _inertia(body, motion)
         total, about = (np.array(part) for part in borne[link])
@@ -156,6 +156,39 @@ def _loads(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
             yield LinkWrench(link, "gravity", "gravity", centre, weight, np.zeros(3))
         if inertia[0].any() or inertia[1].any():
             yield LinkWrench(link, "inertia", "inertia", centre, *inertia)
+
+
+def _middle(analysis: Analysis, link: str, motion: RowMotion) -> Floats:
+    """Where a resultant acts: at the mass centre; of a link without mass at its first joint."""
+    mechanism = analysis.result.problem.mechanism
+    body, names = mechanism.links[link], _joints(analysis)
+    own = [n for n in names if link in (mechanism.joints[n].first, mechanism.joints[n].second)]
+    if body.mass or not own:
+        return np.array(motion[link].point(body.center_of_mass))
+    return np.array(motion.point(mechanism.joints[own[0]].point))
+
+
+def _remainder(loads: list[LinkWrench], centre: Floats) -> LinkWrench:
+    """What else acts on a link, by the sums of what is known: a wrench at its mass centre."""
+    force = -sum((one.force for one in loads), np.zeros(3))
+    moments = (one.moment + np.cross(one.point - centre, one.force) for one in loads)
+    return LinkWrench(
+        loads[0].link, "remainder", "couplings", centre, force, -sum(moments, np.zeros(3))
+    )
+
+
+def _whole(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
+    """All loads at a row; where couplings or friction act, on links that these leave out of balance
+    what is missing."""
+    mechanism = analysis.result.problem.mechanism
+    loads, motion = list(_loads(analysis, row)), row_motion(analysis.result, row)
+    has_more = bool(mechanism.couplings or mechanism.frictions)
+    for link in dict.fromkeys(one.link for one in loads):
+        own = [one for one in loads if one.link == link]
+        yield from own
+        known = all(np.isfinite([*one.force, *one.moment]).all() for one in own)
+        if has_more and known and _unbalanced(own, mechanism.box_diagonal()) > BALANCED:
+            yield _remainder(own, _middle(analysis, link, motion))
 
 
 def _inertia(body: RigidLink, motion: RowMotion) -> tuple[Floats, Floats]:
@@ -183,6 +216,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
     """Links whose sums are not zero, and joints whose reactions are not unique."""
     size = analysis.result.problem.mechanism.box_diagonal()
     empty: dict[str, None] = {}
+    rest: dict[str, None] = {}
     off: dict[str, float] = {}
     for loads in cases.values():
         for link in dict.fromkeys(load.link for load in loads):
@@ -191,6 +225,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
             empty |= dict.fromkeys(lost)
             if lost:
                 continue
+            rest |= {one.link: None for one in own if one.kind == "remainder"}
             share = _unbalanced(own, size)
             if share > BALANCED:
                 off[link] = max(share, off.get(link, 0.0))
@@ -201,6 +236,14 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
             f"the reactions of {listed(empty)} are not unique, and their cells are empty",
             hint="write the file in a plane (plane: xy), or free the joints that hold twice",
         )
+    if rest:
+        yield Diagnostic(
+            "remainder",
+            "note",
+            f"what couplings and friction do to {listed(rest)} is one force and one moment, found "
+            "by the balance of the link",
+            hint="move them to where the teeth, the belt or the rubbing surface is",
+        )
     if off:
         worst = max(off.values())
         yield Diagnostic(
@@ -208,8 +251,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
             "warning",
             f"what acts on {listed(off)} does not add up to zero",
             measured=f"{worst:.2g} of the largest force",
-            hint="what couplings, cables, friction and legs do to links is not among the loads; "
-            "add it by hand",
+            hint="what legs and curves do to links is not among the loads; add it by hand",
         )
 
 
@@ -271,7 +313,7 @@ def _steps(analysis: Analysis, row: int, link: str, loads: list[LinkWrench]) -> 
     body, own = mechanism.links[link], motion[link]
     axes = np.array([own.frame.x, own.frame.y, own.frame.z])
     placed = [_on_link(analysis, motion, load) for load in loads]
-    at = [one for one in placed if one.kind in ("joint", "applied")]
+    at = [one for one in placed if one.kind in ("joint", "applied", "remainder")]
     lines = [
         f"** {link} of {mechanism.name}, {analysis.run}, row {row + 1}; made by mechkin "
         f"{__version__}",

@@ -1,14 +1,20 @@
-"""The words of command lines: what an option or an argument is, and those that several commands
+"""Command lines: what an option, an argument and a command are, and the words that several commands
 share."""
 
 from __future__ import annotations
+
+import gc
+import os
+import sys
+from collections.abc import Mapping
+from importlib import import_module
 
 from mechkin_cli.cli.messages import FORMS
 from mechkin_cli.record import NamedTuple
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
-    from typing import Literal
+    from typing import Any, Literal
 
     Kind = Literal["flag", "text", "whole", "path", "folder"]
 
@@ -29,6 +35,35 @@ class Word(NamedTuple):
     required: bool = False
     default: str | int | None = None
     offers: str | None = None
+
+
+class Command(NamedTuple):
+    """A command; `home` is the module and the function that do it."""
+
+    name: str
+    home: str
+    help: str
+    words: tuple[Word, ...]
+    has_model: bool = True
+
+    def call(self, given: Mapping[str, Any]) -> int:
+        """Does it, and gives the exit code.
+
+        Args:
+            given: the values of parameters; those left out have their defaults.
+        """
+        # no command multiplies large matrices: one thread of BLAS per core would only be started
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        module, function = self.home.split(":")
+        known = "mechkin_cli.model.model" in sys.modules
+        if self.has_model:
+            from mechkin_cli.model import Model  # noqa: F401
+        work = getattr(import_module(f"mechkin_cli.cli.{module}"), function)
+        if not known:
+            # modules live as long as the process: looking for garbage among them takes long
+            gc.freeze()
+        gc.enable()
+        return int(work(**given) or 0)
 
 
 FILES = Word(

@@ -17,8 +17,9 @@ from typer.testing import CliRunner
 
 from mechkin_cli.cli.analyze import AnalyzeCommand
 from mechkin_cli.cli.app import app
-from mechkin_cli.cli.commands import COMMANDS, Command
+from mechkin_cli.cli.commands import COMMANDS
 from mechkin_cli.cli.run import plain_line
+from mechkin_cli.cli.words import Command
 
 
 def words_of(command: Command) -> list[str]:
