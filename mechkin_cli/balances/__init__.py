@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "dense": "row_motion",
+        "dense": "RowMotion borne_wrenches row_motion",
         "newton_euler": "DenseSystem coefficient_tables dense_system",
         "runs": "balance_table",
     },

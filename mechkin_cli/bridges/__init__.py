@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "formats": "EXPORTS ExportOptions ImportOptions exported imported",
+        "formats": "EXPORTS ExportOptions ImportOptions exported imported imported_robot",
         "hard_points": "hard_point_names with_hard_points",
         "parts": "Exported Imported",
     },

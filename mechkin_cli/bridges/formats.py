@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from itertools import combinations, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.bridges.hard_points import with_hard_points
-from mechkin_cli.bridges.parts import Exported, Imported, listed, text_of
-from mechkin_cli.diagnostics import UsageError, nearest_hint
+from mechkin_cli.bridges.parts import Exported, Imported, listed, refuse, text_of
+from mechkin_cli.diagnostics import MechkinError, UsageError, nearest_hint
 from mechkin_cli.record import NamedTuple
 
 if TYPE_CHECKING:
@@ -18,12 +19,14 @@ if TYPE_CHECKING:
 
 class ImportOptions(NamedTuple):
     """What the command line says of an import: the text and the name of the template that takes
-    hard points, their unit, and points that the template calls otherwise."""
+    hard points, their unit, and points that the template calls otherwise; pairs of links of a
+    robot that close loops."""
 
     template: str | None = None
     template_name: str = ""
     unit: str | None = None
     renamed: Mapping[str, str] | None = None
+    closed: tuple[str, ...] = ()
 
 
 class ExportOptions(NamedTuple):
@@ -35,10 +38,22 @@ class ExportOptions(NamedTuple):
     rows: tuple[int, ...] = ()
 
 
+MOST_COORDINATES: Final = 60
+"""Of a mechanism with loops whose inputs are chosen; of a larger one the mobility takes long."""
+
+MOST_TRIES: Final = 20
+"""Choices of inputs that are tried."""
+
 Export = Callable[["Model", ExportOptions], Exported]
 """Gives the files of a model; raises `UsageError` with words for what cannot be exported."""
 
-EXPORTS: Final[Mapping[str, str]] = {"mjcf": "mjcf_export"}
+EXPORTS: Final[Mapping[str, str]] = {
+    "mjcf": "mjcf_export",
+    "gltf": "gltf_export",
+    "dxf": "dxf_export",
+    "loads": "load_cases",
+    "parquet": "parquet_export",
+}
 """By the name of a format the chapter of this room whose function `export` writes it."""
 
 
@@ -65,10 +80,69 @@ def imported(path: Path, options: ImportOptions) -> Imported:
             options.unit,
             options.renamed,
         )
+    if ending in (".xml", ".mjcf", ".urdf"):
+        return imported_robot(text, str(path), options.closed)
     raise UsageError(
         f"{path}: {ending or 'a file without ending'} is no format that is imported; a table of "
-        "hard points ends in .csv"
+        "hard points ends in .csv, a robot in .urdf, a model of MuJoCo in .xml"
     )
+
+
+def imported_robot(text: str, file: str, closed: tuple[str, ...] = ()) -> Imported:
+    """The mechanism file of a text in MJCF or URDF, as its first element tells.
+
+    Args:
+        text: the robot file.
+        file: its name in messages.
+        closed: pairs of links of a URDF between which loops are closed (`read_urdf`).
+
+    Raises:
+        InvalidFile: with the place of what is wrong, or has no counterpart.
+        UsageError: pairs that are none, or of an MJCF, which closes its loops itself.
+    """
+    from mechkin_cli.bridges.bodies import mechanism_text
+    from mechkin_cli.bridges.markup import read_markup
+
+    root = read_markup(text, file)
+    if root.tag == "robot":
+        from mechkin_cli.bridges.urdf import read_urdf
+
+        return mechanism_text(read_urdf(root, file, closed), driven)
+    if root.tag != "mujoco":
+        hint = "MJCF begins with <mujoco>, URDF with <robot>"
+        refuse("unknown-format", f"<{root.tag[:40]}> is no robot", root.at, hint)
+    if closed:
+        raise UsageError("--close is for URDF; MJCF closes loops by <equality>: write it there")
+    from mechkin_cli.bridges.mjcf_import import read_mjcf
+
+    return mechanism_text(read_mjcf(root, file), driven)
+
+
+def driven(free: list[str], text_of_inputs: Callable[[list[str]], str]) -> list[str]:
+    """The first coordinates that drive a mechanism with loops, as many as it has freedoms; none
+    where few tries find none, or it is not movable.
+
+    Args:
+        free: the coordinates to choose from.
+        text_of_inputs: makes the mechanism file in which some of them are driven.
+    """
+    from mechkin_cli.model import loads
+
+    if len(free) > MOST_COORDINATES:
+        return []
+    try:
+        mobility = loads(text_of_inputs([])).mobility()
+        # bodies that float are driven already
+        count = max((mobility.useful or 0) - len(mobility.inputs), 0) or mobility.useful or 0
+        for chosen in islice(combinations(free, count), MOST_TRIES):
+            try:
+                if loads(text_of_inputs(list(chosen))).analyze().complete:
+                    return list(chosen)
+            except MechkinError:
+                continue
+    except MechkinError:
+        pass
+    return []
 
 
 def exported(model: Model, format_: str, options: ExportOptions) -> Exported:

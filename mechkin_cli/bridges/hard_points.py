@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Final
 
-from mechkin_cli.bridges.parts import Imported, listed, number_text, refuse
+from mechkin_cli.bridges.parts import LARGEST, NUMBER, Imported, listed, number_text, refuse
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Place, UsageError, nearest
 from mechkin_cli.reading import Document, KeyPath, document_from_text, shortened, with_values
 from mechkin_cli.record import NamedTuple
@@ -24,7 +24,6 @@ MOST_POINTS: Final = 10_000
 """Rows of a table."""
 
 _AXES = "xyz"
-_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _HEADING = re.compile(r"\s*([A-Za-z ]+?)\s*(?:[\[(]\s*([^\])]+?)\s*[\])])?\s*")
 _NAME_HEADINGS = ("name", "point", "hard point", "hardpoint")
 
@@ -79,7 +78,7 @@ def hard_point_names(document: Document) -> dict[str, tuple[KeyPath, ...]]:
 def _is_written_out(value: object) -> bool:
     """Whether a coordinate is a number, with or without a unit, and no expression."""
     return isinstance(value, str) and bool(
-        re.fullmatch(rf"{_NUMBER.pattern}(\s*[A-Za-z]+)?", value.strip())
+        re.fullmatch(rf"{NUMBER.pattern}(\s*[A-Za-z]+)?", value.strip())
     )
 
 
@@ -325,10 +324,10 @@ def _point(
             continue
         cell = cells[column]
         number = cell.replace(",", ".") if decimal_comma else cell
-        value = float(number) if _NUMBER.fullmatch(number) else math.nan
-        if not math.isfinite(value):
+        value = float(number) if NUMBER.fullmatch(number) else math.nan
+        if not abs(value) <= LARGEST:
             where = at._replace(column=max(line.find(cell), 0) + 1)
-            hint = "write a finite number without a unit, such as 12.5"
+            hint = f"write a number without a unit, such as 12.5, below {LARGEST:g}"
             message = f"{axis} of {shortened(name)} is no number: {shortened(cell)!r}"
             return Diagnostic("not-a-number", "error", message, where, hint=hint)
         place.append(value)

@@ -285,7 +285,8 @@ class _Drawing:
         (rad, m) of their freedoms; "" for one without a coordinate."""
         joint = body.joint
         by_freedom = {freedom: name for name, freedom in joint.type.scalars.items()}
-        known, freedom = [], 0
+        known: list[tuple[Part, tuple[tuple[str, float], ...]]] = []
+        freedom = 0
         for part in joint.parts:
             found = []
             for _ in part.type.freedoms:
@@ -297,10 +298,10 @@ class _Drawing:
             known = [(part.reversed(), found) for part, found in reversed(known)]
         frames = []
         place = self.poses[parent]
-        for part, found in known:
+        for part, values in known:
             place = place @ _matrix(part.before)
             frames.append(place)
-            place = place @ _displacement(part, [v for _, v in found], joint.pitch)
+            place = place @ _displacement(part, [v for _, v in values], joint.pitch)
             place = place @ np.linalg.inv(_matrix(part.after))
         if joint.type.is_oriented:
             frames = self._frames_of_ball(known, parent, body.link)
@@ -445,8 +446,8 @@ class _Drawing:
             _add(equality, "tendon", name=name, tendon1=name, polycoef="0 0 0 0 0")
             fixed = _add(tendons, "fixed", name=name)
             for term in relation.terms:
-                joint = self.names[f"{term.joint.name}.{term.coordinate}"]
-                _add(fixed, "joint", joint=joint, coef=repr(float(term.factor)))
+                name_of = self.names[f"{term.joint.name}.{term.coordinate}"]
+                _add(fixed, "joint", joint=name_of, coef=repr(float(term.factor)))
             if relation.mesh is not None:
                 self._leave_out("forces between teeth and in strands", name)
             if relation.loss is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Final, NoReturn
@@ -12,6 +13,12 @@ from mechkin_cli.record import NamedTuple
 
 MOST_BYTES: Final = 1 << 20
 """Size of a file that is imported: as of a mechanism file, which it becomes."""
+
+NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+"""A number as tables and robot files have it."""
+
+LARGEST: Final = 1e9
+"""Of numbers: beyond it no mechanism is meant, and squares stay far from the end of doubles."""
 
 MOST_NAMED: Final = 12
 """Names that a message lists before it counts the others."""

@@ -17,8 +17,9 @@ from typing import Annotated, Any
 
 import typer
 
-from mechkin_cli.cli.commands import COMMANDS, Command, Word, all_formats
+from mechkin_cli.cli.commands import COMMANDS, Command, all_formats
 from mechkin_cli.cli.messages import ExitCode, discard, put, say, tell_notes
+from mechkin_cli.cli.words import Word
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.verdict import __version__
 

@@ -23,8 +23,8 @@ from mechkin_cli.cli.messages import (
 )
 from mechkin_cli.cli.new import write_new
 from mechkin_cli.cli.progress import working
-from mechkin_cli.diagnostics import InvalidFile, UsageError
-from mechkin_cli.model import loads
+from mechkin_cli.diagnostics import InvalidFile, Place, UsageError
+from mechkin_cli.model import Model, loads
 
 
 def import_(
@@ -33,6 +33,7 @@ def import_(
     template: str | None = None,
     unit: str | None = None,
     rename: list[str] | None = None,
+    close: list[str] | None = None,
     messages: str | None = None,
     quiet: bool = False,
 ) -> ExitCode:
@@ -44,11 +45,10 @@ def import_(
         target = out or Path(f"{stem_of(file)}.yaml")
         expected = "TABLE=TEMPLATE, for example --rename 'LCA outer=lower_ball'"
         renamed = values_by_name("--rename", rename or (), expected)
-        options = ImportOptions(*_template(template), unit, renamed)
+        options = ImportOptions(*_template(template), unit, renamed, tuple(close or ()))
         with working(f"{file}: reading", quiet):
             found = bridges.imported(file, options)
-            # what is written can be read: a file that names others is sought where it will stand
-            model = loads(found.text, str(target), folder=target.parent)
+            model = _readable(found.text, file, target)
         write_new(target, found.text)
     except (InvalidFile, UsageError) as error:
         return refusal(file, error)[0]
@@ -60,6 +60,19 @@ def import_(
         say(f"{model.name}: {links} moving links, {len(mechanism.joints)} joints")
         say(f"mechkin analyze {quote(str(target))}")
     return ExitCode.OK
+
+
+def _readable(text: str, file: Path, target: Path) -> Model:
+    """The mechanism that will be written; what is wrong with it is told of the imported file.
+
+    Raises:
+        InvalidFile: it cannot be used.
+    """
+    try:
+        return loads(text, str(target), folder=target.parent)
+    except InvalidFile as error:
+        told = [one._replace(place=Place(str(file), 1, 1)) for one in error.diagnostics]
+        raise InvalidFile(told) from error
 
 
 def _template(name: str | None) -> tuple[str | None, str]:
@@ -74,7 +87,7 @@ def _template(name: str | None) -> tuple[str | None, str]:
 
 def export(
     file: Path,
-    to: str,
+    to: str | None = None,
     out: Path | None = None,
     run: str | None = None,
     row: list[str] | None = None,
@@ -86,6 +99,8 @@ def export(
     """Writes a mechanism in the format of another program."""
     tell_as(messages)
     try:
+        if to is None:
+            raise UsageError(f"name the format: --to {' or --to '.join(bridges.EXPORTS)}")
         options = ExportOptions(run, mode, _rows(row))
         with working(f"{shown(file)}: {to}", quiet):
             model = model_of(file, parameters(set_))

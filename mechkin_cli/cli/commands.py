@@ -12,32 +12,12 @@ import sys
 from collections.abc import Mapping
 from importlib import import_module
 
-from mechkin_cli.cli.messages import FORMS
+from mechkin_cli.cli.words import FILE, FILES, JSON, MESSAGES, MODE, QUIET, SET, TABLE, Word
 from mechkin_cli.record import NamedTuple
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
-    from typing import Any, Literal
-
-    Kind = Literal["flag", "text", "whole", "path", "folder"]
-
-
-class Word(NamedTuple):
-    """An option or, without `names`, an argument: the parameter of the command's function that it
-    gives, and how help tells it.
-
-    `offers` is the function of `app.py` that a shell is offered values by.
-    """
-
-    parameter: str
-    help: str
-    names: tuple[str, ...] = ()
-    kind: Kind = "flag"
-    metavar: str | None = None
-    repeated: bool = False
-    required: bool = False
-    default: str | int | None = None
-    offers: str | None = None
+    from typing import Any
 
 
 class Command(NamedTuple):
@@ -77,55 +57,6 @@ def all_formats() -> str:
     return f"{', '.join(names)} or {last}"
 
 
-FILES = Word(
-    "files",
-    "Mechanism files (YAML, format 1); - reads stdin.",
-    kind="path",
-    metavar="FILE",
-    repeated=True,
-    required=True,
-    offers="mechanism_files",
-)
-FILE = FILES._replace(
-    parameter="file", help="Mechanism file (YAML, format 1); - reads stdin.", repeated=False
-)
-SET = Word(
-    "set_",
-    "Set a parameter, as P1=0.6in; repeatable.",
-    ("--set",),
-    "text",
-    "NAME=VALUE",
-    repeated=True,
-    offers="parameter_names",
-)
-MODE = Word(
-    "mode",
-    "Assembly mode at the first row: its letter, or home for the one drawn.",
-    ("--mode",),
-    "text",
-    "NAME",
-    offers="mode_names",
-)
-TABLE = Word(
-    "table",
-    "Only this table; may be repeated.",
-    ("--table",),
-    "text",
-    "NAME",
-    repeated=True,
-    offers="table_names",
-)
-MESSAGES = Word(
-    "messages",
-    f"Form of the messages: {' or '.join(FORMS)} (annotations for CI).",
-    ("--messages",),
-    "text",
-    "FORM",
-    offers="message_forms",
-)
-JSON = Word("json", "One JSON object on stdout and nothing else.", ("--json",))
-QUIET = Word("quiet", "Only warnings and errors.", ("--quiet",))
-
 NEW = Command(
     "new",
     "new:new",
@@ -152,8 +83,9 @@ IMPORT = Command(
     "bridges:import_",
     """Write the mechanism file that a file of another program becomes.
 
-    FILE.csv is a table of hard points (name, x, y, z) for a template. What cannot be carried over
-    is named. An existing file is never written over.
+    FILE.csv is a table of hard points (name, x, y, z) for a template; FILE.urdf is a robot
+    (URDF), FILE.xml a model of MuJoCo (MJCF). What cannot be carried over is named. An existing
+    file is never written over.
     """,
     (
         Word("file", "The file to import.", kind="path", metavar="FILE", required=True),
@@ -179,6 +111,15 @@ IMPORT = Command(
             ("--rename",),
             "text",
             "TABLE=TEMPLATE",
+            repeated=True,
+        ),
+        Word(
+            "close",
+            "Two links of a URDF whose origins a ball joins, as tip:bar, or tip:bar:R for a hinge "
+            "about their z axes; repeatable.",
+            ("--close",),
+            "text",
+            "LINKS",
             repeated=True,
         ),
         MESSAGES,
@@ -436,17 +377,100 @@ PLOT = Command(
         QUIET,
     ),
 )
+TOLERANCES = Command(
+    "tolerances",
+    "tolerances:tolerances",
+    """Find what tolerances of parameters do to quantities.
+
+    Worst case, root sum square and samples (Monte Carlo) at every row, and what each tolerance
+    contributes. Writes tolerances.csv, with a line for each row, tolerances_shares.csv, and
+    tolerances.md with both.
+    """,
+    (
+        FILE,
+        Word(
+            "tolerance",
+            "A parameter and half its band, as P1=0.01mm, or both ends, as P1=-0.01mm,0.02mm; "
+            "repeatable.",
+            ("--tolerance",),
+            "text",
+            "NAME=BAND",
+            repeated=True,
+            offers="parameter_names",
+        ),
+        Word(
+            "of",
+            "Quantities, expressions or labels of columns, separated by commas (default: the "
+            "columns of the first table); repeatable.",
+            ("--of",),
+            "text",
+            "NAMES",
+            repeated=True,
+        ),
+        Word(
+            "at",
+            "Only the row at this value of the input; repeatable.",
+            ("--at",),
+            "text",
+            "VALUE",
+            repeated=True,
+        ),
+        Word(
+            "samples",
+            "Variants that are drawn and run.",
+            ("--samples",),
+            "whole",
+            "NUMBER",
+            default=1024,
+        ),
+        Word(
+            "method",
+            "How they are drawn: latin, sobol or random.",
+            ("--method",),
+            "text",
+            "METHOD",
+            default="latin",
+        ),
+        Word("seed", "Another seed draws others.", ("--seed",), "whole", "NUMBER", default=0),
+        Word(
+            "distribution",
+            "Within the bands: uniform, or normal with half a band as three sigma.",
+            ("--distribution",),
+            "text",
+            "NAME",
+            default="uniform",
+        ),
+        Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "DIR"),
+        Word("format_", "csv or md (default: both).", ("--format",), "text", "FORMAT"),
+        Word(
+            "plot",
+            "Also draw tolerances.svg (needs matplotlib: pip install 'mechkin[plot]').",
+            ("--plot",),
+        ),
+        SET,
+        JSON,
+        QUIET,
+    ),
+)
 EXPORT = Command(
     "export",
     "bridges:export",
     """Write a mechanism in the format of another program.
 
-    mjcf: a model for MuJoCo, drawn in the pose of a row, loops closed by equality constraints.
+    mjcf: a model for MuJoCo, in the pose of a row, loops closed by equality constraints. gltf: an
+    animated scene (GLB). dxf: links, paths and cams (needs ezdxf). loads: load cases for finite
+    elements, as CSV and for CalculiX. parquet: a run as a frame (needs pyarrow).
     The files go into out/STEM or a folder of your choice; what they cannot hold is named.
     """,
     (
         FILE,
-        Word("to", "Format: mjcf.", ("--to",), "text", "FORMAT", required=True),
+        Word(
+            "to",
+            "Format: mjcf, gltf, dxf, loads or parquet.",
+            ("--to",),
+            "text",
+            "FORMAT",
+        ),
         Word("out", "Folder to write to (default: out/STEM).", ("-o", "--out"), "folder", "FOLDER"),
         Word(
             "run",
@@ -614,7 +638,7 @@ COMMANDS = {
     command.name: command
     for command in (
         *(NEW, IMPORT, ANALYZE, VIEW, CHECK, MODES, RANGES, MOBILITY, CAM),
-        *(PLOT, EXPORT, STUDY, TABLES, SCHEMA, BENCH),
+        *(PLOT, EXPORT, STUDY, TOLERANCES, TABLES, SCHEMA, BENCH),
     )
 }
 """The commands by name, in the order of help."""

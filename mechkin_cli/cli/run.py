@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from mechkin_cli.cli.commands import COMMANDS, Command, Word
+from mechkin_cli.cli.commands import COMMANDS, Command
 from mechkin_cli.cli.interrupts import said
 from mechkin_cli.cli.messages import (
     ExitCode,
@@ -22,6 +22,7 @@ from mechkin_cli.cli.messages import (
     tell_as,
     tell_notes,
 )
+from mechkin_cli.cli.words import Word
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
 from mechkin_cli.verdict import __version__
 

@@ -6,11 +6,13 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.plots.bands import *
     from mechkin_cli.plots.curves import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "bands": "Band Bands",
         "curves": "Picture drawn format_of image picture table_picture",
     },
 )

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import io
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import cycle
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
@@ -299,11 +299,16 @@ def drawn(picture: Picture) -> Figure:
 
 def image(picture: Picture, ending: str) -> bytes:
     """A file with the picture, without dates or names of programs; errors as `drawn`."""
+    return figure_bytes(lambda: drawn(picture), ending)
+
+
+def figure_bytes(draw: Callable[[], Figure], ending: str) -> bytes:
+    """A file with the figure that is drawn; as `image`."""
     matplotlib, stream = _matplotlib(), io.BytesIO()
     with matplotlib.rc_context(_STYLE), warnings.catch_warnings():
         # the empty boxes in the picture say so themselves
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
-        drawn(picture).savefig(stream, format=ending, metadata=_NO_DATES[ending])
+        draw().savefig(stream, format=ending, metadata=_NO_DATES[ending])
     return stream.getvalue()
 
 
@@ -317,14 +322,15 @@ def _matplotlib() -> Any:
     return matplotlib
 
 
-def _figure(height: float) -> Figure:
+def empty_figure(height: float) -> Figure:
+    """A figure of the width of all, and a height in inches."""
     figure: Figure = _matplotlib().figure.Figure(figsize=(_WIDTH, height), layout="constrained")
     return figure
 
 
 def _over_a_column(picture: Picture) -> Figure:
     count = len(picture.panels)
-    figure = _figure(_ABOVE + _HEIGHT * count)
+    figure = empty_figure(_ABOVE + _HEIGHT * count)
     panels = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
     (x,) = picture.x
     over_parameter = x.label == picture.parameter.label
@@ -351,7 +357,7 @@ def _over_a_column(picture: Picture) -> Figure:
 
 
 def _plane_figure(picture: Picture) -> Figure:
-    figure = _figure(_PLANE)
+    figure = empty_figure(_PLANE)
     axes = figure.subplots()
     (panel,) = picture.panels
     for x, y in zip(picture.x, panel, strict=True):

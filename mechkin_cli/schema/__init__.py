@@ -55,7 +55,7 @@ __getattr__, __dir__ = lazy_names(
         "scalars": "DirectionOfLink JoinedTable PointOfLink UnitsSection",
         "study": "StudyFile validate_study",
         "tables": "Coefficients",
-        "validation": "InvalidDataError validate",
+        "validation": "InvalidDataError RESERVED validate",
         "view": "PartBetween ShapeOfLink ViewSection",
     },
 )

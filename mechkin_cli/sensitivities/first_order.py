@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from mechkin_cli.expressions import Expression
     from mechkin_cli.mechanism import Problem
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep import Result
 
 
 def bending_notes(s: Sensitivities) -> list[str]:
@@ -194,6 +195,11 @@ class Sensitivities(Listed):
         """The second derivative, shaped as the first: in units of the quantity by the parameter's
         squared. Half of it times a change squared is what the slope leaves out."""
         return self._derivative((quantity, parameter), "curvature")
+
+    @property
+    def results(self) -> Result:
+        """The rows of the run."""
+        return self._analysis.result
 
     @property
     def texts(self) -> dict[str, str]:

@@ -8,7 +8,7 @@ each makes its share.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 from math import sqrt
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,7 @@ from mechkin_cli.arguments import Setting, a_setting, a_whole_number, refusal, s
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
+from mechkin_cli.sensitivities.stack_tables import files_of, picture_of, record_of
 from mechkin_cli.show import Bools, Floats, Listed, Listing
 from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.analysis import Solvable
     from mechkin_cli.arguments import Setting
+    from mechkin_cli.plots import Bands
     from mechkin_cli.show import Bools, Floats
 
 
@@ -132,7 +134,7 @@ class Tolerances(Listed):
         total = np.sum(parts, axis=0)
         with np.errstate(invalid="ignore"):
             shares = {n: part / total for n, part in zip(self.bands, parts, strict=True)}
-        row = self._widest(quantity)
+        row = self.widest(quantity)
         order = sorted(shares, key=lambda name: -float(np.nan_to_num(shares[name][row])))
         return {name: shares[name] for name in order}
 
@@ -162,9 +164,10 @@ class Tolerances(Listed):
         count = known.sum(axis=0)
         with np.errstate(divide="ignore", invalid="ignore"):
             mean = np.where(known, values, 0.0).sum(axis=0) / count
-            off = np.where(known, values - mean, 0.0)
-            square = (off**2).sum(axis=0) / np.maximum(count - 1, 0)
-            fourth = (off**4).sum(axis=0) / count
+            squares = np.where(known, values - mean, 0.0) ** 2
+            square = squares.sum(axis=0) / np.maximum(count - 1, 0)
+            # a product: numpy's fourth power is the machine's own
+            fourth = (squares * squares).sum(axis=0) / count
             deviation = np.sqrt(square)
             error = np.sqrt(np.maximum(fourth - square**2, 0.0) / count) / (2.0 * deviation)
             of_mean = deviation / np.sqrt(count)
@@ -194,6 +197,27 @@ class Tolerances(Listed):
         counted as the samples that are `lost`."""
         lost: NDArray[np.intp] = (~np.isfinite(self._runs(quantity)[self.samples :])).sum(axis=0)
         return np.where(np.isnan(self.nominal(quantity)), 0, lost)
+
+    def widest(self, quantity: str) -> int:
+        """The row in which the quantity scatters most, from 0."""
+        return int(np.nan_to_num(self.scatter(quantity), nan=-1.0).argmax())
+
+    def place_of(self, row: int) -> str:
+        """Where a row stands, in words: `170 deg`."""
+        return f"{self.slopes.place[row]:.6g} {self.slopes.along_unit}".rstrip()
+
+    def files(self, formats: Collection[str] = ("csv", "md")) -> dict[str, bytes]:
+        """What `mechkin tolerances` writes, by name of file: the rows, and what each tolerance
+        contributes."""
+        return files_of(self, formats)
+
+    def record(self) -> dict[str, Any]:
+        """All of it as plain data, numbers that there are none of as None."""
+        return record_of(self)
+
+    def picture(self) -> Bands:
+        """The bands over the rows and the contributions, as a picture; `image("svg")` draws it."""
+        return picture_of(self)
 
     def to_pandas(self) -> pandas.DataFrame:
         """A line for each row: the place, then of each quantity its columns: `O4.theta`, `least`,
@@ -231,10 +255,10 @@ class Tolerances(Listed):
         """Each quantity where it scatters most, and who makes it."""
         rows, notes = [], []
         for quantity in self.slopes.quantities:
-            row = self._widest(quantity)
+            row = self.widest(quantity)
             low, high = self.worst(quantity)
             sampled, scatter = self.sampled(quantity), self.scatter(quantity)
-            place = f"{self.slopes.place[row]:.6g} {self.slopes.along_unit}".rstrip()
+            place = self.place_of(row)
             cells = (self.nominal(quantity)[row], low[row], high[row], scatter[row])
             numbers = tuple(f"{one:.6g}" for one in cells)
             error = f"{sampled.deviation[row]:.4g} +- {sampled.deviation_error[row]:.1g}"
@@ -266,9 +290,6 @@ class Tolerances(Listed):
 
     def _slopes(self, quantity: str) -> list[tuple[Floats, Band]]:
         return [(self.slopes[quantity, name], band) for name, band in self.bands.items()]
-
-    def _widest(self, quantity: str) -> int:
-        return int(np.nan_to_num(self.scatter(quantity), nan=-1.0).argmax())
 
     def _runs(self, quantity: str) -> Floats:
         return np.asarray(self._varied[self.slopes.texts[quantity]][:, self.slopes.rows])

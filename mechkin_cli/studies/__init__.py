@@ -6,6 +6,7 @@ from mechkin_cli.lazy import lazy_names
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from mechkin_cli.studies.formats import *
     from mechkin_cli.studies.results import *
     from mechkin_cli.studies.shares import *
     from mechkin_cli.studies.source import *
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "formats": "Format Heading format_of",
         "results": "Spread StudyFiles StudyResults",
         "shares": "share_of",
         "source": "open_study",

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from mechkin_cli.view.branch import *
     from mechkin_cli.view.drawing import *
     from mechkin_cli.view.gallery import *
-    from mechkin_cli.view.joints import link_poses as link_poses
+    from mechkin_cli.view.joints import *
     from mechkin_cli.view.page import *
     from mechkin_cli.view.scene import *
 
@@ -22,7 +22,7 @@ __getattr__, __dir__ = lazy_names(
         "branch": "run_marks",
         "drawing": "PICTURE_NAME mechanism_picture",
         "gallery": "INDEX_NAME Card card_of index_page",
-        "joints": "link_poses",
+        "joints": "carried continuous drawn_joints link_poses link_shape plane_of_motion upwards",
         "page": "PAGE_NAME",
         "scene": "view_page write_view",
     },

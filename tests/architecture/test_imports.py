@@ -83,6 +83,7 @@ HOMES = {
     "pyarrow": {"studies"},
     "distributed": {"studies"},
     "matplotlib": {"analysis", "plots"},
+    "ezdxf": {"bridges"},
 }
 """Libraries that only some rooms may import."""
 
