@@ -250,7 +250,7 @@ SWEEP: Final = "sweep"
 FORMAT = 1
 """The version of the file format, as files say it in `format:`."""
 
-__version__ = "0.1.0"
+__version__ = "1.0.0rc1"
 """The version of the package; its metadata are built from this line."""
 
 

@@ -24,6 +24,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.assembly.home import is_cyclic, probe_of, wrapped
 from mechkin_cli.diagnostics import Diagnostic, Number
+from mechkin_cli.kernel.functions import total
 from mechkin_cli.mechanism import GROUND_NAME, Problem, dimension_of, is_angle, norm
 from mechkin_cli.plan import Demand, Layout, home_state
 from mechkin_cli.record import dataclass, field
@@ -254,7 +255,7 @@ def _unique(session: Session, state: Floats, condition: float) -> float:
 
 
 def _radius(unknowns: int, condition: float, reaches: list[float]) -> float:
-    bend = unknowns * sum(sqrt(reach * reach + 1.0) for reach in reaches)
+    bend = unknowns * total(sqrt(reach * reach + 1.0) for reach in reaches)
     return 2.0 * (1.0 - tolerances.CONDITION_DIGITS) / (condition * bend)
 
 

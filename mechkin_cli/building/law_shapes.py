@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.exact import PI, Exact, nearest
+from mechkin_cli.kernel.functions import total
 from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.tape import JetNumber, Recorded, TraceLost, as_recorded, cos, is_traced, sin
 from mechkin_cli.tolerances import COURSE_JUMP, COURSE_SAME
@@ -130,7 +131,7 @@ class PiecewiseLaw:
         found, used = [], 6
         for size in self._sizes:
             columns = self._columns[used : used + 1 + size]
-            found.append(max(sum(map(abs, row)) for row in zip(*columns, strict=True)))
+            found.append(max(total(map(abs, row)) for row in zip(*columns, strict=True)))
             used += 1 + size
         found[0] += max(map(abs, anchors))
         return np.array(found)

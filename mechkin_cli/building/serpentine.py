@@ -22,6 +22,7 @@ from mechkin_cli.building.belts import belt_pretension, belt_radii, on_wheel
 from mechkin_cli.building.cable_places import Place, stretch
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.building.wheels import Turning, against, wheel_bearings
+from mechkin_cli.kernel.functions import total
 from mechkin_cli.mechanism import (
     ZERO,
     Attached,
@@ -253,7 +254,7 @@ def _closes(
                 limit="more than 0",
             )
             return False
-    way = -sum(place.side * wrap for place, wrap in zip(loop.places, wraps, strict=True))
+    way = -total(place.side * wrap for place, wrap in zip(loop.places, wraps, strict=True))
     if not abs(abs(way) - 2.0 * pi) < 1.0:
         fields.error(
             "belt-crosses",

@@ -18,10 +18,9 @@ from typing import Annotated, Any
 import typer
 
 from mechkin_cli.cli.commands import COMMANDS, all_formats
-from mechkin_cli.cli.messages import ExitCode, discard, put, say, tell_notes
+from mechkin_cli.cli.messages import ExitCode, discard, put, say, tell_notes, version_text
 from mechkin_cli.cli.words import Command, Word
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.verdict import __version__
 
 Offers = list[str]
 
@@ -291,10 +290,12 @@ for command in COMMANDS.values():
 
 @app.callback(invoke_without_command=True)
 def _options(
-    version: bool = typer.Option(False, "--version", help="Print the version and exit."),
+    version: bool = typer.Option(
+        False, "--version", help="Print the versions of program, kernel and file format, and exit."
+    ),
 ) -> None:
     if version:
-        put(f"mechkin {__version__}\n")
+        put(version_text())
         raise typer.Exit()
 
 

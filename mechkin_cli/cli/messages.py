@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from mechkin_cli import model, reading, tables
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError, legible, whole
-from mechkin_cli.verdict import versions
+from mechkin_cli.verdict import FORMAT, __version__, versions
 
 if TYPE_CHECKING:
     from mechkin_cli.model import Model
@@ -199,6 +199,17 @@ def put_json(record: Record) -> None:
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     is_utf8 = encoding.lower().replace("_", "-") in ("utf-8", "utf8")
     put(tables.json_text(versions() | record, ascii=not is_utf8))
+
+
+def version_text() -> str:
+    """The versions of program, kernel and file format, a line each."""
+    from mechkin_cli import kernel as core
+
+    try:
+        kernel = f"{core._kernel.widest} lanes ({core._kernel.instructions[core._kernel.widest]})"
+    except core.KernelMissing:
+        kernel = "missing"
+    return f"mechkin {__version__}\nkernel  {kernel}\nformat  {FORMAT}\n"
 
 
 def stdout_failed(error: OSError) -> None:

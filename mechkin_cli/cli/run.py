@@ -21,10 +21,10 @@ from mechkin_cli.cli.messages import (
     stdout_failed,
     tell_as,
     tell_notes,
+    version_text,
 )
 from mechkin_cli.cli.words import Command, Word
 from mechkin_cli.diagnostics import InvalidFile, MechkinError, UsageError
-from mechkin_cli.verdict import __version__
 
 TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def run() -> int:
 def _run() -> int:
     try:
         if sys.argv[1:] == ["--version"] and "_MECHKIN_COMPLETE" not in os.environ:
-            put(f"mechkin {__version__}\n")
+            put(version_text())
             return ExitCode.OK
         plain = plain_line(sys.argv[1:])
         if plain is not None:

@@ -12,6 +12,7 @@ Floats = NDArray[np.float64]
 Triple = Sequence[float]
 
 widest: Final[int]
+instructions: Final[dict[int, str]]
 
 class JointTableRow(TypedDict):
     letter: str

@@ -10,8 +10,11 @@ arguments; special values (signed zeros, infinities, nan, values outside the dom
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import reduce
 from math import ldexp, pi
-from typing import Any, TypeVar
+from operator import add
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +30,8 @@ from mechkin_cli.tolerances import MOST_THREADS
 # whole process. No result depends on either; the path of a sweep is followed one row at a time, in
 # the narrowest packs, by one thread.
 
-INSTRUCTIONS = {2: "SSE2", 4: "AVX2", 8: "AVX-512"}
-"""What a width needs of an x86 processor."""
+INSTRUCTIONS: Final[dict[int, str]] = _kernel.instructions
+"""The widths that this machine has, with what each needs of the processor."""
 
 _forced = 0
 _forced_threads = 0
@@ -36,7 +39,7 @@ _forced_threads = 0
 
 def widths() -> tuple[int, ...]:
     """The widths that this machine has."""
-    return tuple(lanes for lanes in INSTRUCTIONS if lanes <= _kernel.widest)
+    return tuple(INSTRUCTIONS)
 
 
 def force_width(lanes: int) -> None:
@@ -102,6 +105,13 @@ Value = TypeVar("Value", float, FloatArray)
 
 
 _Operation = _kernel.Operation
+
+
+def total(values: Iterable[Any]) -> Any:
+    """The sum of floats, or of what adds as they do, from the first to the last, each sum rounded;
+    0 without any. Python's `sum` compensates for the rounding of floats from 3.12 on, so that its
+    last digits are those of a version."""
+    return reduce(add, values, 0)
 
 
 def sin(x: Value) -> Value:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.kernel.functions import total
 from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import Joint
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
@@ -74,7 +75,7 @@ class Extent(NamedTuple):
 
     def value(self, read: Callable[[Term], Floats]) -> Floats | float:
         """At the states at which `read` finds the terms (states,)."""
-        return float(self.drawn) + sum(read(term) for term in self.terms)
+        return float(self.drawn) + total(read(term) for term in self.terms)
 
 
 class Arm(NamedTuple):

@@ -371,6 +371,6 @@ def _frame_quaternion(frame: Frame) -> Four:
         (c, e, f, 1.0 - m00 - m11 + m22),
     )
     best = max(range(4), key=lambda k: rows[k][k])
-    size = sqrt(sum(part * part for part in rows[best]))
+    size = sqrt(functions.total(part * part for part in rows[best]))
     w, x, y, z = (np.asarray(part / size) for part in rows[best])
     return (w, x, y, z)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.kernel.functions import total
 from mechkin_cli.mechanism import CellKind, Course, Parameter
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session.cells import Cells, Formula
@@ -158,7 +159,7 @@ class Route:
         for cell in range(edges.size - 1):
             at = edges[cell] + (edges[cell + 1] - edges[cell]) * np.linspace(0, 1, LENGTH_SAMPLES)
             changes = np.abs(np.diff(self.jets(cell, at)[:, :, 0], axis=0))
-            length = sum(np.max(changes, axis=1, initial=0.0).tolist())
+            length = total(np.max(changes, axis=1, initial=0.0).tolist())
             found.append(length if 0.0 < length < np.inf else 1.0)
         return found
 

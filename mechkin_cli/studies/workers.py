@@ -169,6 +169,8 @@ def end_without_warnings() -> None:
 
     Before the first pool; a tracker that runs already is left as it is.
     """
+    if os.name != "posix":
+        return  # no tracker elsewhere: nothing of pools outlives their processes
     own = "ignore::UserWarning:multiprocessing.resource_tracker"
     before = os.environ.get("PYTHONWARNINGS")
     os.environ["PYTHONWARNINGS"] = own if before is None else f"{before},{own}"

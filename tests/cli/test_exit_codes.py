@@ -8,6 +8,8 @@ from cli import files
 from references import RCSR
 
 import mechkin_cli as mk
+from mechkin_cli import kernel
+from mechkin_cli.kernel.functions import INSTRUCTIONS
 
 
 @pytest.fixture(autouse=True)
@@ -127,4 +129,19 @@ def test_an_interrupt_ends_with_130(mechkin, monkeypatch) -> None:
 
 def test_the_version_is_that_of_the_installed_package(mechkin) -> None:
     assert mk.__version__ == metadata.version("mechkin")
-    assert mechkin("--version").out == f"mechkin {mk.__version__}\n"
+    lanes = kernel._kernel.widest
+    lines = (
+        f"mechkin {mk.__version__}",
+        f"kernel  {lanes} lanes ({INSTRUCTIONS[lanes]})",
+        "format  1",
+    )
+    assert mechkin("--version").out.splitlines() == [*lines]
+
+
+def test_the_version_is_told_without_a_kernel(mechkin, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mechkin_cli.kernel._kernel", None)
+    monkeypatch.delattr(kernel, "_kernel", raising=False)
+    assert mechkin("--version").out.splitlines()[:2] == [
+        f"mechkin {mk.__version__}",
+        "kernel  missing",
+    ]

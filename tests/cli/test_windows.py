@@ -20,6 +20,7 @@ from mechkin_cli import load
 from mechkin_cli.cli import interrupts, messages, windows
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import read_document, text
+from mechkin_cli.studies import workers
 from mechkin_cli.tables import writers
 
 
@@ -224,6 +225,15 @@ def test_without_locks_files_are_written_all_the_same(
     claim = writers.Claim(tmp_path / "out")
     assert not claim.locked
     claim.release()
+
+
+def test_no_tracker_of_resources_is_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    def started() -> None:
+        raise ModuleNotFoundError("No module named '_posixsubprocess'")
+
+    monkeypatch.setattr(workers.resource_tracker, "ensure_running", started)
+    monkeypatch.setattr(workers, "os", Renamed())
+    workers.end_without_warnings()
 
 
 def test_a_pipe_without_reader_ends_quietly(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -297,3 +297,10 @@ def test_arrays_of_any_layout():
 def test_different_lengths_are_refused():
     with pytest.raises(ValueError, match="different length"):
         functions.atan2(np.zeros(3), np.zeros(2))
+
+
+def test_a_total_is_summed_from_the_first_to_the_last() -> None:
+    """By IEEE 754: 1e16 + 1 rounds to 1e16; what Python's `sum` gives depends on its version."""
+    assert functions.total([1e16, 1.0, 1.0, -1e16]) == 0.0
+    assert functions.total([1.0, 1.0, 1e16, -1e16]) == 2.0
+    assert functions.total([]) == 0

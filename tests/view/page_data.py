@@ -128,7 +128,7 @@ def page_data(
 ) -> dict[str, Any]:
     return {
         "format": 1,
-        "program": "mechkin 0.1.0",
+        "program": "mechkin 1.0.0rc1",
         "file": f"{name}.yaml",
         "name": name,
         "units": {"length": "mm", "angle": "deg", "force": "N", "moment": "N*mm"},

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 namespace nb = nanobind;
@@ -69,6 +70,9 @@ Arguments::Memory Arguments::memory_of(nb::handle object, const char* name, cons
 }
 
 void Arguments::check_shape(const Memory& array, const char* name, long columns, int parts) {
+  // a `long` counts what an array holds; on Windows it has 32 bits
+  if (array.bytes / sizeof(double) > (std::size_t)std::numeric_limits<long>::max())
+    refuse(name, std::to_string(array.bytes / sizeof(double)) + " numbers, more than this system counts; take fewer rows");
   const std::size_t dimensions = (columns == ONE_PER_ROW ? 1 : 2) + (parts > 1);
   if (array.dimensions != dimensions)
     refuse(name, std::to_string(array.dimensions) + " dimensions instead of " + std::to_string(dimensions));

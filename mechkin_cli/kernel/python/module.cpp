@@ -74,6 +74,10 @@ NB_MODULE(_kernel, m) {
   nb::set_leak_warnings(false);
   m.doc() = "Compiled core of mechkin: closure, motion and reactions of a planned mechanism, in lanes.";
   m.attr("widest") = kernel_unit()->lanes;
+  nb::dict widths;
+  for (int lanes : {2, 4, 8})
+    if (kernel_unit(lanes)) widths[nb::int_(lanes)] = instructions(lanes);
+  m.attr("instructions") = widths;
   m.def("joint_table", &joint_table);
   m.def("tree_table", &tree_table);
   m.def("elementwise", &elementwise, "operation"_a, "x"_a, "y"_a, "lanes"_a = 0);

@@ -54,6 +54,18 @@ const KernelUnit* kernel_unit(int lanes) {
   return nullptr;
 }
 
+const char* instructions([[maybe_unused]] int lanes) {
+#if MECHKIN_X86
+  return lanes == 8 ? "AVX-512" : lanes == 4 ? "AVX2" : "SSE2";
+#elif defined(__aarch64__)
+  return "NEON";
+#elif defined(__wasm_simd128__)
+  return "SIMD128";
+#else
+  return "baseline";
+#endif
+}
+
 const DoubleDoubleUnit& double_double_unit([[maybe_unused]] int lanes) {
 #if MECHKIN_WIDE
   if ((lanes == 0 || lanes >= 8) && kernel_unit()->lanes == 8) return *mechkin_double_double_avx512();

@@ -12,6 +12,9 @@ const KernelUnit* kernel_unit(int lanes = 0);
 // The equations of motion of the same width.
 const MotionUnit* motion_unit(int lanes = 0);
 
+// What a width needs of the processor, as people call it.
+const char* instructions(int lanes);
+
 // Round to nearest, denormals kept, for the life of the object; the caller's state comes back after it.
 class FloatingPointState {
  public:
