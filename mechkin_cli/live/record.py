@@ -88,7 +88,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     problem = design.problem
     names = list(varied.recorder.inputs)
     try:
-        recording = _Recording(analysis, data, varied)
+        recording = Recording(analysis, data, varied)
         record = recording.record()
     except (LeftOut, TraceLost, ValueError, TypeError) as e:
         globals()["WHY"] = repr(e)
@@ -194,7 +194,7 @@ def _recordable(base: Any, names: Sequence[str]) -> list[str]:
     return held if len(held) == len(names) or base.variation(tuple(held)) is not None else held[:1]
 
 
-class _Recording:
+class Recording:
     """Everything that is recorded of one sweep for its page."""
 
     def __init__(
@@ -439,6 +439,7 @@ class _Recording:
             demand |= Demand.CONDITION
         if demand & Demand.FORCES and demand & Demand.VELOCITY:
             demand |= Demand.POWER
+        self.demand = demand
         self.reading = variation.reading(self.wanted.values())
         width = sum(slot.stop - slot.start for slot in self.reading.slots.values())
         if width * problem.motion.rows > MOST_LIVE_NUMBERS:

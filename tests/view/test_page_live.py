@@ -210,6 +210,37 @@ def test_what_is_taken_along(live: Live) -> None:
     np.testing.assert_allclose(centres, expected, atol=1e-4)
 
 
+def test_the_motion_is_filmed(live: Live) -> None:
+    browser = live()
+    browser.evaluate("window.mechkin.data.view.speed = 0.3")
+    assert saved(browser, "Motion as film").startswith(b"\x1a\x45\xdf\xa3"), "WebM"
+    assert row(browser) == 0, "as before"
+
+
+def test_a_hostile_page_of_many_rows_and_sixty_parameters(show: Show) -> None:
+    hostile = '<img src=x onerror="window.hacked=1">&amp;\u202e</script>'
+    data = four_bar(rows=4000, poses=500)
+    data["live"] = {"file": {"text": hostile, "spans": {hostile: [0, 4]}}}
+    browser = show(data)
+    browser.evaluate(
+        KERNEL.replace("const parameters = [", "const more = Array.from({ length: 56 }, (_, k) => "
+        f"({{ name: {hostile!r} + k, unit: {hostile!r}, value: 0, text: '', low: -1, high: 1 }}));"
+        "const parameters = [...more,").replace("rows: Int32Array.from(degrees, (_, k) => k)",
+        "rows: own.poses.rows").replace('words: `', f'words: {hostile!r} + `')
+    )  # fmt: skip
+    assert browser.evaluate("document.querySelectorAll('.dimension').length") == 60
+    set_to_first = "window.mechkin.dimensions.set('a', 33)"
+    browser.evaluate(f"{set_to_first}; {SETTLED}")
+    browser.evaluate("window.mechkin.dimensions.set('a', 58)")
+    browser.evaluate(f"window.mechkin.dimensions.set({(hostile + '3')!r}, 0.5); {SETTLED}")
+    for tab in ("peaks", "tables", "curves"):
+        browser.click(f"#tab-{tab}")
+    for name in ("Download file", "Curves as SVG", "Picture as SVG", "Picture as DXF"):
+        assert saved(browser, name)
+    assert browser.evaluate("window.hacked ?? null") is None
+    assert browser.evaluate("document.querySelectorAll('img:not(#printed)').length") == 0
+
+
 def test_the_parameters_are_copied(live: Live) -> None:
     browser = live()
     browser.evaluate("navigator.clipboard.writeText = async (text) => (window.copied = text)")

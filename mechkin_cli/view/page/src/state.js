@@ -119,7 +119,7 @@ export class State extends EventTarget {
       const [own] = this.fileBranches(run);
       this.#changed.set(run, new Branch({ ...own.packed, ...branch, name: own.name, own: own.own }, this.data.links.length));
       const made = new Map((tables ?? []).map((table) => [table.name, table]));
-      this.tables = this.tables.map((table) => (table.run === name && made.has(table.name) ? { ...table, ...made.get(table.name) } : table));
+      this.tables = this.tables.map((table) => (table.run === name ? (made.get(table.name) ?? table) : table));
     }
     if (wasOwn) [this.branch] = this.branches();
     this.place = Math.min(this.place, Math.max(0, this.branch.rows - 1));

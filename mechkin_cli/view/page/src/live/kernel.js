@@ -172,14 +172,19 @@ export class LiveRun {
 
   /**
    * What the sweep gives with some parameters (by name, in the file's units; others as in the file).
-   * @returns {{end, words, milliseconds, branch, tables, drawn, peaks}}  branch and tables as in the page's data, null
-   *   where no row is there
+   * @returns {{end, words, milliseconds, branch, tables}}  branch and tables as in the page's data, not there where no row
+   *   is; texts of a table are made when they are first read
    */
   compute(values) {
     const start = performance.now();
     const found = this.#found(values);
     found.milliseconds = performance.now() - start;
     return found;
+  }
+
+  /** The kernel's run of the last parameters alone, for measurements. */
+  runAlone() {
+    this.#kernel.runVariant(this.plan, this.#places.parameters, this.#rows, this.#places.told);
   }
 
   #found(values) {
@@ -194,6 +199,7 @@ export class LiveRun {
       const end = ENDS[told[0]];
       const [first, last] = [told[1], told[2]];
       const words = this.#words(end, told);
+      this.stopped = told[3] === 1 || told[4] === 1;
       if (last <= first) return { end, words };
       kernel.runTape(this.tapes.numbers, 1, at.parameters, at.numbers);
       this.numbers = kernel.doubles(at.numbers, this.numberCount).slice();
@@ -246,7 +252,7 @@ export class LiveRun {
   }
 
   #result(end, words, first, last) {
-    const judged = this.tables.verdicts(first, last);
+    const judged = this.tables.verdicts(first, last, this.stopped ? "beyond-dead-centre" : "branch-lost");
     if (end === "complete" && judged.doubtful) {
       return { end: "incomplete", words: "a row stands next to a dead centre: the command looks at it more closely" };
     }
@@ -258,21 +264,21 @@ export class LiveRun {
       rows: this.count, x: axis, poses: posesOf(this, first, last), status: whole, marks: [],
       columns: made.columns(own.columns), arrows: this.#arrows(own, first, last),
     };
-    return { end, words, branch, tables: made.tables, peaks: made.peaks };
+    return { end, words, branch, tables: made.tables };
   }
 
-  /** Where what is drawn hangs on parameters, its numbers; see drawn.js. */
+  /** What joints and drives exert, at each pose. */
   #arrows(own, first, last) {
-    return this.live.arrows.map(({ arrow, cells, place }) => {
+    const { length: [multiplier, divisor], arrows } = this.live;
+    return arrows.map(({ arrow, cells, place }) => {
       const base = own.arrows[arrow];
       const values = new Float32Array(3 * (last - first));
       cells.forEach((cell, k) => {
         const column = this.cell(cell);
         for (let row = first; row < last; row += 1) values[3 * (row - first) + k] = column[row];
       });
-      const { length: [multiplier, divisor] } = this.live;
-      const own3 = place.map((at, k) => (at === null ? base.place[k] : (this.numbers[at] * divisor) / multiplier));
-      return { ...base, place: own3, values };
+      const now = place.map((at, k) => (at === null ? base.place[k] : (this.numbers[at] * divisor) / multiplier));
+      return { ...base, place: now, values };
     });
   }
 
