@@ -121,6 +121,17 @@ def by_page(folder: Path, browser: Browser) -> float:
             until(lambda: "crank: 44 mm" in (folder / "bar.yaml").read_text(encoding="utf-8"))
 
         walk.act("(write it into the file)", write)
+        text = (folder / "bar.yaml").read_text(encoding="utf-8")
+        shown = "Number(document.documentElement.dataset.picture ?? 0)"
+        until(lambda: browser.inside("window.mechkin.dimensions?.own?.crank === 44"))
+
+        def save() -> None:
+            before = browser.evaluate(shown)
+            longer = text.replace("base: 100 mm", "base: 101 mm")
+            (folder / "bar.yaml").write_text(longer, encoding="utf-8")
+            until(lambda: browser.evaluate(shown) > before)
+
+        walk.act("(save another base in an editor, see it)", save)
     finally:
         for process in served:
             process.send_signal(signal.SIGINT)
