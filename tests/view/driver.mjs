@@ -46,7 +46,7 @@ const does = {
       const element = await frame.frameElement().catch(() => null);
       const isSeen = await element?.evaluate((each) => !each.inert).catch(() => false);
       // a frame may go while it is asked
-      if (isSeen) return frame.evaluate(script).catch((error) => (/detached/.test(error) ? null : Promise.reject(error)));
+      if (isSeen) return frame.evaluate(script).catch((error) => (/detached|closed/.test(error) ? null : Promise.reject(error)));
     }
     return null;
   },

@@ -59,13 +59,19 @@ def test_the_page_follows_the_file(server: LiveServer, browser: Browser) -> None
     assert browser.inside("document.querySelector('#tables').hidden") is False
     position = "window.mechkin.theatre.stage.camera.position.toArray()"
     assert browser.inside(position) == pytest.approx([3, 4, 500])
-    # what the page says it was set to is written on request; an expression only when it is named
-    write_from_the_page(browser, {"r": 44, "e": 30})
+    # what the page is set to is written on request; an expression only when it is named
+    eventually(lambda: browser.inside("window.mechkin.dimensions?.parameters.length"), 1)
+    browser.inside("window.mechkin.dimensions.set('r', 44)")
+    write = "document.querySelector('#write:not([hidden])')?.textContent"
+    eventually(lambda: browser.evaluate(write), "Write r into the file")
     browser.click("#write")
     said = "document.querySelector('#said').textContent"
     eventually(lambda: browser.evaluate(said), "written: r: 44 mm")
     assert path.read_text() == CRANK.replace("40 mm", "44 mm")
     eventually(lambda: browser.inside(OFF), 44)
+    write_from_the_page(browser, {"e": 30})
+    browser.click("#write")
+    eventually(lambda: browser.evaluate("document.querySelectorAll('#acts button').length"), 2)
     browser.click("#acts button")
     eventually(lambda: browser.evaluate(said), "written: e: 30 mm")
     assert path.read_text() == CRANK.replace("40 mm", "44 mm").replace("r/2", "30 mm")
