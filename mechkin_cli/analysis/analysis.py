@@ -121,6 +121,10 @@ class Solvable(Protocol):
         """All assembly modes at the first row of a run."""
         ...
 
+    def live_record(self, analysis: Any, data: Any) -> dict[str, Any] | None:
+        """What the page of a run computes it from with other parameters; None where it cannot."""
+        ...
+
 
 class Analysis(Listed):
     """Results of a sweep or a response: `r["O2.theta"]` is an array over the rows, in the file's

@@ -13,7 +13,7 @@ from base64 import b64encode
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
@@ -303,7 +303,7 @@ class ShownModel(Protocol):
         """All assembly modes at the first row of a run."""
         ...
 
-    def live_record(self, analysis: ShownAnalysis, data: Plain) -> Plain | None:
+    def live_record(self, analysis: Any, data: Any) -> dict[str, Any] | None:
         """What the page of a run computes it from with other parameters; None where it cannot."""
         ...
 

@@ -3,8 +3,8 @@
     python tests/benchmark/live.py [--rows 361] [--repeat 50]
 
 A line for each mechanism: milliseconds of `LiveRun.compute` in node with all that a change needs
-(rows, cells and their texts, poses, arrows), of its run of rows alone, and of the same run by the
-native kernel with one thread, each the least of many of the same parameters; then the ratio of the runs.
+(rows, cells, poses, arrows), of its run of rows alone, and of the same run by the native kernel
+with one thread, each the least of many of the same parameters; then the ratio of the runs.
 """
 
 from __future__ import annotations
@@ -53,7 +53,9 @@ def text_of(name: str, rows: int) -> str:
         text = text.replace("\nlinks:", f"\nparameters: {{dim: {place[1]} {unit}}}\nlinks:", 1)
     if name == "7R":
         return text  # a full turn in steps of a degree
-    return re.sub(r"(from: [^,}]*, to: [^,}]*), (?:step|count): [^,}]+", rf"\1, count: {rows}", text)
+    return re.sub(
+        r"(from: [^,}]*, to: [^,}]*), (?:step|count): [^,}]+", rf"\1, count: {rows}", text
+    )
 
 
 def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
@@ -65,7 +67,9 @@ def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
     changed = {p["name"]: p["value"] * 1.001 for p in parameters}
     given = {"data": json.loads(script_json(data)), "cases": [changed], "repeat": repeat}
     command = ["node", str(PROGRAM), str(MODULE)]
-    done = subprocess.run(command, input=json.dumps(given), capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, input=json.dumps(given), capture_output=True, text=True, check=False
+    )
     if done.returncode:
         sys.exit(done.stderr)
     (found,) = json.loads(done.stdout)
@@ -95,7 +99,8 @@ def main() -> None:
     for name in given.names:
         found = measured(name, given.rows, given.repeat)
         ratio = found["run"] / found["native"]
-        print(f"{name:22} {found['change']:8.2f} {found['run']:7.2f} {found['native']:7.2f} {ratio:7.1f}")
+        times = f"{found['change']:8.2f} {found['run']:7.2f} {found['native']:7.2f}"
+        print(f"{name:22} {times} {ratio:7.1f}")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,12 @@
-"""Builds the core for a page: the interface in C compiled to WebAssembly with 128-bit SIMD.
+"""Builds the core for a page: the interface in C as WebAssembly with 128-bit SIMD.
 
-    python mechkin_cli/kernel/wasm/build.py            # writes mechkin.wasm.gz and lock.json beside this file
-    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the module, byte by byte
+    python mechkin_cli/kernel/wasm/build.py            # mechkin.wasm.gz and lock.json beside this
+    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the bytes
 
-It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for wasm32). Only what a page
-uses is linked: variants of a sweep, tapes and texts of cells, in the narrowest unit; no threads, no exceptions, no library
-for elementary functions, and no contraction of products and sums, so that every number has the bits of the other units.
+It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for
+wasm32). Only what a page uses is linked: variants of a sweep, tapes and texts of cells, in the
+narrowest unit; no threads, no exceptions, no library for elementary functions, and no contraction
+of products and sums, so that every number has the bits of the other units.
 """
 
 from __future__ import annotations
@@ -29,26 +30,74 @@ LOCK = HERE / "lock.json"
 
 COMMON = [
     *("-target", "wasm32-wasi"),
-    *("-std=c++17", "-msimd128", "-mbulk-memory", "-fno-exceptions", "-fno-rtti", "-fno-stack-protector"),
+    *(
+        "-std=c++17",
+        "-msimd128",
+        "-mbulk-memory",
+        "-fno-exceptions",
+        "-fno-rtti",
+        "-fno-stack-protector",
+    ),
     *("-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden"),
     *("-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-g0", "-DNDEBUG"),
     *("-DMECHKIN_ONE_THREAD=1", f"-ffile-prefix-map={KERNEL}=."),
     *("-Icore", "-Ic"),
 ]
 UNIT = ["-DMECHKIN_LANES=2", "-DMECHKIN_UNIT=mechkin_unit_sse2"]
-FAST = ("rows/unit.cpp", "stepping/infill.cpp", "stepping/row_curve.cpp", "stepping/stepper.cpp", "arithmetic/dense.cpp")
+FAST = (
+    "rows/unit.cpp",
+    "stepping/infill.cpp",
+    "stepping/row_curve.cpp",
+    "stepping/stepper.cpp",
+    "arithmetic/dense.cpp",
+)
 SMALL = (
-    *("plan/plan_builder.cpp", "plan/plan_blocks.cpp", "plan/frozen_plan.cpp", "plan/same_layout.cpp"),
+    *(
+        "plan/plan_builder.cpp",
+        "plan/plan_blocks.cpp",
+        "plan/frozen_plan.cpp",
+        "plan/same_layout.cpp",
+    ),
     *("plan/output_list.cpp", "plan/program_store.cpp", "plan/function_store.cpp"),
-    *("tape/tape_store.cpp", "rows/assembly_size.cpp", "rows/run.cpp", "rows/threads.cpp", "rows/units.cpp"),
-    *("stepping/arc.cpp", "stepping/branch_point.cpp", "stepping/passage.cpp", "stepping/stretch.cpp"),
-    *("stepping/judge.cpp", "stepping/tracker.cpp", "stepping/polyline.cpp", "stepping/orbit.cpp", "stepping/row_pieces.cpp", "stepping/course.cpp"),
+    *(
+        "tape/tape_store.cpp",
+        "rows/assembly_size.cpp",
+        "rows/run.cpp",
+        "rows/threads.cpp",
+        "rows/units.cpp",
+    ),
+    *(
+        "stepping/arc.cpp",
+        "stepping/branch_point.cpp",
+        "stepping/passage.cpp",
+        "stepping/stretch.cpp",
+    ),
+    *(
+        "stepping/judge.cpp",
+        "stepping/tracker.cpp",
+        "stepping/polyline.cpp",
+        "stepping/orbit.cpp",
+        "stepping/row_pieces.cpp",
+        "stepping/course.cpp",
+    ),
     *("stepping/dimension_path.cpp", "stepping/variants.cpp"),
-    *("text/number_text.cpp", "text/plan_text.cpp", "text/table_text.cpp", "../c/mechkin.cpp", "../wasm/room.cpp"),
+    *(
+        "text/number_text.cpp",
+        "text/plan_text.cpp",
+        "text/table_text.cpp",
+        "../c/mechkin.cpp",
+        "../wasm/room.cpp",
+    ),
 )
 EXPORTED = (
     *("mechkin_plan_create", "mechkin_plan_free", "mechkin_page_sizes", "mechkin_page_run"),
-    *("mechkin_tape_create", "mechkin_tape_free", "mechkin_tape_run", "mechkin_tape_outputs", "mechkin_cell_texts"),
+    *(
+        "mechkin_tape_create",
+        "mechkin_tape_free",
+        "mechkin_tape_run",
+        "mechkin_tape_outputs",
+        "mechkin_cell_texts",
+    ),
     *("malloc", "free"),
 )
 LINKED = [
@@ -92,7 +141,12 @@ CACHES = {"ZIG_GLOBAL_CACHE_DIR": "cache", "ZIG_LOCAL_CACHE_DIR": "cache"}
 
 def source_hash() -> str:
     """Of everything that is compiled, and of this script."""
-    files = [*KERNEL.glob("core/**/*.[ch]pp"), *KERNEL.glob("c/*.*"), *HERE.glob("*.cpp"), Path(__file__)]
+    files = [
+        *KERNEL.glob("core/**/*.[ch]pp"),
+        *KERNEL.glob("c/*.*"),
+        *HERE.glob("*.cpp"),
+        Path(__file__),
+    ]
     total = hashlib.sha256()
     for file in sorted(files):
         total.update(str(file.relative_to(KERNEL)).encode() + b"\0" + file.read_bytes() + b"\0")
@@ -101,16 +155,27 @@ def source_hash() -> str:
 
 def main() -> int:
     """Builds or checks; the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("--check", action="store_true", help="build again and compare, write nothing")
-    parser.add_argument("--quick", action="store_true", help="with --check: compare hashes of sources only, build nothing")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument(
+        "--check", action="store_true", help="build again and compare, write nothing"
+    )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="with --check: compare hashes of sources only, build nothing",
+    )
     given = parser.parse_args()
     lock = json.loads(LOCK.read_text()) if LOCK.exists() else {}
     if given.check and given.quick:
         digest = hashlib.sha256(gzip.decompress(MODULE.read_bytes())).hexdigest()
         if lock.get("sources") == source_hash() and lock.get("module") == digest:
             return 0
-        print("mechkin.wasm is not of these sources: run mechkin_cli/kernel/wasm/build.py", file=sys.stderr)
+        print(
+            "mechkin.wasm is not of these sources: run mechkin_cli/kernel/wasm/build.py",
+            file=sys.stderr,
+        )
         return 1
     try:
         zig = version("ziglang")
@@ -124,13 +189,20 @@ def main() -> int:
         module = compiled(Path(folder))
     if given.check:
         if module != gzip.decompress(MODULE.read_bytes()):
-            print("mechkin.wasm is not what its sources give: run mechkin_cli/kernel/wasm/build.py", file=sys.stderr)
+            print(
+                "mechkin.wasm is not what its sources give: run mechkin_cli/kernel/wasm/build.py",
+                file=sys.stderr,
+            )
             return 1
         print(f"mechkin.wasm is what its sources give: {len(module)} bytes")
         return 0
     # packed here, since not every library packs alike
     MODULE.write_bytes(gzip.compress(module, 9, mtime=0))
-    record = {"ziglang": zig, "sources": source_hash(), "module": hashlib.sha256(module).hexdigest()}
+    record = {
+        "ziglang": zig,
+        "sources": source_hash(),
+        "module": hashlib.sha256(module).hexdigest(),
+    }
     LOCK.write_text(json.dumps(record, indent=2) + "\n")
     print(f"mechkin.wasm: {len(module)} bytes, {MODULE.stat().st_size} packed")
     return 0
