@@ -114,8 +114,13 @@ def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
     value = float(units.from_si(float(quantity.value), quantity.dimension))  # type: ignore[arg-type]
     text = str(data.get("parameters", {}).get(name, ""))
     written = parse(text).number
-    if written is not None and written.unit is None:
-        value = float(written.value)
+    if written is not None and text.strip().removeprefix(written.text).strip() in (
+        "",
+        units.label(quantity.dimension),
+    ):
+        value = float(
+            written.value
+        )  # as it was written, without the rounding of a way to SI and back
     low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
     conversion = units.conversion(quantity.dimension)
     return {

@@ -69,6 +69,10 @@ class Browser:
     def fill(self, selector: str, value: object) -> None:
         self._ask("fill", selector=selector, value=str(value))
 
+    def drag(self, way: list[list[float]], touch: bool = False) -> None:
+        """Presses the mouse, or puts a finger down, at the first place and lifts it at the last."""
+        self._ask("drag", way=way, touch=touch)
+
     def select(self, selector: str, label: str) -> None:
         self._ask("select", selector=selector, label=label)
 

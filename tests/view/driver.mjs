@@ -16,6 +16,17 @@ let asked = [];
 // what is done shows in the picture after the next one at the latest
 const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
+/** One finger along a way. */
+async function touched(way) {
+  const hand = await context.newCDPSession(page);
+  const send = (type, at) => hand.send("Input.dispatchTouchEvent", { type, touchPoints: at ? [{ x: at[0], y: at[1] }] : [] });
+  await send("touchStart", way[0]);
+  for (const at of way.slice(1)) await send("touchMove", at);
+  await settle();
+  await send("touchEnd");
+  await settle();
+}
+
 const does = {
   async open({ url, width = 1280, height = 800, dark = false, touch = false }) {
     await context?.close();
@@ -33,6 +44,16 @@ const does = {
   press: ({ key }) => page.keyboard.press(key),
   click: ({ selector, at }) => page.locator(selector).first().click(at ? { position: { x: at[0], y: at[1] } } : {}).then(settle),
   tap: ({ selector }) => page.locator(selector).first().tap().then(settle),
+  async drag({ way, touch }) {
+    if (touch) return touched(way);
+    const [first, ...rest] = way;
+    await page.mouse.move(...first);
+    await page.mouse.down();
+    for (const at of rest) await page.mouse.move(...at, { steps: 4 });
+    await settle();
+    await page.mouse.up();
+    return settle();
+  },
   fill: ({ selector, value }) => page.locator(selector).first().fill(String(value)),
   select: ({ selector, label }) => page.locator(selector).first().selectOption({ label }),
   resize: ({ width, height }) => page.setViewportSize({ width, height }).then(settle),

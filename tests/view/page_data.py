@@ -166,9 +166,12 @@ class FourBar:
     """Crank a, coupler b, rocker c, ground d, by the law of cosines; `sign` is the mode."""
 
     a, b, c, d = 30.0, 80.0, 60.0, 90.0
+    """Lengths as the data have them; others may be given by name."""
+
     tip = np.array([0.4, 0.5])  # the coupler point, along and across the coupler in parts of b
 
-    def __init__(self, theta: Floats, sign: float = 1.0) -> None:
+    def __init__(self, theta: Floats, sign: float = 1.0, **lengths: float) -> None:
+        vars(self).update(lengths)
         self.theta = theta
         self.crank = self.a * np.stack([np.cos(theta), np.sin(theta), 0 * theta], axis=1)
         self.pivot = np.array([self.d, 0.0, 0.0])

@@ -15,7 +15,7 @@ from view.page_data import PAGE, PLACE
 
 SOURCES = PAGE.parent / "page"
 TEXT = PAGE.read_text(encoding="utf-8")
-MOST_BYTES = 800_000
+MOST_BYTES = 1_600_000
 
 
 def test_it_is_small() -> None:
@@ -30,7 +30,7 @@ def test_only_its_own_script_and_style_may_run() -> None:
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', TEXT)
     assert policy
     assert "default-src 'none'" in policy[1]
-    assert "unsafe" not in policy[1]
+    assert re.findall("[^ ]*unsafe[^ ;]*", policy[1]) == ["'wasm-unsafe-eval'"], "the kernel alone"
     for name in ("style", "script"):
         contents = re.findall(rf"<{name}>(.*?)</{name}>", TEXT, re.DOTALL)
         assert len(contents) == 1

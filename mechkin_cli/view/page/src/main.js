@@ -5,13 +5,15 @@ import { choice, find } from "./dom.js";
 import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
-import { SaveMenu, connect, liveRun, showLive } from "./live/start.js";
+import { ParentWindow } from "./live/messages.js";
+import { SaveMenu, liveRun, showLive } from "./live/start.js";
 import { showHelp, showNotes } from "./panels/notes.js";
 import { Tables } from "./panels/tables.js";
 import { Tabs } from "./panels/tabs.js";
 import { Tools } from "./panels/tools.js";
 import { preparePaper } from "./paper.js";
 import { Player } from "./player.js";
+import { csvOf } from "./export/csv.js";
 import { saves } from "./export/save.js";
 import { Drag } from "./scene/drag.js";
 import { NoWebGL } from "./scene/stage.js";
@@ -45,16 +47,18 @@ async function start() {
 
 /** Where the page has a kernel, dimensions can be changed; else it is as its file is, and says why. */
 async function enliven(shown) {
-  let dimensions = null;
-  const bring = (run) => (dimensions = showLive(run, shown));
+  const parent = new ParentWindow(shown.state);
+  const bring = (run) => {
+    window.mechkin.dimensions = showLive(run, shown);
+    parent.follow(window.mechkin.dimensions);
+  };
+  window.mechkin.bring = bring;
   try {
     const run = await liveRun(shown.data);
     if (run) bring(run);
   } catch (error) {
     console.warn(`dimensions cannot be changed here: ${error.message}`);
   }
-  connect(shown.state, dimensions);
-  Object.assign(window.mechkin, { dimensions, bring: (run) => (window.mechkin.dimensions = bring(run)) });
 }
 
 function showRuns(data, theme, tabs) {
@@ -131,6 +135,7 @@ function hooks({ data, state, player, curves, theatre }) {
     setBranch: (name) => state.setBranch(name),
     play: () => player.play(),
     pause: () => player.pause(),
+    csv: (number) => csvOf(state.tables[number], state.branches()[0]),
   };
 }
 

@@ -54,7 +54,7 @@ export class Dimensions extends EventTarget {
     if (!(name in this.own) || !Number.isFinite(value)) return;
     const { low = -Infinity, high = Infinity } = this.ends.get(name) ?? {};
     const kept = Math.min(high, Math.max(low, value));
-    if (kept !== value) this.#say(this.#endWords(name, kept));
+    if (kept !== value) this.#say(this.#endWords(name, kept < value ? "high" : "low"));
     this.setAll({ [name]: kept }, finished);
   }
 
@@ -118,7 +118,6 @@ export class Dimensions extends EventTarget {
   /** What the values give; null, with words, where they cannot be. */
   #compute(values) {
     const found = this.run.compute(values);
-    this.milliseconds = found.milliseconds ?? 0;
     if (found.end === "complete" || (found.branch && this.run.endsEarly)) return found;
     this.reason = found.words || "with these dimensions the mechanism cannot be assembled";
     return null;
@@ -129,6 +128,7 @@ export class Dimensions extends EventTarget {
     // an end is where it is for the other parameters as they are
     for (const name of this.ends.keys()) if (changed.some((each) => each !== name)) this.ends.delete(name);
     this.values = values;
+    this.milliseconds = found.milliseconds ?? 0;
     this.show(this.changed ? found : null);
     if (changed.some((name) => !this.#isAtEnd(name))) this.#say("");
     this.dispatchEvent(new Event("change"));
@@ -166,18 +166,20 @@ export class Dimensions extends EventTarget {
       this.#wanted = reached;
     }
     if (found && found.value === search.good) this.#take(reached, found.good);
-    if (search.done) this.#say(`${this.#endWords(name, search.good)} ${sentence(this.reason)}`);
+    if (search.done) this.#say(this.#endWords(name, search.bad > search.good ? "high" : "low"));
   }
 
   #keepEnd(name, { good, bad }) {
+    const side = bad > good ? "high" : "low";
     const known = this.ends.get(name) ?? {};
-    this.ends.set(name, { ...known, [bad > good ? "high" : "low"]: good });
+    this.ends.set(name, { ...known, [side]: good, why: { ...known.why, [side]: this.reason } });
     this.dispatchEvent(new Event("ends"));
   }
 
-  #endWords(name, value) {
+  #endWords(name, side) {
     const { unit } = this.parameters.find((each) => each.name === name);
-    return `${name} can go no further than ${[value, unit].filter((each) => each !== "").join(" ")}.`;
+    const end = this.ends.get(name);
+    return `${name} can go no further than ${unit ? `${end[side]} ${unit}` : end[side]}. ${sentence(end.why[side])}`;
   }
 
   #say(words) {
@@ -218,7 +220,7 @@ export class Dimensions extends EventTarget {
         const wanted = grid.at(end);
         const side = end === grid.first ? "low" : "high";
         if (this.ends.get(name)?.[side] !== undefined || wanted === this.values[name]) continue;
-        const assembles = (value) => this.run.compute({ ...this.values, [name]: value }).end === "complete";
+        const assembles = (value) => this.#compute({ ...this.values, [name]: value }) !== null;
         yield;
         if (assembles(wanted)) continue;
         const search = new EndSearch(grid, this.values[name], wanted);

@@ -1,11 +1,13 @@
 // The panel of dimensions: for each parameter a slider, a field for its number and a way back; undo and redo.
 
 import { element, tick } from "../dom.js";
+import { written } from "./file_text.js";
 import { DimensionRow } from "./row.js";
 
 /** The panel in `host`. */
 export class DimensionPanel {
-  constructor(host, state, dimensions, fixed, acts) {
+  /** @param left  columns of tables that do not follow: {table, label, why, command} */
+  constructor(host, state, dimensions, { fixed, left }, acts) {
     this.dimensions = dimensions;
     const press = (text, title, click) => element("button", { type: "button", title, "aria-label": title, on: { click } }, text);
     this.back = press("↶", "Undo (Ctrl+Z)", () => dimensions.undo());
@@ -17,14 +19,15 @@ export class DimensionPanel {
     this.original = tick("original", state.withOriginal, (on) => state.setWithOriginal(on));
     this.original.title = "Draw the file's own dimensions pale, and their curves dashed";
     this.rows = dimensions.parameters.map((parameter) => new DimensionRow(parameter, dimensions));
-    const takes = acts.map(({ text, act }) => press(text, text, () => this.#act(act)));
+    const takes = acts.map(({ text, short, act }) => press(short, text, () => this.#act(act)));
     host.append(
       element("summary", {}, element("h2", {}, "Dimensions")),
       element("div.actions", { role: "toolbar", "aria-label": "Dimensions" }, this.back, this.on, this.reset, this.original, ...takes, this.copied),
       this.words,
       element("div.rows", {}, ...this.rows.map(({ node }) => node)),
       this.modes,
-      ...fixedList(fixed),
+      ...listed("Changed by a command only", fixed.map(({ name, why, command }) => ({ names: [name], why, command }))),
+      ...listed("Empty with changed dimensions", grouped(left)),
     );
     host.hidden = false;
     for (const event of ["change", "settle"]) dimensions.addEventListener(event, () => this.#show());
@@ -32,6 +35,7 @@ export class DimensionPanel {
     dimensions.addEventListener("words", () => (this.words.textContent = dimensions.words));
     state.watch(() => this.#tellModes(state));
     listen(dimensions);
+    this.commands = host.querySelectorAll("code[data-command]");
     this.#show();
   }
 
@@ -46,6 +50,7 @@ export class DimensionPanel {
     this.reset.disabled = !changed;
     this.copied.textContent = "";
     for (const row of this.rows) row.show();
+    for (const code of this.commands) code.textContent = commandOf(code.dataset.command, this.dimensions);
   }
 
   #tellModes(state) {
@@ -61,13 +66,32 @@ export class DimensionPanel {
   }
 }
 
-/** What cannot be changed here, why, and the command that can. */
-function fixedList(fixed) {
-  if (fixed.length === 0) return [];
-  const items = fixed.map(({ name, why, command }) =>
-    element("li", {}, element("b", {}, name), ` ${why} `, ...(command ? [element("code", {}, command)] : [])));
-  return [element("h3", {}, "Changed by a command only"), element("ul.fixed", {}, ...items)];
+/** What this page does not do, why, and the command that does. */
+function listed(title, all) {
+  if (all.length === 0) return [];
+  const items = all.map(({ names, why, command }) =>
+    element("li", {}, element("b", {}, names.join(", ")), `: ${why} `, ...(command ? [element("code", { data: { command } }, command)] : [])));
+  return [element("details.fixed", {}, element("summary", {}, title, ` (${all.reduce((sum, { names }) => sum + names.length, 0)})`), element("ul", {}, ...items))];
 }
+
+/** Columns that are left out for one reason, together. */
+function grouped(left) {
+  const found = new Map();
+  for (const { table, label, why, command } of left) {
+    if (!found.has(why)) found.set(why, { names: [], why, command });
+    found.get(why).names.push(`${label} of ${table}`);
+  }
+  return [...found.values()];
+}
+
+/** A command with the changed values in it. */
+function commandOf(command, dimensions) {
+  const changed = dimensions.parameters.filter(({ name }) => dimensions.isChanged(name));
+  const given = changed.map((each) => `${each.name}=${quoted(written(each, dimensions.values[each.name]).replaceAll(" ", ""))}`);
+  return given.length > 0 ? command.replace("NAME=VALUE", given.join(" --set ")) : command;
+}
+
+const quoted = (text) => (/^[\w.+-]*$/.test(text) ? text : `'${text}'`);
 
 /** Ctrl+Z and Ctrl+Shift+Z, or Ctrl+Y, wherever no text is being written. */
 function listen(dimensions) {

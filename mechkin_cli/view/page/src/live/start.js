@@ -2,11 +2,11 @@
 
 import { element, find } from "../dom.js";
 import { copy, keep, stemOf } from "../export/save.js";
+import { Attached } from "./attached.js";
 import { Dimensions } from "./dimensions.js";
 import { drawnWith } from "./drawn.js";
 import { changedFile, parameterLines } from "./file_text.js";
 import { LiveRun, loadKernel } from "./kernel.js";
-import { speakWithParent } from "./messages.js";
 import { DimensionPanel } from "./panel.js";
 import { Peaks } from "./peaks.js";
 
@@ -20,11 +20,13 @@ export async function liveRun(data) {
 /** Shows the panel of dimensions and lets everything follow; gives the dimensions. */
 export function showLive(run, { data, state, tabs, menu }) {
   const live = data.live ?? {};
-  const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found)));
+  const attached = new Attached(data);
+  const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found, attached)));
   const file = live.file;
-  const acts = [{ text: "Copy as parameters", act: () => copy(parameterLines(dimensions)) }];
-  if (file) acts.push({ text: "Download file", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
-  new DimensionPanel(find("#dimensions"), state, dimensions, run.fixed ?? live.fixed ?? [], acts);
+  const acts = [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
+  if (file) acts.push({ text: "Download file", short: "Download", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
+  document.body.classList.add("live");
+  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [] }, acts);
   menu?.add(acts);
   new Peaks(find("#peaks"), state);
   tabs.add("peaks", "Peaks", "tables");
@@ -33,15 +35,12 @@ export function showLive(run, { data, state, tabs, menu }) {
 }
 
 /** What was computed, as the state shows it. */
-function changedOf(data, run, found) {
+function changedOf(data, run, found, attached) {
   const drawing = data.live?.drawing;
   const drawn = found.drawn ?? (drawing && run.numbers ? drawnWith(data, drawing, run.numbers) : {});
   const runs = found.runs ?? { [data.live?.run ?? data.runs[0].name]: { branch: found.branch, tables: found.tables } };
-  return { runs, drawn };
+  return { runs, drawn: { ...drawn, ...attached.moved(drawn) } };
 }
-
-/** Lets the parent window, if there is one, hear and set; also where nothing can be changed. */
-export const connect = (state, dimensions) => speakWithParent({ state, dimensions });
 
 /** The menu of what can be taken along, in the head of the page. */
 export class SaveMenu {

@@ -1,0 +1,89 @@
+"""Pages that compute, of the mechanisms kept here: the files they give have the command's bytes."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from references import FILE_OF, SWEPT
+from view.browser import Browser
+from view.watching import SINGLE
+
+import mechkin_cli as mk
+from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.view.joints import link_poses
+from mechkin_cli.view.page import Lengths
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+NAMES = [path.stem for path in SWEPT] if TIMES > 1 else ["planar_four_bar", "rcsr"]
+
+# values of a page's parameters, some steps of their sliders away, with which it computes all rows
+VARIED = """(async (steps) => {
+  const { dimensions } = window.mechkin;
+  const values = {};
+  dimensions.parameters.forEach(({ name, value }, k) => {
+    const grid = dimensions.grids.get(name);
+    const changed = { ...values, [name]: grid.at(grid.indexOf(value) + steps[k % steps.length]) };
+    if (dimensions.run.compute(changed).end === 'complete') Object.assign(values, changed);
+  });
+  dimensions.setAll(values);
+  for (let k = 0; k < 3; k += 1) await new Promise((done) => requestAnimationFrame(done));
+  return dimensions.values;
+})"""
+
+
+def told(browser: Browser) -> dict[str, str]:
+    """The tables of the sweep as CSV, by name."""
+    found: dict[str, str] = browser.evaluate("""Object.fromEntries(window.mechkin.state.tables
+      .map((table, k) => [table, k]).filter(([table]) => table.run === 'sweep')
+      .map(([table, k]) => [table.name, window.mechkin.csv(k)]))""")
+    return found
+
+
+def columns(text: str, without: list[str]) -> list[list[str]]:
+    """The cells of the columns that a page fills."""
+    header, *rows = csv.reader(io.StringIO(text))
+    kept = [k for k, label in enumerate(header) if label not in without]
+    return [[row[k] for k in kept] for row in (header, *rows)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_tables_and_poses_are_those_of_the_command(
+    browser: Browser, tmp_path: Path, name: str
+) -> None:
+    model = mk.load(FILE_OF[name])
+    page = model.view(tmp_path / "page.html", modes=False)
+    browser.open(page)
+    if not browser.evaluate("Boolean(window.mechkin.data.live)"):
+        pytest.skip("nothing of it can be changed in a page")
+    leaves = browser.evaluate("window.mechkin.data.live.left")
+    rng = np.random.default_rng(len(name))
+    for case in range(1 + TIMES):
+        values: dict[str, Any] = {}
+        if case > 0:
+            values = browser.evaluate(f"{VARIED}({rng.integers(-9, 9, 5).tolist()})")
+        analysis = (model.with_parameters(values) if values else model).analyze()
+        mine = told(browser)
+        for table in analysis.tables:
+            theirs = csv_bytes(table).decode()
+            left = [one["label"] for one in leaves if one["table"] == table.name] if values else []
+            if left:
+                assert columns(mine[table.name], left) == columns(theirs, left), values
+            else:
+                assert mine[table.name] == theirs, (name, table.name, values)
+        links = browser.evaluate("window.mechkin.data.links.map(({ name }) => name)")
+        poses = browser.evaluate("[...window.mechkin.state.branch.values]")
+        expected = link_poses(analysis.result, links)
+        expected[:, :, :3] = Lengths(model.problem.units).array(expected[:, :, :3])
+        shown = np.reshape(poses, expected.shape)
+        turned = np.sign(np.einsum("plk,plk->pl", shown[..., 3:], expected[..., 3:]))
+        shown[..., 3:] *= turned[..., None]
+        size = np.abs(expected[..., :3]).max()
+        np.testing.assert_allclose(shown[..., 3:], expected[..., 3:], atol=4 * SINGLE)
+        np.testing.assert_allclose(shown[..., :3], expected[..., :3], atol=4 * SINGLE * (size + 1))
+    assert browser.told()["said"] == []
