@@ -1,8 +1,8 @@
 """What a page needs to compute a sweep with other parameters by itself.
 
-A record of plain data: the plan with its tape for the kernel in the page (`kernel/wasm`), programs of
-cells, and what hangs on parameters in the drawing. The page gives the bytes that the command gives;
-what it cannot compute is named, with the command that does.
+A record of plain data: the plan with its tape for the kernel in the page (`kernel/wasm`), programs
+of cells, and what hangs on parameters in the drawing. The page gives the bytes that
+`Model.with_parameters` gives; what it cannot compute is named, with the command that does.
 """
 
 from __future__ import annotations

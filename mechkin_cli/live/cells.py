@@ -20,7 +20,7 @@ Kind = Literal["slot", "measure", "given", "number"]
 
 class Source(NamedTuple):
     """Where a number of a row comes from: a `slot` of the kernel's outputs, a `measure` (residual,
-    condition, power error), a column that is `given`, or a `number` that is the same in all rows."""
+    condition, power error), a column that is `given`, or a `number` that all rows share."""
 
     kind: Kind
     at: int

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.derived import displacement
 from mechkin_cli.expressions import Vector
-from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, is_angle, reference_point, scale
+from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, reference_point, scale
 from mechkin_cli.tables import effort_names
 from mechkin_cli.tape import Recorded
-from mechkin_cli.units import FORCE, LENGTH, MOMENT
+from mechkin_cli.units import LENGTH
 from mechkin_cli.view import drawn_joints, half_axis, half_frame
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def pose_records(recording: Any, data: Mapping[str, Any]) -> Later:
 
 
 def arrows_of(recording: Any, data: Mapping[str, Any]) -> Later:
-    """The arrows among those of the data that follow from quantities: what joints and drives exert."""
+    """The arrows among those of the data that follow from quantities: of joints and drives."""
     problem = recording.problem
     names = {arrow["name"]: at for at, arrow in enumerate(data["runs"][0]["branches"][0]["arrows"])}
     known: list[tuple[int, str, str, Any]] = []
@@ -167,7 +167,7 @@ def _links(
                 now
                 for was, now in zip(own_points, drawn_points, strict=True)
                 if all(
-                    abs(float(units.from_si(a, LENGTH)) - b) <= 1e-12 * (1.0 + abs(b))
+                    float(units.from_si(float(a), LENGTH)) == b
                     for a, b in zip(was, place, strict=True)
                 )
             )

@@ -1,9 +1,9 @@
 """The record from which a page computes a sweep with other parameters.
 
-Parameters that are numbers in the file vary; what they lead to in plan, tables, arrows and drawing is
-recorded once. Not everything can be: what rests on several runs (coefficients, screws, energies over
-a way), on reactions that redundant constraints leave open, or on a parameter by which the file is
-computed in another way. That is listed with its reason.
+Parameters that are numbers in the file vary; what they lead to in plan, tables, arrows and drawing
+is recorded once. Not everything can be: what rests on several runs (coefficients, screws), on
+reactions that redundant constraints leave open, or on a parameter by which the file is computed in
+another way. That is listed with its reason.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, Vector, parse
+from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, parse
 from mechkin_cli.kernel.plan_text import tape_text
-from mechkin_cli.live.cells import MEASURES, CellRecorder, Source, scalar_of
+from mechkin_cli.live.cells import MEASURES, CellRecorder, scalar_of
 from mechkin_cli.live.drawing import arrows_of, drawing_of, pose_records
 from mechkin_cli.mechanism import (
     BEARING_KINDS,
@@ -30,16 +30,14 @@ from mechkin_cli.mechanism import (
     read_for,
 )
 from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
-from mechkin_cli.record import replace
 from mechkin_cli.session import input_rest
 from mechkin_cli.sweep import has_turns, limited, slack_quantities
-from mechkin_cli.tables import ROW_TEXTS, row_texts, table_sizes
+from mechkin_cli.tables import ROW_TEXTS, Words, row_texts, table_sizes
 from mechkin_cli.tape import Recorded, TraceLost, is_traced, tape_values
 from mechkin_cli.units import LENGTH
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import (
     CONDITION_LIMITS,
-    CONDITION_RATES_UNCLEAR,
     SWEEP,
     Status,
     has_forces,
@@ -90,8 +88,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     try:
         recording = Recording(analysis, data, varied)
         record = recording.record()
-    except (LeftOut, TraceLost, ValueError, TypeError) as e:
-        globals()["WHY"] = repr(e)
+    except (LeftOut, TraceLost, ValueError, TypeError):
         return None
     if record is None:
         return None
@@ -162,7 +159,7 @@ def _variation(design: Design) -> tuple[SessionVariation | None, dict[str, str]]
     """How the design depends on all parameters that a recording holds, and why others are fixed."""
     problem, fixed = design.problem, {}
     document = design.built.document
-    free = []
+    free: list[str] = []
     for name in problem.parameters:
         try:
             expression = parse(str(document.data["parameters"][name]))  # type: ignore[index, call-overload]
@@ -371,8 +368,21 @@ class Recording:
                         measured and evaluated.unit == ""
                     )
                 columns.append(record)
-            found.append({"name": table.name, "columns": columns})
+            found.append(
+                {"name": table.name, "columns": columns, "sizes": self._left_sizes(table, columns)}
+            )
         return found
+
+    def _left_sizes(self, table: Columns, columns: Sequence[Plain | None]) -> dict[str, float]:
+        """By unit, the largest numbers of columns that the page does not compute: as the file has
+        them, they tell how large rounding is for others."""
+        sizes: dict[str, float] = {}
+        for record, column in zip(columns, table.columns, strict=True):
+            if record is None and not isinstance(column.values, Words) and column.unit:
+                finite = np.isfinite(column.values)
+                largest = float(np.abs(column.values).max(initial=0.0, where=finite))
+                sizes[column.unit] = max(largest, sizes.get(column.unit, 0.0))
+        return sizes
 
     def _column_record(self, table: str, layout: ColumnLayout) -> Plain | None:
         text = layout.expression.text.strip()
@@ -411,7 +421,7 @@ class Recording:
         return {
             "words": [status.label for status in Status],
             "condition": [[float(limit), int(code)] for code, limit in CONDITION_LIMITS.items()],
-            "clear": float(CONDITION_RATES_UNCLEAR),
+            "clear": float(tolerances.CONDITION_RATES_UNCLEAR),
             "friction": [slots[name].start for name in frictions if name in slots],
             "undecided": int(Status.friction_undecided),
             "strands": [slots[name].start for name in strands if name in slots],
@@ -508,5 +518,5 @@ class Recording:
         rows = self.analysis.result.row_states
         own = rows.states[:, self.variation.row]
         return own.shape == self.variation.state.shape and bool(
-            np.allclose(own, self.variation.state, rtol=1e-9, atol=1e-9)
+            np.abs(own - self.variation.state).max(initial=0.0) <= tolerances.SAME_MODE
         )

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "design": "Draws VariedDesign base_of draws file_values has_scipy needs_scipy normal one_value "
-        "parameter_values uniform varied_design with_parameters",
+        "design": "Draws VariedDesign base_of draws file_values has_scipy needs_scipy normal "
+        "one_value parameter_values uniform varied_design with_parameters",
         "many": "vary",
         "variation": "SessionVariation VariantReadout",
         "result": "Reduce Variants expressions_of read_by sample_of swept_parameter",

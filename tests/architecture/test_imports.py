@@ -62,6 +62,7 @@ ORDER = [
     "sensitivities",
     "fit",
     "studies",
+    "live",
     "model",
     "templates",
     "bridges",

@@ -3,8 +3,8 @@
     python tests/benchmark/live.py [--rows 361] [--repeat 50]
 
 A line for each mechanism: milliseconds of `LiveRun.compute` in node with all that a change needs
-(rows, cells and their texts, poses, arrows), of its run of rows alone, and of the same run by the
-native kernel with one thread, each the least of many of the same parameters; then the ratio of the runs.
+(rows, cells, poses, arrows), of its run of rows alone, and of the same run by the native kernel
+with one thread, each the least of many of the same parameters; then the ratio of the runs.
 """
 
 from __future__ import annotations
@@ -99,9 +99,8 @@ def main() -> None:
     for name in given.names:
         found = measured(name, given.rows, given.repeat)
         ratio = found["run"] / found["native"]
-        print(
-            f"{name:22} {found['change']:8.2f} {found['run']:7.2f} {found['native']:7.2f} {ratio:7.1f}"
-        )
+        times = f"{found['change']:8.2f} {found['run']:7.2f} {found['native']:7.2f}"
+        print(f"{name:22} {times} {ratio:7.1f}")
 
 
 if __name__ == "__main__":

@@ -1,11 +1,12 @@
-"""Builds the core for a page: the interface in C compiled to WebAssembly with 128-bit SIMD.
+"""Builds the core for a page: the interface in C as WebAssembly with 128-bit SIMD.
 
-    python mechkin_cli/kernel/wasm/build.py            # writes mechkin.wasm.gz and lock.json beside this file
-    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the module, byte by byte
+    python mechkin_cli/kernel/wasm/build.py            # mechkin.wasm.gz and lock.json beside this
+    python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the bytes
 
-It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for wasm32). Only what a page
-uses is linked: variants of a sweep, tapes and texts of cells, in the narrowest unit; no threads, no exceptions, no library
-for elementary functions, and no contraction of products and sums, so that every number has the bits of the other units.
+It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for
+wasm32). Only what a page uses is linked: variants of a sweep, tapes and texts of cells, in the
+narrowest unit; no threads, no exceptions, no library for elementary functions, and no contraction
+of products and sums, so that every number has the bits of the other units.
 """
 
 from __future__ import annotations

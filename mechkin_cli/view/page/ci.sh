@@ -21,3 +21,14 @@ if [ -n "$(missing)" ]; then
 fi
 npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 npm run --silent check
+
+# the kernel in the page, built again where its compiler can be had
+wasm=../../kernel/wasm
+python3 "$wasm/build.py" --check --quick
+zig=$(mktemp -d)
+trap 'rm -rf "$zig"' EXIT
+if python3 -m pip install -q --target "$zig" "ziglang==$(sed -n 's/.*"ziglang": "\(.*\)".*/\1/p' "$wasm/lock.json")"; then
+  PYTHONPATH="$zig" python3 "$wasm/build.py" --check
+else
+  echo "the kernel in the page is not built again: no ziglang here"
+fi

@@ -2,6 +2,7 @@
 
 import { element, find } from "../dom.js";
 import { copy, keep, stemOf } from "../export/save.js";
+import { Attached } from "./attached.js";
 import { Dimensions } from "./dimensions.js";
 import { drawnWith } from "./drawn.js";
 import { changedFile, parameterLines } from "./file_text.js";
@@ -19,7 +20,8 @@ export async function liveRun(data) {
 /** Shows the panel of dimensions and lets everything follow; gives the dimensions. */
 export function showLive(run, { data, state, tabs, menu }) {
   const live = data.live ?? {};
-  const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found)));
+  const attached = new Attached(data);
+  const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found, attached)));
   const file = live.file;
   const acts = [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
   if (file) acts.push({ text: "Download file", short: "Download", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
@@ -33,11 +35,11 @@ export function showLive(run, { data, state, tabs, menu }) {
 }
 
 /** What was computed, as the state shows it. */
-function changedOf(data, run, found) {
+function changedOf(data, run, found, attached) {
   const drawing = data.live?.drawing;
   const drawn = found.drawn ?? (drawing && run.numbers ? drawnWith(data, drawing, run.numbers) : {});
   const runs = found.runs ?? { [data.live?.run ?? data.runs[0].name]: { branch: found.branch, tables: found.tables } };
-  return { runs, drawn };
+  return { runs, drawn: { ...drawn, ...attached.moved(drawn) } };
 }
 
 /** The menu of what can be taken along, in the head of the page. */

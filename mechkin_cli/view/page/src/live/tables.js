@@ -51,8 +51,9 @@ export class LiveTables {
     };
     const given = (k) => Float64Array.from(run.given(k));
     const curves = new Map(); // values and rounding by table and label
-    const tables = live.tables.map(({ name, columns }) => {
+    const tables = live.tables.map(({ name, columns, sizes: left }) => {
       const sizes = { ...live.sizes };
+      for (const [unit, size] of Object.entries(left)) sizes[unit] = Math.max(sizes[unit] ?? 0, size);
       const made = columns.map((column) => {
         if (column === null || column.words) return { column };
         const values = column.given !== undefined ? given(column.given) : keep(run.cell(column.cell));

@@ -14,7 +14,7 @@ const MOST_KEPT = 600;
 const kept = new Map();
 
 /** A part that was made before, or made now: nobody changes it. The oldest ones are forgotten. */
-function once(make, name) {
+export function once(make, name) {
   return (...sizes) => {
     const key = `${name} ${JSON.stringify(sizes)}`;
     let part = kept.get(key);

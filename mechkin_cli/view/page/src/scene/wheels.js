@@ -2,7 +2,7 @@
 
 import { BufferGeometry, Float32BufferAttribute, ShapeUtils, Vector2, Vector3 } from "three";
 import { mergeGeometries, toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
-import { bar, block, drawnOut, nut, polygon, thread } from "./parts.js";
+import { bar, block, drawnOut, nut, once, polygon, thread } from "./parts.js";
 import { frame, vector } from "./vectors.js";
 
 const PRESSURE = (20 * Math.PI) / 180; // of the teeth that are drawn
@@ -86,8 +86,10 @@ export function addWheel(body, wheel, unit) {
   const on = frame(vector(wheel.centre), vector(wheel.axis), vector(wheel.x));
   if (wheel.reach) addRack(body, wheel);
   else if (Math.abs(wheel.lean) > WORM && wheel.teeth) addWorm(body, wheel, on);
-  else body.add(lofted(contoursOf(wheel, unit), sectionsOf(wheel)), on);
+  else body.add(solidWheel({ ...wheel, link: 0, centre: 0, axis: 0, x: 0 }, unit), on);
 }
+
+const solidWheel = once((wheel, unit) => lofted(contoursOf(wheel, unit), sectionsOf(wheel)), "wheel");
 
 function contoursOf(wheel, unit) {
   const teeth = outline(wheel);
@@ -158,8 +160,11 @@ export function addDisc(body, disc, unit) {
   const corners = disc.outline.map(([x, y]) => new Vector2(x, y));
   const inmost = Math.min(...corners.map((point) => point.length()));
   const contours = [corners, circle(Math.min(0.8 * unit, 0.35 * inmost), 24)];
-  body.add(lofted(contours, [[-half, 1, 0], [half, 1, 0]]), frame(vector(disc.centre), vector(disc.axis), vector(disc.x)));
+  body.add(solidDisc(contours.map((contour) => contour.map(({ x, y }) => [x, y])), half), frame(vector(disc.centre), vector(disc.axis), vector(disc.x)));
 }
+
+const solidDisc = once((contours, half) =>
+  lofted(contours.map((contour) => contour.map((corner) => new Vector2(...corner))), [[-half, 1, 0], [half, 1, 0]]), "disc");
 
 /** A band along a closed line. */
 export function addBelt(body, belt) {
