@@ -161,7 +161,7 @@ def _links(
             continue
         own_points = _points(own, link["name"])
         drawn_points = _points(drawn, link["name"])
-        chosen = []
+        chosen: list[Any] = []
         for place in link["shape"]["points"]:
             near = (
                 now
