@@ -42,7 +42,7 @@ needs_compiler = pytest.mark.skipif(
 needs_objdump = pytest.mark.skipif(shutil.which("objdump") is None, reason="no objdump here")
 
 
-PLAIN = ["-O1", "-ftree-slp-vectorize", "-c", "-fno-exceptions", "-fno-rtti"]
+PLAIN = ["-O2", "-c", "-fno-exceptions", "-fno-rtti"]
 OF_DOUBLES = [f"{kind}_{name}" for kind in ("unit", "motion") for name in UNITS]
 OF_DOUBLE_DOUBLE = [f"double_double_{name}" for name in DOUBLE_DOUBLE]
 OF_INTERVALS = [f"enclosing_{name}" for name in DOUBLE_DOUBLE]

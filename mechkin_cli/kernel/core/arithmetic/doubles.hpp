@@ -73,7 +73,7 @@ MECHKIN_INLINE Real copysign(Real a, Real b) {
 }
 // Correctly rounded; the loop becomes one vector instruction.
 MECHKIN_INLINE Real sqrt(Real a) {
-  Doubles r = a.v;
+  Doubles r;
   for (int i = 0; i < LANES; ++i) r[i] = __builtin_sqrt(a.v[i]);
   return r;
 }
