@@ -255,7 +255,7 @@ def _unique(session: Session, state: Floats, condition: float) -> float:
 
 
 def _radius(unknowns: int, condition: float, reaches: list[float]) -> float:
-    bend = unknowns * total(sqrt(reach * reach + 1.0) for reach in reaches)
+    bend: float = unknowns * total(sqrt(reach * reach + 1.0) for reach in reaches)
     return 2.0 * (1.0 - tolerances.CONDITION_DIGITS) / (condition * bend)
 
 

@@ -75,7 +75,8 @@ class Extent(NamedTuple):
 
     def value(self, read: Callable[[Term], Floats]) -> Floats | float:
         """At the states at which `read` finds the terms (states,)."""
-        return float(self.drawn) + total(read(term) for term in self.terms)
+        together: Floats | float = total(read(term) for term in self.terms)
+        return float(self.drawn) + together
 
 
 class Arm(NamedTuple):

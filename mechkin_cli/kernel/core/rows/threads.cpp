@@ -108,7 +108,7 @@ class Pool {
 
  private:
   void grow(int wanted) {
-    SignalsBlocked blocked;
+    [[maybe_unused]] SignalsBlocked blocked;
     // where no more are to be had, those that are there do the work
     (void)attempt([&] {
       while ((int)threads_.size() < wanted) threads_.emplace_back([this] { serve(); });
@@ -161,7 +161,7 @@ void stop_pool() {
 }
 
 // A child has no threads but the one that forked, and locks as they stood: it starts anew.
-void forget_pool() { the_pool.store(nullptr); }
+[[maybe_unused]] void forget_pool() { the_pool.store(nullptr); }
 
 Pool& pool() {
   static const bool prepared = [] {
