@@ -25,7 +25,7 @@ from mechkin_cli.view import continuous, drawn_joints, link_poses, link_shape, u
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
-    from mechkin_cli.bridges.formats import ExportOptions
+    from mechkin_cli.bridges.parts import ExportOptions
     from mechkin_cli.mechanism import Joint
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats

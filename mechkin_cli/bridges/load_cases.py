@@ -32,7 +32,7 @@ from mechkin_cli.verdict import SWEEP, __version__
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.balances import RowMotion
-    from mechkin_cli.bridges.formats import ExportOptions
+    from mechkin_cli.bridges.parts import ExportOptions
     from mechkin_cli.mechanism import RigidLink
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats

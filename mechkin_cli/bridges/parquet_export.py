@@ -23,7 +23,7 @@ from mechkin_cli.view import continuous, link_poses
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
-    from mechkin_cli.bridges.formats import ExportOptions
+    from mechkin_cli.bridges.parts import ExportOptions
     from mechkin_cli.model import Model
     from mechkin_cli.show import Floats
 
