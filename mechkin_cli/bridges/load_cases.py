@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from mechkin_cli import tolerances
 from mechkin_cli.balances import borne_wrenches, row_motion
 from mechkin_cli.bridges.parts import Exported, listed
 from mechkin_cli.diagnostics import Diagnostic, UsageError
@@ -39,10 +40,6 @@ if TYPE_CHECKING:
 
 MOST_ROWS: Final = 1000
 """Rows of an export: each is a set of load cases that somebody computes."""
-
-BALANCED: Final = 1e-6
-"""Of the largest force on a link, or of the moment that it has over the mechanism's size: a sum
-above this is no rounding of reactions, whose own condition may cost some digits."""
 
 _MM: Final = 1e3
 
@@ -147,9 +144,9 @@ def _loads(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
         moment = about - np.cross(centre, total) - inertia[1]
         # what is left of a difference of large numbers is no load
         size = np.abs(total).max() + np.abs(weight).max() + np.abs(inertia[0]).max()
-        force = np.where(np.abs(force) > 1e-12 * size, force, 0.0)
+        force = np.where(np.abs(force) > tolerances.NO_LOAD * size, force, 0.0)
         arm = size * float(np.linalg.norm(centre)) + np.abs(about).max() + np.abs(inertia[1]).max()
-        moment = np.where(np.abs(moment) > 1e-12 * arm, moment, 0.0)
+        moment = np.where(np.abs(moment) > tolerances.NO_LOAD * arm, moment, 0.0)
         if force.any() or moment.any():
             yield LinkWrench(link, "applied", "loads", centre, force, moment)
         if weight.any():
@@ -187,7 +184,8 @@ def _whole(analysis: Analysis, row: int) -> Iterator[LinkWrench]:
         own = [one for one in loads if one.link == link]
         yield from own
         known = all(np.isfinite([*one.force, *one.moment]).all() for one in own)
-        if has_more and known and _unbalanced(own, mechanism.box_diagonal()) > BALANCED:
+        left = _unbalanced(own, mechanism.box_diagonal()) if has_more and known else 0.0
+        if left > tolerances.LOADS_BALANCED:
             yield _remainder(own, _middle(analysis, link, motion))
 
 
@@ -227,7 +225,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
                 continue
             rest |= {one.link: None for one in own if one.kind == "remainder"}
             share = _unbalanced(own, size)
-            if share > BALANCED:
+            if share > tolerances.LOADS_BALANCED:
                 off[link] = max(share, off.get(link, 0.0))
     if empty:
         yield Diagnostic(
@@ -251,7 +249,7 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
             "warning",
             f"what acts on {listed(off)} does not add up to zero",
             measured=f"{worst:.2g} of the largest force",
-            hint="what legs and curves do to links is not among the loads; add it by hand",
+            hint="what rods without bodies and curves do is not among the loads; add it by hand",
         )
 
 

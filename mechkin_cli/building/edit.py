@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from mechkin_cli import tolerances
 from mechkin_cli.diagnostics import UsageError, nearest
 from mechkin_cli.expressions import ExpressionError, NumberNode, evaluate_parameters, parse_nodes
 from mechkin_cli.reading import KeyPath, edited, value_spans
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
     from mechkin_cli.building.builder import Built
 
 _UNIT_BEHIND = re.compile(r"[ \t]*[-+]?[ \t]*(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
-
-_ROUNDING = 1e-14
-"""By this part, an expression that follows others may be off the value that it is to have."""
 
 _MOST_DIGITS = 15
 """Digits of a value in another unit than the file's: more would write down its rounding."""
@@ -81,7 +79,7 @@ def edit_parameters(
     found = evaluate_parameters(known | written, units)
     for name in list(expressions):
         follows = units.from_si(float(found[name].value), found[name].dimension)  # type: ignore[arg-type]
-        if abs(follows - values[name]) <= _ROUNDING * abs(values[name]):
+        if abs(follows - values[name]) <= tolerances.FOLLOWS * abs(values[name]):
             del expressions[name]
     places: dict[KeyPath, str] = {(*_SECTION, name): new for name, new in written.items()}
     return Edited(edited(text, places), written, expressions)

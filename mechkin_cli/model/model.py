@@ -406,11 +406,9 @@ class Model(Listed):
         return view.Page(page) if path is None else view.write_view(path, page)
 
     def widget(self, *, run: str | None = None, mode: str | None = None, modes: bool = True) -> Any:
-        """The page as a widget of a notebook (anywidget: Jupyter, marimo), which Python hears and
-        moves: `w.parameters` (a dict of values in the file's units) and `w.row` follow the page,
-        and the page follows them; `w.model` is the model with these parameters.
-
-        Args: as those of `view`.
+        """The page of `view` as a widget of a notebook (anywidget: Jupyter, marimo): `w.parameters`
+        (a dict of values in the file's units) and `w.row` follow the page, and the page follows
+        them; `w.model` is the model with these parameters.
 
         Raises:
             UsageError: anywidget is not installed (extra `notebook`), an unknown run or mode.

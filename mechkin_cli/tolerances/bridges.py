@@ -63,3 +63,10 @@ CHANGED_INERTIA: Final = 1e-9
 
 SHORT_BAR: Final = 1e-6
 """Parts of the mechanism's size below which a bar between two joints is not drawn."""
+
+LOADS_BALANCED: Final = 1e-6
+"""Of the largest force on a link, or of the moment that it has over the mechanism's size: a sum
+above this is no rounding of reactions, whose own condition may cost some digits."""
+
+NO_LOAD: Final = 1e-12
+"""Of the terms of a difference: what is left below this part of them is rounding, and no load."""

@@ -151,3 +151,10 @@ FIT_AT_BOUND: Final = 1e-6
 WRAP_ROUNDING: Final = 1e-15
 """What a wrapped angle may be beyond half a turn by rounding, in rad, for the first turn; with more
 turns as much times their square, which bounds what the products of many turns leave."""
+
+
+# Values written back into a file.
+
+FOLLOWS: Final = 1e-14
+"""Relative: by this part an expression that follows others may be off the value that it is to have,
+which a few operations round."""

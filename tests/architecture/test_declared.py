@@ -20,7 +20,7 @@ def declared() -> set[str]:
     project = tomllib.loads((ROOT.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     # the benchmark, pictures, data frames and studies ask for extras, and are done without
     extras = project["optional-dependencies"]
-    asked = ("bench", "plot", "pandas", "parquet", "cluster", "fit", "xlsx", "notebook")
+    asked = ("bench", "plot", "pandas", "parquet", "cluster", "fit", "xlsx", "notebook", "dxf")
     named = [*project["dependencies"], *(text for extra in asked for text in extras[extra])]
     return {re.split(r"[<>=;\[ ]", text)[0] for text in named}
 

@@ -122,5 +122,5 @@ def test_what_mjcf_cannot_express_is_refused(name: str, words: str) -> None:
 
 
 def test_other_formats_are_refused() -> None:
-    with pytest.raises(UsageError, match="no such format; known are mjcf"):
+    with pytest.raises(UsageError, match="no such format; known are dxf, gltf, loads, mjcf"):
         exported(mk.load(MECHANISMS / "classics/rssr.yaml"), "step", ExportOptions())

@@ -84,7 +84,7 @@ def test_a_width_that_the_machine_lacks_is_refused(mechkin, folder: Path, lanes:
 
 
 def test_a_narrower_machine_says_what_it_has(monkeypatch, mechkin) -> None:
-    monkeypatch.setattr("mechkin_cli.kernel._kernel.widest", 2)
+    monkeypatch.setattr("mechkin_cli.kernel.functions.INSTRUCTIONS", {2: "SSE2"})
     run = mechkin("analyze", RCSR, "--lanes", 8)
     assert run.code == 2
     assert "lanes 8: this machine has 2; 0 takes the widest" in run.err
