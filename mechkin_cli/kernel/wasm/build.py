@@ -9,6 +9,7 @@ narrowest unit; no threads, no exceptions, no library for elementary functions, 
 of products and sums, so that every number has the bits of the other units.
 """
 
+# ruff: noqa: SIM905  options and names are read more easily as lines of text
 from __future__ import annotations
 
 import argparse
@@ -28,83 +29,27 @@ KERNEL = HERE.parent
 MODULE = HERE / "mechkin.wasm.gz"
 LOCK = HERE / "lock.json"
 
-COMMON = [
-    *("-target", "wasm32-wasi"),
-    *(
-        "-std=c++17",
-        "-msimd128",
-        "-mbulk-memory",
-        "-fno-exceptions",
-        "-fno-rtti",
-        "-fno-stack-protector",
-    ),
-    *("-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math", "-fvisibility=hidden"),
-    *("-ffunction-sections", "-fdata-sections", "-Wall", "-Wextra", "-g0", "-DNDEBUG"),
-    *("-DMECHKIN_ONE_THREAD=1", f"-ffile-prefix-map={KERNEL}=."),
-    *("-Icore", "-Ic"),
-]
+COMMON = """-target wasm32-wasi -std=c++17 -msimd128 -mbulk-memory -fno-exceptions -fno-rtti
+-fno-stack-protector -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
+-ffunction-sections -fdata-sections -Wall -Wextra -g0 -DNDEBUG -DMECHKIN_ONE_THREAD=1
+-Icore -Ic""".split()
+COMMON.append(f"-ffile-prefix-map={KERNEL}=.")
 UNIT = ["-DMECHKIN_LANES=2", "-DMECHKIN_UNIT=mechkin_unit_sse2"]
-FAST = (
-    "rows/unit.cpp",
-    "stepping/infill.cpp",
-    "stepping/row_curve.cpp",
-    "stepping/stepper.cpp",
-    "arithmetic/dense.cpp",
-)
-SMALL = (
-    *(
-        "plan/plan_builder.cpp",
-        "plan/plan_blocks.cpp",
-        "plan/frozen_plan.cpp",
-        "plan/same_layout.cpp",
-    ),
-    *("plan/output_list.cpp", "plan/program_store.cpp", "plan/function_store.cpp"),
-    *(
-        "tape/tape_store.cpp",
-        "rows/assembly_size.cpp",
-        "rows/run.cpp",
-        "rows/threads.cpp",
-        "rows/units.cpp",
-    ),
-    *(
-        "stepping/arc.cpp",
-        "stepping/branch_point.cpp",
-        "stepping/passage.cpp",
-        "stepping/stretch.cpp",
-    ),
-    *(
-        "stepping/judge.cpp",
-        "stepping/tracker.cpp",
-        "stepping/polyline.cpp",
-        "stepping/orbit.cpp",
-        "stepping/row_pieces.cpp",
-        "stepping/course.cpp",
-    ),
-    *("stepping/dimension_path.cpp", "stepping/variants.cpp"),
-    *(
-        "text/number_text.cpp",
-        "text/plan_text.cpp",
-        "text/table_text.cpp",
-        "../c/mechkin.cpp",
-        "../wasm/room.cpp",
-    ),
-)
-EXPORTED = (
-    *("mechkin_plan_create", "mechkin_plan_free", "mechkin_page_sizes", "mechkin_page_run"),
-    *(
-        "mechkin_tape_create",
-        "mechkin_tape_free",
-        "mechkin_tape_run",
-        "mechkin_tape_outputs",
-        "mechkin_cell_texts",
-    ),
-    *("malloc", "free"),
-)
-LINKED = [
-    *("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s"),
-    *("-Wl,--gc-sections", "-Wl,--strip-all", "-Wl,--no-entry", "-Wl,-z,stack-size=1048576"),
-    *(f"-Wl,--export={name}" for name in EXPORTED),
-]
+FAST = """rows/unit.cpp stepping/infill.cpp stepping/row_curve.cpp stepping/stepper.cpp
+arithmetic/dense.cpp""".split()
+SMALL = """plan/plan_builder.cpp plan/plan_blocks.cpp plan/frozen_plan.cpp plan/same_layout.cpp
+plan/output_list.cpp plan/program_store.cpp plan/function_store.cpp tape/tape_store.cpp
+rows/assembly_size.cpp rows/run.cpp rows/threads.cpp rows/units.cpp stepping/arc.cpp
+stepping/branch_point.cpp stepping/passage.cpp stepping/stretch.cpp stepping/judge.cpp
+stepping/tracker.cpp stepping/polyline.cpp stepping/orbit.cpp stepping/row_pieces.cpp
+stepping/course.cpp stepping/dimension_path.cpp stepping/variants.cpp text/number_text.cpp
+text/plan_text.cpp text/table_text.cpp ../c/mechkin.cpp ../wasm/room.cpp""".split()
+EXPORTED = """mechkin_plan_create mechkin_plan_free mechkin_page_sizes mechkin_page_run
+mechkin_tape_create mechkin_tape_free mechkin_tape_run mechkin_tape_outputs mechkin_cell_texts
+malloc free""".split()
+LINKED = """-target wasm32-wasi -mexec-model=reactor -O2 -s -Wl,--gc-sections -Wl,--strip-all
+-Wl,--no-entry -Wl,-z,stack-size=1048576""".split()
+LINKED += [f"-Wl,--export={name}" for name in EXPORTED]
 
 
 def sources() -> list[tuple[str, list[str]]]:
@@ -145,7 +90,7 @@ def source_hash() -> str:
         *KERNEL.glob("core/**/*.[ch]pp"),
         *KERNEL.glob("c/*.*"),
         *HERE.glob("*.cpp"),
-        Path(__file__),
+        HERE / "build.py",
     ]
     total = hashlib.sha256()
     for file in sorted(files):
