@@ -183,6 +183,9 @@ CONDITION_LIMITS = {
 }
 """The condition of a row's loop closure above which it has a status, by rising limits."""
 
+CLEAR_CONDITION = CONDITION_RATES_UNCLEAR
+"""The condition of a row's loop closure up to which its rates are significant by it alone."""
+
 
 def by_condition(condition: Floats) -> NDArray[np.int8]:
     """The status that a row's condition alone gives it, codes of the same shape; a condition that
@@ -200,7 +203,7 @@ def rates_are_clear(condition: Floats | float) -> Bools:
     looked at again in double-double."""
     import numpy as np
 
-    return np.asarray(condition) <= CONDITION_RATES_UNCLEAR
+    return np.asarray(condition) <= CLEAR_CONDITION
 
 
 # What is proven of one row of a table: a fixed enumeration whose members carry what the user

@@ -37,6 +37,7 @@ from mechkin_cli.tape import Recorded, TraceLost, is_traced, tape_values
 from mechkin_cli.units import LENGTH
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import (
+    CLEAR_CONDITION,
     CONDITION_LIMITS,
     SWEEP,
     Status,
@@ -421,7 +422,7 @@ class Recording:
         return {
             "words": [status.label for status in Status],
             "condition": [[float(limit), int(code)] for code, limit in CONDITION_LIMITS.items()],
-            "clear": float(tolerances.CONDITION_RATES_UNCLEAR),
+            "clear": CLEAR_CONDITION,
             "friction": [slots[name].start for name in frictions if name in slots],
             "undecided": int(Status.friction_undecided),
             "strands": [slots[name].start for name in strands if name in slots],

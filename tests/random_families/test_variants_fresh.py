@@ -48,7 +48,9 @@ def without_tables(stem: str) -> str:
 def plain(text: str) -> dict[str, tuple[float, str]]:
     """Parameters that are a number with a unit."""
     block = re.split(r"^\w+:", text.split("\nparameters:\n")[1], maxsplit=1, flags=re.M)[0]
-    return {name: (float(value), unit) for name, value, unit, _ in NUMBER.findall(block)}
+    found = NUMBER.findall(block)
+    # a step decides how many rows there are, and all variants have equally many
+    return {name: (float(value), unit) for name, value, unit, _ in found if name != "step"}
 
 
 def written(text: str, values: dict[str, tuple[float, str]], near: dict[str, float]) -> str:

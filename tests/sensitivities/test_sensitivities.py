@@ -146,7 +146,10 @@ def test_differences_of_plain_runs(path: Path) -> None:
     if not model.problem.parameters or "sweep" not in model.runs:
         pytest.skip("no parameters that a sweep depends on")
     quantities = read_by_tables(model)
-    names = list(model.problem.parameters)[:6]
+    # a step decides how many rows there are, which is no slope
+    names = [name for name in model.problem.parameters if name != "step"][:6]
+    if not names:
+        pytest.skip("no parameters that rows depend on")
     s = model.sensitivities(quantities, names)
     units, size = model.problem.units, model.session.layout.length
     compared = 0

@@ -48,6 +48,7 @@ def test_the_examples_run(mechkin: Any, tmp_path: Path, path: Path) -> None:
     names = [name for name in model.problem.parameters if name in rows[0]]
     for row in (rows[0], rows[len(rows) // 2], rows[-1]):
         own = {name: float(row[name]) for name in names}
+        own |= {name: text for name, text in data.get("set", {}).items() if name not in own}
         alone = model.with_parameters(own).analyze()
         assert (row["verdict"] == "ok") is bool(alone.result.sound)
         for kept in data["keep"]:

@@ -26,8 +26,10 @@ from mechkin_cli.tape.tape import Tape, compiled
 WITH_PARAMETERS = [
     path.stem
     for path in list(FILE_OF.values())
-    if {"parameters:", "motion:"} <= set(path.read_text(encoding="utf-8").splitlines())
+    if {"parameters:", "motion:"} <= set((text := path.read_text(encoding="utf-8")).splitlines())
+    and "step: step" not in text
 ]
+"""A step decides how many rows there are, which no recording leaves open."""
 
 
 def base_of(stem: str) -> Built:

@@ -79,7 +79,7 @@ def test_a_view_that_was_turned_stays_when_the_window_changes(
 def test_the_header_keeps_its_button_in_a_narrow_window(browser: Browser, tmp_path: Path) -> None:
     page = write_page(tmp_path, seen.data(mk.load(FILE_OF["slider_crank"])))
     browser.open(page, width=390, height=844, touch=True)
-    title, button = browser.evaluate("""['#title', '#choices button'].map((each) => {
+    title, button = browser.evaluate("""['#title', '#choices > :last-child'].map((each) => {
       const {left, right, top, bottom} = document.querySelector(each).getBoundingClientRect();
       return {left, right, top, bottom};
     })""")

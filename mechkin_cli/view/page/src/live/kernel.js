@@ -259,9 +259,8 @@ export class LiveRun {
     const own = this.data.runs[0].branches[0];
     const made = this.tables.made(judged.codes, first, last);
     const axis = this.live.axis === null ? own.x : made.given(this.live.axis);
-    const whole = { ...own.status, codes: judged.codes };
     const branch = {
-      rows: this.count, x: axis, poses: posesOf(this, first, last), status: whole, marks: [],
+      rows: this.count, x: axis, poses: posesOf(this, first, last), status: { ...own.status, codes: judged.codes }, marks: [],
       columns: made.columns(own.columns), arrows: this.#arrows(own, first, last),
     };
     return { end, words, branch, tables: made.tables };
