@@ -210,6 +210,7 @@ class Recording:
         self.outputs: list[int] = []
         self.left: list[Plain] = []
         self.wanted: dict[str, Wanted] = {}
+        self.reads_power = False
 
     # Numbers that hang on parameters alone, and columns that are given.
 
@@ -279,6 +280,7 @@ class Recording:
             if name in MEASURES or name in self.prescribed or wanted.owner == "row":
                 if name not in MEASURES and name not in self.prescribed:
                     raise LeftOut("it is a verdict")
+                self.reads_power |= name == "row.power_error"
                 continue
             why = self.refusal(wanted)
             if why is not None:
@@ -439,6 +441,11 @@ class Recording:
         if problem.mechanism.has_arcs or not self._is_base():
             return None
         self._needs()
+        # arrows ask for forces that the command does not compute: no power error is told by them
+        asked = demand_of(problem.mechanism, self.wanted.values())
+        has_power = bool(asked & Demand.FORCES and asked & Demand.VELOCITY)
+        if self.reads_power and not has_power:
+            return None
         poses = pose_records(self, self.data)
         arrows = arrows_of(self, self.data)
         demand = demand_of(problem.mechanism, self.wanted.values())
@@ -459,7 +466,7 @@ class Recording:
         tables = self._table_records()
         if not any(column for table in tables for column in table["columns"]):
             return None
-        verdict = self._verdict()
+        verdict = self._verdict() | {"power": has_power}
         arrow_records = arrows()
         pose_data = poses()
         axis = self.data["runs"][0]["x"]["label"]

@@ -238,9 +238,10 @@ export class LiveRun {
     return this.#kernel.doubles(this.#rows + 8 * k * this.count, this.count);
   }
 
-  /** Residual, condition and power error. */
+  /** Residual, condition and power error; what the command does not compute is nothing. */
   measure(k) {
-    return this.slot(this.sizes.values + k);
+    const told = [true, this.live.verdict.loops, this.live.verdict.power][k];
+    return told ? this.slot(this.sizes.values + k) : new Float64Array(this.count).fill(NaN);
   }
 
   cell(k) {
@@ -290,9 +291,8 @@ export class LiveRun {
   }
 
   #stopWords(told, side) {
-    const { inputs } = this.live;
-    const places = inputs.map(({ name, unit, kernel }, k) => {
-      const value = told[5 + side * inputs.length + k] * kernel;
+    const places = this.live.inputs.map(({ name, unit, kernel }, k) => {
+      const value = told[5 + side * this.live.inputs.length + k] * kernel;
       return `${name} = ${Number(value.toPrecision(6))}${unit ? ` ${unit}` : ""}`;
     });
     return `stops at ${STOPS[told[3 + side]]}, ${places.join(", ")}`;
