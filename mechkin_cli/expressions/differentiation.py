@@ -195,7 +195,7 @@ def _angle_of(y: Jet, x: Jet) -> Jet:
     """atan2(y, x): its rate is (x y' - y x') / (x^2 + y^2), whose jet has one order less."""
     turning = product(x, _rate(y)) - product(y, _rate(x))
     rate = quotient(turning, product(x, x) + product(y, y))
-    value = operations.angle_of(*np.broadcast_arrays(y[0], x[0]))
+    value = operations.angle_of(y[0], x[0])
     still = (turning == 0.0).all(axis=0)
     return np.stack(np.broadcast_arrays(value, *np.where(still, 0.0, rate[:3])))
 
@@ -207,10 +207,10 @@ def _rate(jet: Jet) -> Jet:
 
 def _power(base: Jet, exponent: Jet) -> Jet:
     if exponent[1:].any():
-        value = operations.power(*np.broadcast_arrays(base[0], exponent[0]))
+        value = operations.power(base[0], exponent[0])
         by_logarithm = product(exponent, composed(SLOPES["LOG"](base[0]), base))
         return composed((value,) * JET_ORDERS, by_logarithm)  # type: ignore[arg-type]
-    x, n = np.broadcast_arrays(base[0], exponent[0])
+    x, n = map(np.array, np.broadcast_arrays(base[0], exponent[0]))
     orders, factor = [], np.ones_like(x)
     for order in range(JET_ORDERS):
         power = x * x if order == 0 and (n == 2.0).all() else operations.power(x, n - order)

@@ -167,7 +167,8 @@ def power(base: Value, exponent: Value) -> Value:
 def _apply(operation: _Operation, first: Value, second: Any) -> Value:
     x, y = _rows(first), _rows(second)
     if x.size != y.size and 1 in (x.size, y.size):  # rows with one number
-        x, y = map(_rows, np.broadcast_arrays(x, y))
+        shape = np.broadcast_shapes(x.shape, y.shape)
+        x, y = (_rows(np.broadcast_to(each, shape)) for each in (x, y))
     result: FloatArray = _kernel.elementwise(operation, x, y, width())
     if isinstance(first, np.ndarray) or isinstance(second, np.ndarray):
         return result  # type: ignore[return-value]
