@@ -46,6 +46,12 @@ def test_a_place_outside_the_text_is_a_finding(line: int, column: int) -> None:
         check(Diagnostic("x", "error", "x", place), b"ab\nabc")
 
 
+def test_a_slow_answer_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fuzz.verdict.MOST_TIMES", 0.0)
+    with pytest.raises(AssertionError, match=r"s, limit 0\.0 s"):
+        verdict(b"")
+
+
 def test_what_is_no_refusal_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(mk, "loads", lambda *_: [][0])
     with pytest.raises(IndexError):
