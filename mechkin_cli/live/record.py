@@ -46,7 +46,7 @@ from mechkin_cli.verdict import (
 from mechkin_cli.view import packed
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Analysis, Design
+    from mechkin_cli.analysis import Analysis, Design, Solvable
     from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.tables import ColumnLayout, Columns
     from mechkin_cli.variants import SessionVariation
@@ -84,7 +84,6 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     varied, fixed = _variation(design)
     if varied is None:
         return None
-    problem = design.problem
     names = list(varied.recorder.inputs)
     try:
         recording = Recording(analysis, data, varied)
@@ -96,7 +95,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     file = analysis.model.built.document
     return {
         "run": SWEEP,
-        "parameters": [_parameter(problem, name, file.data) for name in names],
+        "parameters": [_parameter(analysis.model, name, file.data) for name in names],
         "fixed": [
             {
                 "name": name,
@@ -110,7 +109,8 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     }
 
 
-def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
+def _parameter(model: Solvable, name: str, data: Mapping[str, Any]) -> Plain:
+    problem = model.design.problem
     quantity, units = problem.parameters[name], problem.units
     value = float(units.from_si(float(quantity.value), quantity.dimension))  # type: ignore[arg-type]
     text = str(data.get("parameters", {}).get(name, ""))
@@ -122,7 +122,8 @@ def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
         value = float(
             written.value
         )  # as it was written, without the rounding of a way to SI and back
-    low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+    about = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+    low, high = model.view_settings.parameters.get(name, about)
     conversion = units.conversion(quantity.dimension)
     return {
         "name": name,
