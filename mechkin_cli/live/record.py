@@ -211,7 +211,7 @@ class Recording:
         self.outputs: list[int] = []
         self.left: list[Plain] = []
         self.wanted: dict[str, Wanted] = {}
-        self.reads_power = False
+        self.power = Demand.POSITION
 
     # Numbers that hang on parameters alone, and columns that are given.
 
@@ -281,11 +281,14 @@ class Recording:
             if name in MEASURES or name in self.prescribed or wanted.owner == "row":
                 if name not in MEASURES and name not in self.prescribed:
                     raise LeftOut("it is a verdict")
-                self.reads_power |= name == "row.power_error"
-                continue
+                if name != "row.power_error":
+                    continue
             why = self.refusal(wanted)
             if why is not None:
                 raise LeftOut(why)
+            if name == "row.power_error":
+                self.power = demand_of(self.problem.mechanism, [wanted])
+                continue
             found[name] = wanted
             if has_turns(wanted):
                 found[name + REST] = wanted._replace(name=name + REST)
@@ -443,17 +446,15 @@ class Recording:
             return None
         self._needs()
         # arrows ask for forces that the command does not compute: no power error is told by them
-        asked = demand_of(problem.mechanism, self.wanted.values())
+        asked = demand_of(problem.mechanism, self.wanted.values()) | self.power
         has_power = bool(asked & Demand.FORCES and asked & Demand.VELOCITY)
-        if self.reads_power and not has_power:
-            return None
         poses = pose_records(self, self.data)
         arrows = arrows_of(self, self.data)
-        demand = demand_of(problem.mechanism, self.wanted.values())
+        demand = demand_of(problem.mechanism, self.wanted.values()) | self.power
         if demand & Demand.FORCES:
             beside = (*friction_states(problem.mechanism), *slack_quantities(problem))
             self.wanted |= {q.name: q for q in beside}
-            demand = demand_of(problem.mechanism, self.wanted.values())
+            demand |= demand_of(problem.mechanism, self.wanted.values())
         if variation.base.graph.blocks:
             demand |= Demand.CONDITION
         if demand & Demand.FORCES and demand & Demand.VELOCITY:
