@@ -14,6 +14,7 @@ from mechkin_cli.building.drawn_wheels import (
 )
 from mechkin_cli.building.fields import Fields, Path
 from mechkin_cli.diagnostics import nearest_hint
+from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import GROUND_NAME, Attached, Mechanism, Vector, is_written
 from mechkin_cli.record import NamedTuple, dataclass, field
 from mechkin_cli.units import LENGTH, TIME
@@ -62,6 +63,7 @@ class ViewSettings:
         forces: whether arrows are shown at first.
         arrow_length: of the longest arrow, m; None: by the size of the mechanism.
         camera: direction from the mechanism to the eye; None: the page's choice.
+        parameters: the ends of their sliders by name, in the file's units.
         speed: seconds for once through a run; None: the page's choice.
         wheels, belts, cables, screws: what couplings look like.
     """
@@ -75,6 +77,7 @@ class ViewSettings:
     forces: bool = True
     arrow_length: float | None = None
     camera: Vector | None = None
+    parameters: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     speed: float | None = None
     wheels: tuple[DrawnWheel, ...] = ()
     belts: tuple[DrawnBelt, ...] = ()
@@ -113,6 +116,7 @@ def build_view(
         forces=section.forces == "shown",
         arrow_length=view.positive("arrow_length", section.arrow_length, LENGTH),
         camera=None if camera is None else fields.direction(("view", "camera"), camera),
+        parameters=dict(view.sliders(section.parameters)),
         speed=view.positive("speed", section.speed, TIME),
         wheels=wheels,
         belts=belts,
@@ -224,6 +228,42 @@ class _View:
             if all(found):
                 first, second = (self.mechanism.points[name] for name in part.points)
                 yield DrawnBetween(part.kind, (first, second), radius)
+
+    def sliders(
+        self, sections: Mapping[str, Sequence[str]]
+    ) -> Iterator[tuple[str, tuple[float, float]]]:
+        """The ends of sliders of parameters that have one, in the file's units."""
+        parameters = self.fields.parameters
+        for name, texts in sections.items():
+            path: Path = ("view", "parameters", name)
+            hint = self._hint(name, list(parameters))
+            if hint is not None:
+                if not self.fields.is_refused(name):
+                    text = f"there is no parameter {name}"
+                    self.fields.key_error("unknown-name", path, text, hint)
+                continue
+            followed = self._followed(name)
+            if followed:
+                text = f"{name} follows from {followed} and has no slider"
+                self.fields.key_error("needless-key", path, text, f"leave {name} out")
+                continue
+            before = self.fields.error_count
+            dimension = parameters[name].dimension
+            low, high = (
+                self.fields.written((*path, k), text, dimension) for k, text in enumerate(texts)
+            )
+            if self.fields.error_count > before:
+                continue
+            if low < high:
+                yield name, (low, high)
+            else:
+                text = f"there is nothing between {texts[0]} and {texts[1]}"
+                self.fields.error("bad-value", path, text, "write the smaller end first")
+
+    def _followed(self, name: str) -> str:
+        """The parameters that one is written with."""
+        section = self.fields.document.data["parameters"]
+        return ", ".join(sorted(parse(str(section[name])).names))  # type: ignore[index, call-overload]
 
     def positive(
         self, key: str, text: str | None, dimension: Dimension, path: Path = ("view",)

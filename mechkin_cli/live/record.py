@@ -46,7 +46,7 @@ from mechkin_cli.verdict import (
 from mechkin_cli.view import packed
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Analysis, Design
+    from mechkin_cli.analysis import Analysis, Design, Solvable
     from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.tables import ColumnLayout, Columns
     from mechkin_cli.variants import SessionVariation
@@ -84,7 +84,6 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     varied, fixed = _variation(design)
     if varied is None:
         return None
-    problem = design.problem
     names = list(varied.recorder.inputs)
     try:
         recording = Recording(analysis, data, varied)
@@ -96,7 +95,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     file = analysis.model.built.document
     return {
         "run": SWEEP,
-        "parameters": [_parameter(problem, name, file.data) for name in names],
+        "parameters": [_parameter(analysis.model, name, file.data) for name in names],
         "fixed": [
             {
                 "name": name,
@@ -110,7 +109,8 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     }
 
 
-def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
+def _parameter(model: Solvable, name: str, data: Mapping[str, Any]) -> Plain:
+    problem = model.design.problem
     quantity, units = problem.parameters[name], problem.units
     value = float(units.from_si(float(quantity.value), quantity.dimension))  # type: ignore[arg-type]
     text = str(data.get("parameters", {}).get(name, ""))
@@ -122,7 +122,8 @@ def _parameter(problem: Problem, name: str, data: Mapping[str, Any]) -> Plain:
         value = float(
             written.value
         )  # as it was written, without the rounding of a way to SI and back
-    low, high = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+    about = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+    low, high = model.view_settings.parameters.get(name, about)
     conversion = units.conversion(quantity.dimension)
     return {
         "name": name,
@@ -210,7 +211,7 @@ class Recording:
         self.outputs: list[int] = []
         self.left: list[Plain] = []
         self.wanted: dict[str, Wanted] = {}
-        self.reads_power = False
+        self.power = Demand.POSITION
 
     # Numbers that hang on parameters alone, and columns that are given.
 
@@ -280,11 +281,14 @@ class Recording:
             if name in MEASURES or name in self.prescribed or wanted.owner == "row":
                 if name not in MEASURES and name not in self.prescribed:
                     raise LeftOut("it is a verdict")
-                self.reads_power |= name == "row.power_error"
-                continue
+                if name != "row.power_error":
+                    continue
             why = self.refusal(wanted)
             if why is not None:
                 raise LeftOut(why)
+            if name == "row.power_error":
+                self.power = demand_of(self.problem.mechanism, [wanted])
+                continue
             found[name] = wanted
             if has_turns(wanted):
                 found[name + REST] = wanted._replace(name=name + REST)
@@ -442,17 +446,15 @@ class Recording:
             return None
         self._needs()
         # arrows ask for forces that the command does not compute: no power error is told by them
-        asked = demand_of(problem.mechanism, self.wanted.values())
+        asked = demand_of(problem.mechanism, self.wanted.values()) | self.power
         has_power = bool(asked & Demand.FORCES and asked & Demand.VELOCITY)
-        if self.reads_power and not has_power:
-            return None
         poses = pose_records(self, self.data)
         arrows = arrows_of(self, self.data)
-        demand = demand_of(problem.mechanism, self.wanted.values())
+        demand = demand_of(problem.mechanism, self.wanted.values()) | self.power
         if demand & Demand.FORCES:
             beside = (*friction_states(problem.mechanism), *slack_quantities(problem))
             self.wanted |= {q.name: q for q in beside}
-            demand = demand_of(problem.mechanism, self.wanted.values())
+            demand |= demand_of(problem.mechanism, self.wanted.values())
         if variation.base.graph.blocks:
             demand |= Demand.CONDITION
         if demand & Demand.FORCES and demand & Demand.VELOCITY:

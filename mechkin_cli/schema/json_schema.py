@@ -372,6 +372,7 @@ BY_SECTION: Final[dict[tuple[str, str], Any]] = {
     ("PartBetween", "kind"): "spring",
     ("PartBetween", "points"): ["P", "Q"],
     ("ViewSection", "between"): [{"kind": "spring", "points": ["P", "Q"]}],
+    ("ViewSection", "parameters"): {"r": ["30 mm", "60 mm"]},
 }
 
 INSTEAD_OF_ANY: Final[dict[str, Any]] = {

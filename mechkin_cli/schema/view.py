@@ -14,6 +14,7 @@ from mechkin_cli.schema.base import (
 )
 from mechkin_cli.schema.scalars import (
     COLOUR_PATTERN,
+    AnyDimension,
     DirectionVector,
     Duration,
     Length,
@@ -92,6 +93,7 @@ KindOrShape = Annotated[
 
 
 Names = Annotated[tuple[Name, ...], Rule(each_once)]
+Ends = Annotated[tuple[AnyDimension, ...], Limits(min_length=2, max_length=2)]
 
 
 class ViewSection(Section):
@@ -118,5 +120,8 @@ class ViewSection(Section):
     mechanism."""
     camera: DirectionVector | None = None
     """Direction from the mechanism to the eye, in ground axes; left out, the page chooses."""
+    parameters: dict[Name, Ends] = NOTHING
+    """Where the page's sliders of parameters begin and end, by name, as [30 mm, 60 mm]; left out,
+    from half to twice the parameter's value."""
     speed: Duration | None = None
     """How long once through a run takes; left out, the page chooses."""

@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from references import FILE_OF
 
-from mechkin_cli import load
+from mechkin_cli import load, loads
 from mechkin_cli.tables import Words, rows_table
 from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.page import script_json
@@ -104,6 +104,27 @@ def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any
     theirs = [[row[at] for at in kept] for row in verdicts.listing.rows]
     assert [[row[at] for at in kept] for row in texts["rows"]] == theirs, stem
     return checked
+
+
+POWER = """
+tables:
+  - name: balance
+    columns: [O.theta, row.power_error, 1000*row.power_error]
+"""
+
+
+def test_the_power_error_needs_no_other_column_of_forces() -> None:
+    text = Path(FILE_OF["planar_four_bar"]).read_text(encoding="utf-8")
+    model = loads(text.partition("tables:")[0] + POWER)
+    analysis = model.analyze()
+    data, _ = page_data([analysis], modes=False)
+    case = {"a": 41.0, "c": 92.5}
+    own, changed = computed(data, [{}, case])
+    varied = model.with_parameters(case).analyze()
+    assert compared("balance", data["live"], own, analysis) == 3
+    assert compared("balance", data["live"], changed, varied) == 3
+    errors = varied.tables["balance"].columns[1].values
+    assert 0.0 < errors.max() < 1e-12
 
 
 def test_a_branch_that_ends_says_how_far_it_goes() -> None:

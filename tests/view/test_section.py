@@ -8,6 +8,7 @@ from view.files import FOUR_BAR
 from view.seen import data, poses
 
 import mechkin_cli as mk
+from mechkin_cli.view.scene import page_data
 
 VIEW = """
 view:
@@ -41,6 +42,20 @@ def test_everything_reaches_the_page() -> None:
     assert [one["path"] for one in shown["points"]] == [False]
     view = {"camera": [0, -1, 0], "speed": 6.0, "forces": False, "arrow_length": 40.0}
     assert shown["view"] == view
+
+
+SIZED = FOUR_BAR.replace("point: [20, 0, 0]", "point: [r, 0, 0]").replace(
+    "joints:", "parameters: {r: 20 mm, d: 3.5*r, h: 5 cm}\njoints:"
+)
+for old, new in (("[70, 0, 0]", "[d, 0, 0]"), ("[70, 50, 0]", "[d, h, 0]")):
+    SIZED = SIZED.replace(old, new)
+
+
+def test_sliders_go_as_far_as_the_file_says() -> None:
+    model = mk.loads(SIZED + "view: {parameters: {r: [1 cm, 24]}}\n")
+    shown, _ = page_data([model.analyze()], modes=False)
+    ways = {one["name"]: (one["low"], one["high"]) for one in shown["live"]["parameters"]}
+    assert ways == {"r": (10, 24), "h": (25, 100)}
 
 
 PARTS = """
@@ -140,11 +155,16 @@ def test_a_joint_that_rubs_has_its_radius() -> None:
         ("{forces: maybe}", "maybe", "shown"),
         ("{camera: [0, 0, 0]}", "[0, 0, 0]", "zero"),
         ("{speed: -1}", "-1", "above zero"),
+        ("{parameters: {r: [30, 10]}}", "[30, 10]", "smaller end first"),
+        ("{parameters: {r: [30, 1 rad]}}", "1 rad", "length"),
+        ("{parameters: {r: [30]}}", "[30]", "2"),
+        ("{parameters: {R: [10, 30]}}", "R", "did you mean r"),
+        ("{parameters: {d: [10, 50]}}", "d", "follows from r"),
         ("{colors: {crank: '#000000'}}", "colors", "colours"),
     ],
 )
 def test_mistakes_are_told_at_their_place(view: str, place: str, words: str) -> None:
-    text = FOUR_BAR + f"view: {view}\n"
+    text = SIZED + f"view: {view}\n"
     with pytest.raises(mk.InvalidFile) as refused:
         mk.loads(text)
     (error,) = refused.value.diagnostics
