@@ -44,8 +44,6 @@ def test_the_page_follows_the_file(server: LiveServer, browser: Browser) -> None
         "window.mechkin.theatre.fitted = null, window.mechkin.theatre.stage.moveTo("
         "{position: [3, 4, 500], up: [0, 1, 0], target: [3, 4, 0]})"
     )
-    eventually(lambda: browser.evaluate("window.live.frames.place?.row"), 2)
-    eventually(lambda: browser.evaluate("window.live.frames.place?.camera?.position[2]"), 500)
     # a fault beside the picture, shown as text
     path.write_text(CRANK.replace("name: crank", "nam: '<img src=x>'"))
     line = "document.querySelector('#faults pre')?.textContent"
@@ -134,22 +132,32 @@ window.end = widget.default.render({ model, el: document.querySelector("#cell") 
 """
 
 
-def test_a_widget_hands_over_what_changes(browser: Browser, tmp_path: Path) -> None:
-    def data(r: float) -> str:
-        page = mk.loads(CRANK.replace("40 mm", f"{r} mm")).view(modes=False)
-        (found,) = re.findall(r'id="mechkin-data">(.*?)</script>', page.html, re.DOTALL)
-        return str(found)
+def data_of(text: str) -> str:
+    page = mk.loads(text).view(modes=False)
+    (found,) = re.findall(r'id="mechkin-data">(.*?)</script>', page.html, re.DOTALL)
+    return str(found)
+
+
+def crank(r: float) -> str:
+    return data_of(CRANK.replace("40 mm", f"{r} mm"))
+
+
+def notebook(browser: Browser, folder: Path, row: int) -> None:
+    """Opens a page with a widget at a row."""
 
     def script(value: Any) -> str:
         return json.dumps(value).replace("<", "\\u003c")
 
-    given = {"_page": waiting_page().decode(), "_data": data(40), "row": 1, "parameters": {"r": 40}}
-    page = HARNESS.replace("{given}", script(given)).replace(
-        "{esm}", script(frames_source("widget.js"))
-    )
-    place = tmp_path / "notebook.html"
+    given = {"_page": waiting_page().decode(), "_data": crank(40), "parameters": {"r": 40}}
+    page = HARNESS.replace("{given}", script({**given, "row": row}))
+    page = page.replace("{esm}", script(frames_source("widget.js")))
+    place = folder / "notebook.html"
     place.write_text(page, encoding="utf-8")
     browser.visit(place.as_uri())
+
+
+def test_a_widget_hands_over_what_changes(browser: Browser, tmp_path: Path) -> None:
+    notebook(browser, tmp_path, 1)
     eventually(lambda: browser.inside(ROWS), 1)  # as Python has it
     browser.inside("window.mechkin.seek(2)")
     eventually(lambda: browser.evaluate("window.saved?.row"), 2)
@@ -158,11 +166,36 @@ def test_a_widget_hands_over_what_changes(browser: Browser, tmp_path: Path) -> N
     message = {"mechkin": "parameters", "values": {"r": 43}}
     browser.inside(f"window.parent.postMessage({json.dumps(message)}, '*')")
     eventually(lambda: browser.evaluate("window.saved.parameters"), {"r": 43})
-    # what Python computes is shown where the reader was
-    browser.inside("window.mechkin.seek(2)")
+    # a row that is not there
+    browser.evaluate("window.model.set('row', 99)")
     eventually(lambda: browser.evaluate("window.saved.row"), 2)
-    browser.evaluate(f"window.model.set('_data', {json.dumps(data(42))})")
-    eventually(lambda: browser.inside(OFF), 42)
     eventually(lambda: browser.inside(ROWS), 2)
     browser.evaluate("window.end()")
     assert browser.evaluate("document.querySelectorAll('iframe').length") == 0
+
+
+def test_new_data_are_shown_where_the_reader_is(browser: Browser, tmp_path: Path) -> None:
+    notebook(browser, tmp_path, 0)
+    eventually(lambda: browser.inside(ROWS), 0)
+    # what Python computes comes in the same moment as the news of the reader's row
+    script = "window.model.on('change:row', () => window.next && window.model.set('_data', next))"
+    browser.evaluate(f"window.next = {json.dumps(crank(42))}, {script}")
+    browser.inside("window.mechkin.seek(2)")
+    eventually(lambda: browser.inside(OFF), 42)
+    eventually(lambda: browser.inside(ROWS), 2)
+    # Python, or the reader, goes on while the next page is drawn behind this one
+    browser.evaluate("window.next = null")
+    browser.evaluate(f"window.model.set('_data', {json.dumps(crank(43))})")
+    browser.evaluate("window.model.set('row', 1)")
+    eventually(lambda: browser.inside(OFF), 43)
+    eventually(lambda: browser.inside(ROWS), 1)
+    browser.evaluate(f"window.model.set('_data', {json.dumps(crank(44))})")
+    browser.inside("window.mechkin.seek(0)")
+    eventually(lambda: browser.inside(OFF), 44)
+    eventually(lambda: [browser.inside(ROWS), browser.evaluate("window.saved.row")], [0, 0])
+    # the same place is another row where there are more of them
+    browser.inside("window.mechkin.seek(2)")
+    text = CRANK.replace("40 mm", "45 mm").replace("step: 45", "step: 15")
+    browser.evaluate(f"window.model.set('_data', {json.dumps(data_of(text))})")
+    eventually(lambda: browser.inside(OFF), 45)
+    eventually(lambda: [browser.inside(ROWS), browser.evaluate("window.saved.row")], [6, 6])

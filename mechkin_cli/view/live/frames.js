@@ -2,12 +2,15 @@
 // is seen as soon as it is drawn and never before. Frames have no rights; they and this one speak by messages alone.
 
 const FRAME_RIGHTS = "allow-scripts allow-downloads allow-modals";
-const MOST_WAIT = 8000; // milliseconds after which a page that says nothing is shown as it is
+const MOST_WAIT = 8000; // milliseconds after which a page that says nothing is taken as it is
+
+const wait = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
 
 class Frames {
   #spare = null;
   #wanted = 0;
   #busy = null;
+  #place = null;
 
   /**
    * @param host  element that frames fill
@@ -32,7 +35,7 @@ class Frames {
     frame.allow = "clipboard-write; fullscreen";
     frame.inert = true;
     Object.assign(frame.style, { position: "absolute", inset: 0, width: "100%", height: "100%", border: 0 });
-    const held = { frame, place: null };
+    const held = { frame, asks: [] };
     held.ready = new Promise((done) => (held.isReady = done));
     held.shown = new Promise((done) => (held.isShown = done));
     this.all.add(held);
@@ -46,7 +49,7 @@ class Frames {
     if (!held || typeof data !== "object" || data === null) return;
     if (data.mechkin === "ready") held.isReady();
     else if (data.mechkin === "shown") held.isShown();
-    else if (data.mechkin === "place") held.place = data.place;
+    else if (data.mechkin === "place") held.asks.splice(0).forEach((tell) => tell(data.place));
     else if (data.mechkin === "live") this.#enliven(held, data);
     else if (held === this.seen) this.hear(data);
   }
@@ -56,32 +59,48 @@ class Frames {
     if (held === this.seen) this.hear(message);
   }
 
-  /** Where the reader is in the page that is seen: run, mode, row, tab, camera. */
-  get place() {
-    return this.seen?.place ?? null;
+  /**
+   * Where the reader is now: run, mode, row, tab, camera. Only the page that is seen knows, so it is asked each time and nothing
+   * that it said before is used. Null where nothing is drawn, or no answer comes.
+   */
+  async where() {
+    const { seen } = this;
+    if (!seen) return null;
+    const answer = new Promise((tell) => seen.asks.push(tell));
+    this.post({ mechkin: "where" });
+    return Promise.race([answer, wait(MOST_WAIT).then(() => null)]);
   }
 
-  /** Shows data, a JSON text, at a place; gives whether they are seen, and not newer ones instead. */
-  async show(text, place) {
+  /**
+   * Shows data, a JSON text, where the reader is; gives whether they are seen, and not newer ones instead.
+   * @param first  the place of a reader who has not seen any yet
+   */
+  async show(text, first = null) {
     const number = (this.#wanted += 1);
+    this.#place ??= first;
     // one at a time, so that something is seen however fast the data change; of those that wait, the last
     while (this.#busy) {
       await this.#busy;
       if (number !== this.#wanted) return false;
     }
-    this.#busy = this.#put(text, place);
+    this.#busy = this.#put(text);
     await this.#busy;
     this.#busy = null;
     return true;
   }
 
-  async #put(text, place) {
+  async #put(text) {
     const held = this.#spare ?? this.#open();
     this.#spare = null;
     await held.ready;
+    const place = (await this.where()) ?? this.#place;
     held.frame.contentWindow.postMessage({ mechkin: "data", text, place }, "*");
-    await Promise.race([held.shown, new Promise((done) => setTimeout(done, MOST_WAIT))]);
+    await Promise.race([held.shown, wait(MOST_WAIT)]);
+    // the reader may have gone on while the next page was drawn behind
+    const later = (await this.where()) ?? place;
+    if (JSON.stringify(later) !== JSON.stringify(place)) held.frame.contentWindow.postMessage({ mechkin: "go", place: later }, "*");
     for (const each of [...this.all]) if (each !== held) this.#close(each);
+    this.#place = later;
     this.seen = held;
     held.frame.inert = false;
     if (held.live) this.hear(held.live);

@@ -49,7 +49,6 @@ class Live {
 
   constructor() {
     this.shown = 0;
-    this.wished = null;
     this.frames = new Frames(find("#page"), (frame) => (frame.src = "frame"), (message) => this.#hear(message));
     find("#write").addEventListener("click", () => this.#write(Object.fromEntries(this.#changed), []));
     // a browser opens only a few connections to one place: pages that nobody sees need none
@@ -92,15 +91,13 @@ class Live {
   }
 
   async #show(picture) {
-    const { place } = this.frames;
+    const place = await this.frames.where();
     // a picture that has the file's own mode alone knows nothing of another that the reader has chosen
-    if (place) this.wished = this.wished?.isPartial ? { ...place, branch: this.wished.branch } : place;
-    if (this.wished) this.wished.isPartial = !picture.whole;
-    if (!picture.whole && this.wished?.other) return;
+    if (!picture.whole && place?.other) return;
     this.shown = picture.number;
     const text = await fetch(`data/${picture.number}`).then((answer) => (answer.status === 200 ? answer.text() : null), () => null);
-    if (text === null) return; // a newer one is on its way, or mechkin has ended
-    if (!(await this.frames.show(text, this.wished))) return;
+    // null: a newer one is on its way, or mechkin has ended
+    if (text === null || this.shown !== picture.number || !(await this.frames.show(text))) return;
     document.documentElement.dataset.picture = picture.number;
     this.#takeOwn(picture.parameters);
   }

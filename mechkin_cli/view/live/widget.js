@@ -4,26 +4,35 @@ function render({ model, el }) {
   const host = document.createElement("div");
   host.className = "mechkin";
   el.append(host);
+  const said = {}; // by the page, last; what it has said itself it is not told again, as it may have gone on meanwhile
+  const give = (name, value) => {
+    said[name] = JSON.stringify(value);
+    model.set(name, value);
+    model.save_changes();
+  };
+  const isNew = (name) => JSON.stringify(model.get(name)) !== said[name];
   const hear = (message) => {
     if (message.mechkin === "row") give("row", message.row);
     else if (message.mechkin === "parameters") give("parameters", { ...model.get("parameters"), ...message.values });
     else if (message.mechkin === "live") {
       give("_reach", message.names);
-      setParameters();
+      tellParameters();
     }
   };
-  const give = (name, value) => {
-    model.set(name, value);
-    model.save_changes();
+  const tellParameters = () => frames.post({ mechkin: "set-parameters", values: model.get("parameters") });
+  const setParameters = () => isNew("parameters") && tellParameters();
+  const setRow = () => isNew("row") && frames.post({ mechkin: "set-row", row: model.get("row") });
+  const show = async () => {
+    await frames.show(model.get("_data"), { row: model.get("row") });
+    const place = await frames.where();
+    // the same place may be another row in new data, unless Python has chosen one meanwhile
+    if (isNew("row")) setRow();
+    else if (Number.isInteger(place?.row)) give("row", place.row);
   };
-  // what the page has said itself it is told again, which changes nothing there
-  const setParameters = () => frames.post({ mechkin: "set-parameters", values: model.get("parameters") });
-  const setRow = () => frames.post({ mechkin: "set-row", row: model.get("row") });
-  const show = () => frames.show(model.get("_data"), frames.place);
   const frames = new Frames(host, (frame) => (frame.srcdoc = model.get("_page")), hear);
   const heard = [["change:_data", show], ["change:parameters", setParameters], ["change:row", setRow]];
   for (const [name, act] of heard) model.on(name, act);
-  show().then(setRow);
+  show();
   return () => {
     for (const [name, act] of heard) model.off(name, act);
     frames.end();

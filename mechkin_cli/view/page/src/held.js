@@ -41,24 +41,22 @@ export function tellShown() {
 /** Tells the holder the names of the parameters that can be set from now on. */
 export const tellLive = (names) => post({ mechkin: "live", names });
 
-/** Goes to the reader's place in the page before, as far as it is here, and tells the holder of each new one. */
+/** Goes to the reader's place in the page before, as far as it is here, and tells the holder where the reader is when asked. */
 export function keepPlace(place, shown) {
   if (!held) return;
   if (place) goTo(place, shown);
-  let asked = false;
-  const tell = () => {
-    if (asked) return;
-    asked = true;
-    setTimeout(() => {
-      asked = false;
-      post({ mechkin: "place", place: placeIn(shown) });
-    }, 50);
-  };
-  const { state, theatre, tabs } = shown;
-  state.watch(tell);
-  theatre?.stage.controls.addEventListener("change", tell);
-  for (const each of ["click", "keyup", "scroll"]) window.addEventListener(each, tell, { passive: true, capture: true });
-  tabs.host.addEventListener("click", tell);
+  view = shown;
+}
+
+let view = null; // what is shown, once it is
+
+// from the start, so that a page that fails does not let its holder wait
+if (held) {
+  window.addEventListener("message", ({ source, data: message }) => {
+    if (source !== window.parent) return;
+    if (message?.mechkin === "where") post({ mechkin: "place", place: view && placeIn(view) });
+    else if (message?.mechkin === "go" && view && message.place) goTo(message.place, view);
+  });
 }
 
 function placeIn({ state, player, theatre, tabs, theme }) {
@@ -80,10 +78,12 @@ function goTo(place, { state, player, theatre, tabs, theme }) {
   if (typeof place.dark === "boolean" && place.dark !== theme.dark) theme.toggle();
   state.setRun(place.run);
   state.setBranch(place.branch);
-  if (place.compare) state.setCompare(true);
-  state.seek(state.branch.rows === place.rows ? place.row : state.branch.rowAt(place.x));
+  if (state.compare !== (place.compare ?? state.compare)) state.setCompare(place.compare);
+  const isSame = state.branch.rows === (place.rows ?? state.branch.rows);
+  state.seek(isSame ? place.row : state.branch.rowAt(place.x));
   tabs.open(tabs.has(place.tab) ? place.tab : tabs.opened);
   if (place.look || place.camera) theatre?.keepView(place);
   if (place.playing) player.play();
-  if (place.scroll > 0) window.scrollTo(0, place.scroll);
+  else player.pause();
+  window.scrollTo(0, place.scroll ?? window.scrollY);
 }

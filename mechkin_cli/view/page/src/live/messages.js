@@ -17,7 +17,10 @@ export class ParentWindow {
     });
     window.addEventListener("message", ({ source, data }) => {
       if (source !== parent || typeof data !== "object" || data === null) return;
-      if (data.mechkin === "set-row" && Number.isInteger(data.row)) state.seek(data.row);
+      if (data.mechkin === "set-row" && Number.isInteger(data.row)) {
+        state.seek(data.row);
+        if (state.row !== data.row) this.#post({ mechkin: "row", row: state.row }); // there is no such row
+      }
       if (data.mechkin === "set-parameters" && typeof data.values === "object") this.dimensions?.setAll(data.values ?? {});
     });
   }
