@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from mechkin_cli.building.source import *
     from mechkin_cli.building.tables import *
     from mechkin_cli.building.view import *
+    from mechkin_cli.building.written_numbers import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -34,5 +35,6 @@ __getattr__, __dir__ = lazy_names(
         "source": "BadTable open_data open_file open_text table_path table_text",
         "tables": "used_quantities",
         "view": "DrawnBetween Kind ShapeSetting ViewSettings",
+        "written_numbers": "FileNumber file_numbers",
     },
 )

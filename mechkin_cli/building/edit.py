@@ -8,6 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mechkin_cli import tolerances
+from mechkin_cli.building.written_numbers import file_numbers
 from mechkin_cli.diagnostics import UsageError, nearest
 from mechkin_cli.expressions import ExpressionError, NumberNode, evaluate_parameters, parse_nodes
 from mechkin_cli.reading import KeyPath, edited, value_spans
@@ -47,7 +48,8 @@ def edit_parameters(
     Args:
         text: of the file, with its byte order mark if it has one.
         built: the same file, checked.
-        values: by name, in the file's units; those that the file has already change nothing.
+        values: by name, in the file's units; those that the file has already change nothing. The
+            numbers of a file without parameters have the names of `file_numbers`.
         replace: those whose expressions are replaced by numbers; others are left alone.
 
     Raises:
@@ -58,8 +60,14 @@ def edit_parameters(
     known = {
         str(path[1]): span.text.strip() for path, span in spans.items() if path[:-1] == _SECTION
     }
+    numbers = {number.name: number for number in file_numbers(document)}
     written, expressions = {}, {}
+    changed: dict[KeyPath, str] = {}
     for name, value in values.items():
+        if name in numbers and isfinite(value):
+            if value != numbers[name].value:
+                changed[numbers[name].path] = _shortest(value)
+            continue
         if name not in known:
             close = nearest(name, known)
             hint = f"did you mean {close}?" if close else f"it has {', '.join(known) or 'none'}"
@@ -82,7 +90,8 @@ def edit_parameters(
         if abs(follows - values[name]) <= tolerances.FOLLOWS * abs(values[name]):
             del expressions[name]
     places: dict[KeyPath, str] = {(*_SECTION, name): new for name, new in written.items()}
-    return Edited(edited(text, places), written, expressions)
+    written |= {one.name: changed[one.path] for one in numbers.values() if one.path in changed}
+    return Edited(edited(text, places | changed), written, expressions)
 
 
 _SECTION = ("parameters",)

@@ -20,6 +20,7 @@ from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName, pars
 from mechkin_cli.kernel.plan_text import tape_text
 from mechkin_cli.live.cells import MEASURES, CellRecorder, scalar_of
 from mechkin_cli.live.drawing import arrows_of, drawing_of, pose_records
+from mechkin_cli.live.numbers import with_numbers
 from mechkin_cli.mechanism import (
     BEARING_KINDS,
     DERIVED_KINDS,
@@ -30,11 +31,12 @@ from mechkin_cli.mechanism import (
     read_for,
 )
 from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
+from mechkin_cli.reading import value_spans
 from mechkin_cli.session import input_rest
 from mechkin_cli.sweep import has_turns, limited, slack_quantities
 from mechkin_cli.tables import ROW_TEXTS, Words, row_texts, table_sizes
 from mechkin_cli.tape import Recorded, TraceLost, is_traced, tape_values
-from mechkin_cli.units import LENGTH
+from mechkin_cli.units import LENGTH, UnitSystem
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import (
     CLEAR_CONDITION,
@@ -47,7 +49,9 @@ from mechkin_cli.view import packed
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis, Design, Solvable
+    from mechkin_cli.building import FileNumber
     from mechkin_cli.mechanism import Problem, Wanted
+    from mechkin_cli.reading import Document, KeyPath
     from mechkin_cli.tables import ColumnLayout, Columns
     from mechkin_cli.variants import SessionVariation
 
@@ -61,6 +65,12 @@ MOST_LIVE_NUMBERS = 400_000
 
 MOST_PARAMETERS = 60
 """Parameters that a page has sliders for."""
+
+OF_SIZE = 0.1
+"""How far a slider moves a place to either side, in parts of the mechanism's size."""
+
+NUMBERS = "Points, masses and springs"
+"""What the numbers of a file without parameters are called."""
 
 
 class LeftOut(Exception):
@@ -81,7 +91,8 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         or not analysis.result.solved.all()
     ):
         return None
-    varied, fixed = _variation(design)
+    numbers = with_numbers(design, MOST_PARAMETERS)
+    varied, fixed = _variation(design if numbers is None else numbers.design)
     if varied is None:
         return None
     names = list(varied.recorder.inputs)
@@ -93,9 +104,22 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
     if record is None:
         return None
     file = analysis.model.built.document
+    if numbers is None:
+        paths: dict[str, KeyPath] = {name: ("parameters", name) for name in names}
+        parameters = [_parameter(analysis.model, name, file.data) for name in names]
+    else:
+        chosen = {name: numbers.numbers[name] for name in names}
+        paths = {one.name: one.path for one in chosen.values()}
+        reach = OF_SIZE * data["size"]
+        parameters = [
+            _file_number(numbers.design.problem, name, one, reach) for name, one in chosen.items()
+        ]
+        fixed = {}
+        record["left"] = [one | {"command": None} for one in record["left"]]
     return {
         "run": SWEEP,
-        "parameters": [_parameter(analysis.model, name, file.data) for name in names],
+        "parameters": parameters,
+        "folded": None if numbers is None else NUMBERS,
         "fixed": [
             {
                 "name": name,
@@ -105,7 +129,7 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
             for name, why in fixed.items()
         ],
         **record,
-        "file": None if file.is_data else {"text": file.text, "spans": _spans(analysis, names)},
+        "file": None if file.is_data else {"text": file.text, "spans": _spans(file, paths)},
     }
 
 
@@ -122,39 +146,43 @@ def _parameter(model: Solvable, name: str, data: Mapping[str, Any]) -> Plain:
         value = float(
             written.value
         )  # as it was written, without the rounding of a way to SI and back
-    about = sorted((0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
-    low, high = model.view_settings.parameters.get(name, about)
+    ends = model.view_settings.parameters.get(name, _about(value))
+    return _slider(quantity, units, {"name": name, "value": value, "text": text}, ends)
+
+
+def _file_number(problem: Problem, parameter: str, number: FileNumber, reach: float) -> Plain:
+    """A number of the file; a place is moved by up to `reach`, in the file's unit."""
+    value = number.value
+    ends = (value - reach, value + reach) if number.is_place else _about(value)
+    told = {"name": number.name, "value": value, "text": number.text}
+    return _slider(problem.parameters[parameter], problem.units, told, ends)
+
+
+def _about(value: float) -> tuple[float, float]:
+    """From half to twice a value."""
+    return (min(0.5 * value, 2.0 * value), max(0.5 * value, 2.0 * value)) if value else (-1.0, 1.0)
+
+
+def _slider(quantity: Quantity, units: UnitSystem, told: Plain, ends: tuple[float, float]) -> Plain:
     conversion = units.conversion(quantity.dimension)
     return {
-        "name": name,
+        **told,
         "unit": units.label(quantity.dimension),
-        "value": value,
-        "text": text,
-        "low": low,
-        "high": high,
+        "low": ends[0],
+        "high": ends[1],
         "si": float(quantity.value),  # type: ignore[arg-type]
         "factor": [float(conversion.multiplier), float(conversion.divisor)],
     }
 
 
-def _spans(analysis: Analysis, names: Sequence[str]) -> dict[str, list[int]]:
-    """Where the values of parameters stand in the file's text, characters from 0."""
-    document = analysis.model.built.document
-    lines = document.text.splitlines(keepends=True)
-    starts = np.cumsum([0, *map(len, lines)]).tolist()
-    found = {}
-    for name in names:
-        node = document.node(("parameters", name))
-        mark = getattr(node, "mark", None)
-        if mark is None or name in document.overrides:
-            continue
-        begin = starts[mark[0] - 1] + mark[1] - 1
-        text = node.text  # type: ignore[union-attr]
-        if document.text.startswith(text, begin):
-            found[name] = [begin, begin + len(text)]
-        elif document.text[begin + 1 :].startswith(text):
-            found[name] = [begin, begin + len(text) + 2]
-    return found
+def _spans(file: Document, paths: Mapping[str, KeyPath]) -> dict[str, list[int]]:
+    """Where values stand in the file's text, characters from 0, their quotes among them."""
+    spans = value_spans(file.text)
+    return {
+        name: [spans[path].start, spans[path].end]
+        for name, path in paths.items()
+        if path in spans and name not in file.overrides
+    }
 
 
 def _variation(design: Design) -> tuple[SessionVariation | None, dict[str, str]]:

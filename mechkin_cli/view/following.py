@@ -18,7 +18,7 @@ from pathlib import Path
 from time import perf_counter, time_ns
 from typing import TYPE_CHECKING, Protocol
 
-from mechkin_cli.building import edit_parameters
+from mechkin_cli.building import edit_parameters, file_numbers
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, UsageError
 from mechkin_cli.reading import MOST_BYTES, decoded, lines_of, read_regular, read_text
 from mechkin_cli.record import NamedTuple
@@ -107,7 +107,8 @@ class Seen(NamedTuple):
         picture = self.picture
         shown: Plain | None = None
         if picture is not None:
-            parameters = dict(picture.model.parameters)
+            numbers = file_numbers(picture.model.built.document)
+            parameters = dict(picture.model.parameters) | {one.name: one.value for one in numbers}
             shown = {"number": picture.number, "hash": picture.hash, "parameters": parameters}
             shown["whole"] = picture.is_whole
         faults = [_fault(one, self.lines) for one in self.faults]

@@ -13,8 +13,12 @@ function render({ model, el }) {
   const isNew = (name) => JSON.stringify(model.get(name)) !== said[name];
   const hear = (message) => {
     if (message.mechkin === "row") give("row", message.row);
-    else if (message.mechkin === "parameters") give("parameters", { ...model.get("parameters"), ...message.values });
-    else if (message.mechkin === "live") {
+    else if (message.mechkin === "parameters") {
+      // numbers of a file without parameters are the page's alone
+      const own = model.get("parameters");
+      const known = Object.entries(message.values).filter(([name]) => name in own);
+      give("parameters", { ...own, ...Object.fromEntries(known) });
+    } else if (message.mechkin === "live") {
       give("_reach", message.names);
       tellParameters();
     }

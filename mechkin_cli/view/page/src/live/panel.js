@@ -6,8 +6,11 @@ import { DimensionRow } from "./row.js";
 
 /** The panel in `host`. */
 export class DimensionPanel {
-  /** @param left  columns of tables that do not follow: {table, label, why, command} */
-  constructor(host, state, dimensions, { fixed, left }, acts) {
+  /**
+   * @param left  columns of tables that do not follow: {table, label, why, command}
+   * @param folded  what the numbers of a file without parameters are called together; they are folded away at first
+   */
+  constructor(host, state, dimensions, { fixed, left, folded }, acts) {
     this.dimensions = dimensions;
     const press = (text, title, click) => element("button", { type: "button", title, "aria-label": title, on: { click } }, text);
     this.back = press("↶", "Undo (Ctrl+Z)", () => dimensions.undo());
@@ -24,7 +27,7 @@ export class DimensionPanel {
       element("summary", {}, element("h2", {}, "Dimensions")),
       element("div.actions", { role: "toolbar", "aria-label": "Dimensions" }, this.back, this.on, this.reset, this.original, ...takes, this.copied),
       this.words,
-      element("div.rows", {}, ...this.rows.map(({ node }) => node)),
+      this.#listed(folded),
       this.modes,
       ...listed("Changed by a command only", fixed.map(({ name, why, command }) => ({ names: [name], why, command }))),
       ...listed("Empty with changed dimensions", grouped(left)),
@@ -37,6 +40,12 @@ export class DimensionPanel {
     listen(dimensions);
     this.commands = host.querySelectorAll("code[data-command]");
     this.#show();
+  }
+
+  #listed(folded) {
+    const rows = element("div.rows", {}, ...this.rows.map(({ node }) => node));
+    if (!folded) return rows;
+    return element("details.fixed", {}, element("summary", {}, `${folded} (${this.rows.length})`), rows);
   }
 
   async #act(act) {

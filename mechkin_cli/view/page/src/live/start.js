@@ -23,10 +23,11 @@ export function showLive(run, { data, state, tabs, menu }) {
   const attached = new Attached(data);
   const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found, attached)));
   const file = live.file;
-  const acts = [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
+  // the numbers of a file without parameters are no lines of `parameters:`
+  const acts = live.folded ? [] : [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
   if (file) acts.push({ text: "Download file", short: "Download", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
   document.body.classList.add("live");
-  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [] }, acts);
+  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [], folded: live.folded }, acts);
   menu?.add(acts);
   new Peaks(find("#peaks"), state);
   tabs.add("peaks", "Peaks", "tables");
