@@ -290,7 +290,7 @@ def respond(
     design = model.design.at_responses
     problem = design.problem
     run = response_name(problem, name)
-    session = design.session_of(run)
+    session = model.design.session_of(run)
     response = problem.responses[run]
     if mode is not None:
         a_text("mode", mode, '"A"')

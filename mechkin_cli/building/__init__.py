@@ -31,7 +31,7 @@ __getattr__, __dir__ = lazy_names(
         "edit": "Edited edit_parameters value_text",
         "fields": "is_tiny_length",
         "motion": "by_count by_step",
-        "recording": "precise precise_response record shifting",
+        "recording": "precise precise_response record record_response shifting",
         "source": "BadTable open_data open_file open_text table_path table_text",
         "tables": "used_quantities",
         "view": "DrawnBetween Kind ShapeSetting ViewSettings",

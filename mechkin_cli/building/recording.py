@@ -8,6 +8,7 @@ warning) raises `TraceLost`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType
@@ -176,19 +177,73 @@ def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:
         TraceLost: it depends on one of them in a way that no tape holds.
     """
     base = built.problem
-    quantities = [base.parameters[name] for name in names]
-    recorder = Recorder(names, [quantity.value for quantity in quantities])  # type: ignore[misc]
-    given = {
-        name: Quantity(Traced(recorder, number), quantity.dimension)  # type: ignore[arg-type]
-        for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
-    }
-    fields = read_fields(built.file, built.document, given, datum=base.mechanism.datum)
+    recorder, fields = _recorded_fields(built, names)
     problem = build_problem(fields, built.file, responses=False)
     problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables_of(SWEEP))
     _refuse_errors(fields)
     return recorder, settled(problem)
+
+
+def record_response(built: Built, names: Sequence[str], run: str) -> tuple[Recorder, Problem]:
+    """The problem at the first moment of a response (`response_problem`), recorded likewise.
+
+    Raises:
+        TraceLost: it depends on one of them in a way that no tape holds, as moments, stops and
+            tolerances do.
+    """
+    base = built.problem
+    response = base.responses[run]
+    if response.driven or response.held:
+        raise TraceLost("a coordinate that a law of time drives, or that is held")
+    given = set(names) & _read_by(built, run)
+    if given:
+        raise TraceLost(f"moments, stops or tolerances read {', '.join(sorted(given))}")
+    recorder, fields = _recorded_fields(built, names)
+    problem = build_problem(fields, built.file, motion=base.motion, moving=base.responses)
+    _refuse_errors(fields)
+    if any(isinstance(end, Recorded) for one in problem.limits for end in (one.low, one.high)):
+        raise TraceLost("the limit of a coordinate, which ends the response")
+    recorded = response_problem(problem, problem.responses[run])
+    first = replace(recorded, hold_idle=base.hold_idle, diagnostics=base.diagnostics)
+    if first.has_idle:
+        raise TraceLost("an idle freedom, which may move by itself")
+    return recorder, settled(first)
+
+
+def _read_by(built: Built, run: str) -> set[str]:
+    """The parameters that a response reads where no recording goes: moments, stops, tolerances."""
+    data: Any = built.document.data
+    section, parameters = data["responses"][run], data.get("parameters", {})
+    recorded = ("start", "near", "efforts")
+    words = _words([value for key, value in section.items() if key not in recorded])
+    found: set[str] = set()
+    while more := (words & parameters.keys()) - found:
+        found |= more
+        words = _words([parameters[name] for name in more])
+    return found
+
+
+def _words(data: Any) -> set[str]:
+    """The words of all values in plain data."""
+    if isinstance(data, dict):
+        return _words(list(data.values()))
+    if isinstance(data, list | tuple):
+        return set().union(*map(_words, data))
+    return set(re.findall(r"\w+", str(data)))
+
+
+def _recorded_fields(built: Built, names: Sequence[str]) -> tuple[Recorder, Fields]:
+    """Units and parameters of a file, those of some names on a recorder."""
+    base = built.problem
+    quantities = [base.parameters[name] for name in names]
+    recorder = Recorder(names, [quantity.value for quantity in quantities])  # type: ignore[misc]
+    given = {
+        name: Quantity(Traced(recorder, number), quantity.dimension)  # type: ignore[arg-type]
+        for number, (name, quantity) in enumerate(zip(names, quantities, strict=True))
+    }
+    return recorder, read_fields(built.file, built.document, given, datum=base.mechanism.datum)
 
 
 def _refuse_varied_lines(problem: Problem) -> None:

@@ -48,9 +48,13 @@ def tape_text(tape: Sequence[Any]) -> str:
     return _text(FIRST_LINE_OF_TAPE, [("tape", tape)])
 
 
+def record_lines(records: Iterable[Record]) -> str:
+    """Records alone, as they stand in a text."""
+    return "".join(f"{' '.join([name, *map(_word, values)])}\n" for name, values in records)
+
+
 def _text(first: str, records: Iterable[Record]) -> str:
-    lines = [first, *(" ".join([name, *map(_word, values)]) for name, values in records)]
-    return "".join(f"{line}\n" for line in lines)
+    return f"{first}\n{record_lines(records)}"
 
 
 def _word(value: Any) -> str:

@@ -201,7 +201,8 @@ def first_motion(response: ResponseProblem, units: UnitSystem) -> MotionInputs:
 
 
 def _started(one: StartValue, units: UnitSystem) -> DrivenInput:
-    orders = np.array([[one.value or 0.0], [one.rate or 0.0], [0.0], [0.0]])
+    first = [0.0 if number is None else number for number in (one.value, one.rate)]
+    orders = np.array([[number] for number in (*first, 0.0, 0.0)])
     dimension = dimension_of(one.coordinate)
     written = []
     for order in orders:

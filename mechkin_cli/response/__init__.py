@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "integration": "Beginning Impact integrate watched_stop with_loads",
-        "result": "ResponseResult",
+        "integration": "Beginning Impact free_session integrate watched_stop with_loads",
+        "result": "ENERGIES ResponseResult",
         "runs": "Prepared integrated prepare read respond",
     },
 )

@@ -199,15 +199,11 @@ of length and 1/time in its dimension, by which its rounding is estimated; `rate
 def free_session(session: Session, free: Sequence[Coordinate]) -> Session:
     """The session of a problem whose inputs `free` are left to move: the same tree, so the same
     states; residual and condition in parts of the same size."""
-    graph, closed_at, packing = (
-        charted(session.graph, set(free)),
-        session.closed_at,
-        session.packing,
-    )
-    other = Session.of(
-        session.problem, graph, driven=graph.driven, closed_at=closed_at, packing=packing
-    )
-    return other if session.size is None else other.sized(session.size)
+    problem, graph = session.problem, charted(session.graph, set(free))
+    # a variant's length unit is that of what it is continued from
+    laid = Layout(problem.laid_mechanism, graph, session.layout.length, laws=problem.laws)
+    structure = Structure(laid, tuple(graph.driven), session.closed_at)
+    return Session(problem, structure, size=session.size, packing=session.packing)
 
 
 def with_loads(session: Session, problem: Problem) -> Session:

@@ -28,7 +28,8 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "columns": "FloatArray RunParameter TableColumn Words column_of column_of_numbers "
-        "column_texts row_words run_parameter solved_rows table_sizes unique_cells words_of",
+        "column_texts row_words run_parameter size_kinds size_of_rate solved_rows table_sizes "
+        "unique_cells words_of",
         "compare": "compare_files read_committed report stale_in",
         "csv": "COMMITTED_DIGITS csv_bytes",
         "errata": "MARK NAME OVERVIEW_PAGE OverviewRow PAGE PrintedTable against_print "
@@ -36,8 +37,8 @@ __getattr__, __dir__ = lazy_names(
         "errors": "ALL_COLUMNS AT_DEAD_CENTRE ColumnErrors LOST ZERO clashing column_errors "
         "least_digits not_repeated worst_column",
         "json": "json_text runs_record",
-        "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_NUMBERS ROW_PROOF ROW_TEXTS "
-        "Remark TableLayout chosen counted default_table effort_names row_texts",
+        "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_EVENT ROW_NUMBERS ROW_PROOF "
+        "ROW_TEXTS Remark TableLayout chosen counted default_table effort_names row_texts",
         "markup": "markdown_bytes rows_table",
         "print": "read_table_text",
         "results": "Results",

@@ -38,6 +38,8 @@ from mechkin_cli.units import (
     JERK,
     LENGTH,
     VELOCITY,
+    Conversion,
+    Dimension,
 )
 from mechkin_cli.verdict import Proof, Status, has_solution
 
@@ -385,19 +387,35 @@ def table_sizes(source: TableSource) -> dict[str, float]:
     rates = [0.0]
     for name, values in source.input_rates.items():
         quantity = source.quantity(name)
-        per_size = {ANGULAR_RATE: 1.0, VELOCITY: source.length}.get(quantity.dimension)
+        per_size = size_of_rate(quantity.dimension, source)
         if per_size is not None:
             largest = np.abs(values).max(initial=0.0, where=np.isfinite(values))
-            rates.append(float(largest) / float(source.units.from_si(per_size, quantity.dimension)))
+            rates.append(float(largest) / per_size)
     sizes = {"": 1.0}
-    for size, kinds in (
-        (1.0, (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)),
-        (source.length, (LENGTH, VELOCITY, ACCELERATION, JERK)),
-    ):
-        for kind in kinds:
-            sizes[source.units.label(kind)] = float(source.units.from_si(size, kind))
+    for size, kinds in size_kinds(source):
+        for label, conversion in kinds:
+            sizes[label] = float(conversion.reverse(size))
             size *= max(rates)
     return sizes
+
+
+def size_of_rate(dimension: Dimension, source: TableSource) -> float | None:
+    """The rate in the file's units at which an input moves by the mechanism's size in a second;
+    None of what is no rate."""
+    per_size = {ANGULAR_RATE: 1.0, VELOCITY: source.length}.get(dimension)
+    return None if per_size is None else float(source.units.from_si(per_size, dimension))
+
+
+def size_kinds(source: TableSource) -> list[tuple[float, list[tuple[str, Conversion]]]]:
+    """The sizes of angles and of lengths in SI, each with the labels of their orders in time and
+    the conversions to SI."""
+    return [
+        (size, [(source.units.label(kind), source.units.conversion(kind)) for kind in kinds])
+        for size, kinds in (
+            (1.0, (ANGLE, ANGULAR_RATE, ANGULAR_ACCELERATION, ANGULAR_JERK)),
+            (source.length, (LENGTH, VELOCITY, ACCELERATION, JERK)),
+        )
+    ]
 
 
 def _evaluated(layout: ColumnLayout, source: TableSource) -> TableColumn:

@@ -20,7 +20,7 @@ import numpy as np
 
 from mechkin_cli.analysis import Design, Solvable
 from mechkin_cli.arguments import Setting, a_setting, a_text, settings, shown
-from mechkin_cli.building import build, is_tiny_length, record
+from mechkin_cli.building import build, is_tiny_length, record, record_response
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
@@ -32,7 +32,7 @@ from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost, Verdict
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import LENGTH
-from mechkin_cli.variants.variation import SessionVariation, varied_session
+from mechkin_cli.variants.variation import SessionVariation, varied_response, varied_session
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -161,6 +161,7 @@ class Base:
     def __init__(self, design: Design) -> None:
         self.design = design
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
+        self._responses: dict[tuple[str, ...], SessionVariation | None] = {}
 
     @cached_property
     def _assembled(self) -> tuple[Session, tuple[Floats, int, float]] | None:
@@ -189,6 +190,24 @@ class Base:
             return SessionVariation(*self._assembled, *record(self.design.built, names))
         except (TraceLost, TypeError, ValueError):
             # numpy refuses recorded numbers in words of its own
+            return None
+
+    def response_variation(self, names: Sequence[str], run: str) -> SessionVariation | None:
+        """How the first moment of a response depends on some parameters; None where each variant
+        chooses its assembly by itself."""
+        key = (run, *names)
+        if key not in self._responses:
+            self._responses[key] = self._recorded_response(tuple(names), run)
+        return self._responses[key]
+
+    def _recorded_response(self, names: tuple[str, ...], run: str) -> SessionVariation | None:
+        session, start = first_assembly(self.design.session_of(run))
+        if start.state is None or session.size is None:
+            return None
+        first = (start.state, start.row, session.size)
+        try:
+            return SessionVariation(session, first, *record_response(self.design.built, names, run))
+        except (TraceLost, TypeError, ValueError):
             return None
 
     def built(self, values: Mapping[str, float]) -> Built:
@@ -232,6 +251,7 @@ class VariedDesign(Design):
             values = {name: v for name, v in values.items() if v != known[name].value}
             variation = base.variation(tuple(values)) if values else None
         self.base, self._values = base, dict(values)
+        self._at_starts: dict[str, Session] = {}
         self._row = np.array(list(values.values()))
         verdict = Verdict.OTHER_WAY
         if variation is not None:
@@ -299,9 +319,29 @@ class VariedDesign(Design):
 
     @cached_property
     def at_responses(self) -> Design:
-        """The same design built from the file: no recording holds responses."""
+        """The same design built from the file."""
         built = self.built if self._variation is None else self.base.built(self._values)
         return Design(built, self.stem, self.given)
+
+    def session_of(self, run: str) -> Session:
+        """As `Design.session_of`; the first assembly of a response, too, is continued from that of
+        the file's own parameters."""
+        if run == SWEEP:
+            return self.session
+        if run not in self._at_starts:
+            self._at_starts[run] = self._at_start(run)
+        return self._at_starts[run]
+
+    def _at_start(self, run: str) -> Session:
+        known = self.base.design.problem.parameters
+        changed = {name: v for name, v in self._values.items() if v != known[name].value}
+        own = self.at_responses.session_of(run)
+        for values in (self._values, changed):
+            # what has the file's own value need not be named, and may be what no tape holds
+            variation = self.base.response_variation(tuple(values), run) if values else None
+            if variation is not None:
+                return varied_response(variation, np.array(list(values.values())), own) or own
+        return own
 
     @property
     def view_settings(self) -> ViewSettings:

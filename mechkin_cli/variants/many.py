@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mechkin_cli.analysis import Analysis, Design, Solvable, a_packing, response_name
+from mechkin_cli.analysis import Analysis, Solvable, a_packing, response_name
 from mechkin_cli.arguments import a_text
 from mechkin_cli.diagnostics import MechkinError, UsageError
 from mechkin_cli.expressions import Expression, Quantity, UnknownName, Vector
@@ -429,11 +429,9 @@ class _ResponseRun:
     ) -> None:
         try:
             values = dict(zip(self.names, row.tolist(), strict=True))
-            built = self.base.built(values)
-            design = Design(built, self.base.design.stem, self.base.given(values))
-            session = design.session_of(self.name)
-            response = built.problem.responses[self.name]
-            prepared = prepare(built.problem, response, self.packing, session)
+            design = VariedDesign(self.base, values)
+            session, response = design.session_of(self.name), design.response(self.name)
+            prepared = prepare(design.at_responses.problem, response, self.packing, session)
             models[number] = self.model.of(design), prepared
         except MechkinError as error:
             self.errors[number] = error

@@ -18,7 +18,7 @@ from mechkin_cli.expressions import Quantity
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.kernel._kernel import VariantEnd
 from mechkin_cli.kernel.functions import width
-from mechkin_cli.kernel.plan_text import plan_text
+from mechkin_cli.kernel.plan_text import Record, plan_text
 from mechkin_cli.mechanism import Problem
 from mechkin_cli.plan import Demand, Layout, OutputPlan, Readout, flatten, plan_records
 from mechkin_cli.record import NamedTuple, replace
@@ -32,12 +32,13 @@ from mechkin_cli.session import (
     step_limits,
     step_numbers,
 )
-from mechkin_cli.structure import graph_of
+from mechkin_cli.structure import graph_of, structure_of
 from mechkin_cli.tape import (
     Filling,
     Recorder,
     Tape,
     TraceLost,
+    Verdict,
     compiled,
     is_traced,
     next_power_of_two,
@@ -93,14 +94,15 @@ class VariantReadout:
     def text(self, demand: Demand) -> str:
         """What a run of variants rests on, for the core without Python (kernel/plan_text.py)."""
         variation = self.variation
+        first = variation.state, variation.row, variation.size
+        return plan_text(*self.parts(), self.start_records(demand, first))
+
+    def start_records(self, demand: Demand, first: tuple[Floats, int, float]) -> list[Record]:
+        """What a run of variants has in common, with the assembly that they are continued from:
+        states at a row, the row, and the mechanism's size there in m."""
+        variation = self.variation
+        state, row, size = first
         base, time = variation.base, variation.base.problem.motion.time
-        calls = [
-            ("plan" if call == "units" else call, arguments)
-            for call, arguments in plan_records(base.layout, variation.size)
-        ]
-        plan = OutputPlan(base.layout, None, base.driven)
-        for quantity in self.readout.wanted:
-            plan.add(quantity)
         inputs = base.inputs
         arrays = (inputs.reduced, inputs.rates, inputs.accelerations, inputs.jerks, inputs.whole)
         limits = (
@@ -111,23 +113,40 @@ class VariantReadout:
             variation.values.tolist(),
             *(array.ravel().tolist() for array in (*arrays, inputs.values)),
             [] if time is None else time.values.tolist(),
-            variation.state.tolist(),
-            float(variation.size),
+            state.tolist(),
+            float(size),
             base.problem.motion.rows,
-            variation.row,
+            row,
             int(demand),
             tolerances.NEWTON_ITERATIONS,
             *([float(number) for number in numbers.values()] for numbers in limits),
             [(slot, turn, int(of)) for slot, turn, of in angle_slots(base, self.slots)],
             float(tolerances.HALF_TURN_SIDE),
         ]
-        records: list[tuple[str, Sequence[Any]]] = [("variants", values)]
+        records: list[Record] = [("variants", values)]
         for step in (1, -1) if base.route is not None else ():
-            way = base.route.way(variation.row, step)  # type: ignore[union-attr]
+            way = base.route.way(row, step)  # type: ignore[union-attr]
             records.append(("way", (step, way.rows.tolist(), way.values.ravel().tolist())))
             if way.course is not None:
                 records.append(("course", way.course_values))
-        return plan_text(calls, plan.records, tape_values(self.recorded), records)
+        return records
+
+    def parts(self) -> tuple[Sequence[Record], Sequence[Sequence[Any]], Sequence[Any]]:
+        """The plan, its outputs and the tape of their constants, as `plan_text` takes them."""
+        base = self.variation.base
+        calls: list[Record] = [
+            ("plan" if call == "units" else call, arguments)
+            for call, arguments in plan_records(base.layout, self.variation.size)
+        ]
+        plan = OutputPlan(base.layout, None, base.driven)
+        for quantity in self.readout.wanted:
+            plan.add(quantity)
+        return calls, plan.records, tape_values(self.recorded)
+
+    @property
+    def base(self) -> Session:
+        """The session with the file's own parameters."""
+        return self.variation.base
 
     def runs(self, demand: Demand) -> _kernel.Variants:
         """The kernel's variants of this reading."""
@@ -326,6 +345,31 @@ def varied_session(variation: SessionVariation, values: Floats, problem: Problem
         packing=base.packing,
         own_inputs=variation.inputs(values),
     )
+
+
+def varied_response(variation: SessionVariation, values: Floats, built: Session) -> Session | None:
+    """The session at the first moment of a response with other parameters, its first assembly
+    continued from the base's; None where the branch ends on the way, or the loops are solved in
+    another way.
+
+    Args:
+        variation: how the base depends on the parameters.
+        values: (parameters,) of the variant, in SI.
+        built: the session of the file with these parameters.
+    """
+    base, problem = variation.base, built.problem
+    if structure_of(built.graph) != structure_of(base.graph):
+        return None
+    if variation.verdicts(values[:, None])[0] == Verdict.OTHER_WAY:
+        return None
+    end, size, state = variation.reading(()).runs(Demand.POSITION).start(values)
+    if end != VariantEnd.COMPLETE:
+        return None
+    graph = graph_of(problem.solved_mechanism, base.graph)
+    layout = Layout(problem.laid_mechanism, graph, base.layout.length, problem.laws)
+    structure = Structure(layout, base.driven, base.closed_at)
+    first = Continued(np.asarray(state), variation.row)
+    return replace(built, structure=structure, first=first, size=size)
 
 
 def _varied_readout(

@@ -69,6 +69,15 @@ def test_every_variant_is_what_it_gives_alone(model: mk.Model, run: str) -> None
             assert np.isnan(together[text][number, rows:]).all()
 
 
+def test_the_assembly_is_continued_from_the_files(model: mk.Model) -> None:
+    """It is the one that the file built anew chooses, but for rounding."""
+    values = {"a": 0.12, "start": 75.0}
+    found = model.with_parameters(values).respond("swing", ["D.s"], tables=[])
+    assert found.result.how == "continued in the parameters"
+    fresh = mk.loads(FILE, parameters=values).respond("swing", ["D.s"], tables=[])
+    np.testing.assert_allclose(found["D.s"], fresh["D.s"], rtol=1e-9)
+
+
 def test_neither_lanes_threads_nor_neighbours_matter(model: mk.Model) -> None:
     whole = model.vary(GIVEN, ["A.theta"], run="swing")["A.theta"]
     for packing in ({"lanes": 2}, {"threads": 2}):
