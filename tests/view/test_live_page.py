@@ -183,8 +183,16 @@ def test_new_data_are_shown_where_the_reader_is(browser: Browser, tmp_path: Path
     browser.inside("window.mechkin.seek(2)")
     eventually(lambda: browser.inside(OFF), 42)
     eventually(lambda: browser.inside(ROWS), 2)
+    # each of several in the moment when the one before is seen
+    rest = json.dumps([crank(r) for r in (51, 52, 53)])
+    browser.evaluate(
+        f"window.rest = {rest}, new MutationObserver(() => {{ const next = window.rest.shift(); "
+        "if (next) window.model.set('_data', next) }).observe(document.body, "
+        "{subtree: true, attributeFilter: ['inert']})"
+    )
+    browser.evaluate(f"window.next = null, window.model.set('_data', {json.dumps(crank(50))})")
+    eventually(lambda: browser.inside(OFF), 53)
     # Python, or the reader, goes on while the next page is drawn behind this one
-    browser.evaluate("window.next = null")
     browser.evaluate(f"window.model.set('_data', {json.dumps(crank(43))})")
     browser.evaluate("window.model.set('row', 1)")
     eventually(lambda: browser.inside(OFF), 43)

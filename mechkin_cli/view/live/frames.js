@@ -80,12 +80,15 @@ class Frames {
     this.#place ??= first;
     // one at a time, so that something is seen however fast the data change; of those that wait, the last
     while (this.#busy) {
-      await this.#busy;
+      await this.#busy.catch(() => null); // which its own caller is told of
       if (number !== this.#wanted) return false;
     }
     this.#busy = this.#put(text);
-    await this.#busy;
-    this.#busy = null;
+    try {
+      await this.#busy;
+    } finally {
+      this.#busy = null;
+    }
     return true;
   }
 
@@ -99,7 +102,8 @@ class Frames {
     // the reader may have gone on while the next page was drawn behind
     const later = (await this.where()) ?? place;
     if (JSON.stringify(later) !== JSON.stringify(place)) held.frame.contentWindow.postMessage({ mechkin: "go", place: later }, "*");
-    for (const each of [...this.all]) if (each !== held) this.#close(each);
+    // the next one may have been opened meanwhile
+    for (const each of [...this.all]) if (each !== held && each !== this.#spare) this.#close(each);
     this.#place = later;
     this.seen = held;
     held.frame.inert = false;
