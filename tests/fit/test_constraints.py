@@ -3,6 +3,8 @@ closed forms."""
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
 from fit.test_fit import FOUR_BAR, rocker
@@ -10,6 +12,8 @@ from references import FILE_OF
 from scipy.optimize import least_squares, minimize
 
 import mechkin_cli as mk
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 TRANSMISSION = (
     "acos(abs(dot(A.point - B.point, C.point - B.point))"
@@ -19,7 +23,7 @@ AT_LEAST_40 = {"of": TRANSMISSION, "min": "40 deg"}
 COUPLER = {"of": "norm(B.point - A.point)", "least": "rms"}
 
 
-@pytest.mark.parametrize("starts", [1, 2])
+@pytest.mark.parametrize("starts", [1, 2] if TIMES > 1 else [1])
 def test_the_shortest_coupler_that_transmits_at_40_degrees(starts: int) -> None:
     """The angle at B is least where the crank lies along the ground, and largest half a turn on: by
     the law of cosines b^2 + c^2 - 2 b c cos 40 = (d - a)^2 and b^2 + c^2 + 2 b c cos 40 =

@@ -65,7 +65,7 @@ def proofs_of_small_set(text: str, family: str) -> list[str]:
 
 def test_processes_give_the_same(small: list[Tally]) -> None:
     family = "double modes"
-    blocks = tasks(400, [family])
+    blocks = tasks(100, [family])
     known = Tally(family)
     for done in workers.results([*blocks, *blocks], 1, 2):
         known.merge(done.tally)

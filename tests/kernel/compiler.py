@@ -35,8 +35,17 @@ def compile_with(source: Path, target: Path, *options: str) -> Path:
 def built_object(library: str, source: str) -> Path | None:
     """The object file of a source in what `pip install .` left here, if it is newer than all
     sources of the core."""
+    return _built(f"CMakeFiles/{library}.dir/{source}.o")
+
+
+def built_core() -> Path | None:
+    """The library of the core in what `pip install .` left here, likewise."""
+    return _built("libmechkin_core.a")
+
+
+def _built(name: str) -> Path | None:
     newest = max(file.stat().st_mtime for file in SOURCES.rglob("*") if file.is_file())
-    for file in SOURCES.parents[2].glob(f"build/*/core/CMakeFiles/{library}.dir/{source}.o"):
+    for file in SOURCES.parents[2].glob(f"build/*/core/{name}"):
         if file.stat().st_mtime > newest:
             return file
     return None

@@ -3,6 +3,8 @@ that passes 24 dead centres against dense Newton-Euler equations."""
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 from oracle.document import document, to_text
 from oracle.dynamics.quadrature import EnergyIntegral
@@ -12,6 +14,8 @@ from response.linkages import four_bar
 from response.motions import last_time, off, respond
 
 import mechkin_cli as mk
+
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 EXACT = 1e-10
 
@@ -56,7 +60,8 @@ def rockers(response: str, loads: str = "  - {type: gravity, g: [0, -1, 0]}") ->
 
 
 def test_a_double_rocker_passes_24_dead_centres() -> None:
-    """Its coupler turns round and round; either rocker turns back twice in a turn."""
+    """Its coupler turns round and round; either rocker turns back twice in a turn. The dense
+    equations go on for one second of the five, or for two with `MECHKIN_RANDOM=2`."""
     response = """    start: {A.theta: 0, B.theta_dot: 9 rad/s}
     time: {from: 0, to: 5, step: 0.01}
     tolerance: 1e-13"""
@@ -68,9 +73,9 @@ def test_a_double_rocker_passes_24_dead_centres() -> None:
     assert turned >= 24
     assert abs(found["B.theta"][-1]) > 6 * 2 * np.pi
     data = document(text)
-    data["responses"]["run"]["time"] = {"values": ["0", "1", "2"]}
+    rows = [0, 100] if TIMES == 1 else [0, 100, 200]
+    data["responses"]["run"]["time"] = {"values": [str(row // 100) for row in rows]}
     exact = prepare(data).run()
-    rows = [0, 100, 200]
     for name in ("A.theta", "B.theta", "D.theta", "A.theta_dot", "B.theta_dot"):
         assert off(found[name][rows], exact[name]) < 10 * EXACT, name
 

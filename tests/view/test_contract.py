@@ -54,7 +54,7 @@ def test_every_mechanism_has_a_page(path) -> None:
 
 
 def test_the_form_is_told_from_another() -> None:
-    shown = data(mk.load(FILE_OF["rcsr"]))
+    shown = data(mk.load(FILE_OF["planar_four_bar"]))
     for key in DATA["required"]:
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({k: v for k, v in shown.items() if k != key}, DATA)
