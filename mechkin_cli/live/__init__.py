@@ -1,4 +1,4 @@
-"""What a page needs to compute a sweep with other parameters by itself.
+"""What a page needs to compute a run with other parameters by itself.
 
 A record of plain data: the plan with its tape for the kernel in the page (`kernel/wasm`), programs
 of cells, and what hangs on parameters in the drawing. The page gives the bytes that

@@ -54,7 +54,7 @@ def pose_records(recording: Any, data: Mapping[str, Any]) -> Later:
 def arrows_of(recording: Any, data: Mapping[str, Any]) -> Later:
     """The arrows among those of the data that follow from quantities: of joints and drives."""
     problem = recording.problem
-    names = {arrow["name"]: at for at, arrow in enumerate(data["runs"][0]["branches"][0]["arrows"])}
+    names = {arrow["name"]: at for at, arrow in enumerate(recording.shown["branches"][0]["arrows"])}
     known: list[tuple[int, str, str, Any]] = []
     joints: Mapping[str, Joint] = recording.recorded.mechanism.joints
     for name, at in names.items():

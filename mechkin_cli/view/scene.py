@@ -412,12 +412,17 @@ def view_page(
 def page_data(
     analyses: Sequence[ShownAnalysis], modes: bool = True
 ) -> tuple[Plain, list[Diagnostic]]:
-    """The data of the page, and the notes on what it leaves out; `live` is what the page computes a
-    sweep with other parameters from."""
+    """The data of the page, and the notes on what it leaves out; `live` is what the page computes
+    its runs with other parameters from: the first of them, which leads, and the `others`."""
     scene, notes = view_scene(analyses, modes)
     data = scene.record()
-    live = analyses[0].model.live_record(analyses[0], data)
-    return (data if live is None else {**data, "live": live}), notes
+    asked = (one.model.live_record(one, data) for one in analyses)
+    records = [record for record in asked if record is not None]
+    if not records:
+        return data, notes
+    for other in records[1:]:
+        del other["file"]
+    return {**data, "live": {**records[0], "others": records[1:]}}, notes
 
 
 def view_data(

@@ -2,9 +2,10 @@
 
     python tests/benchmark/live.py [--rows 361] [--repeat 50]
 
-A line for each mechanism: milliseconds of `LiveRun.compute` in node with all that a change needs
+A line for each mechanism: milliseconds of `LiveRuns.compute` in node with all that a change needs
 (rows, cells, poses, arrows), of its run of rows alone, and of the same run by the native kernel
-with one thread, each the least of many of the same parameters; then the ratio of the runs.
+with one thread, each the least of many of the same parameters; then the ratio of the runs. The
+native time of a response is that of its integration alone.
 """
 
 from __future__ import annotations
@@ -16,13 +17,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import mechkin_cli as mk
 from benchmarks import sevenr
-from mechkin_cli.live.record import Recording
+from mechkin_cli.live.recording import Recording
 from mechkin_cli.plan import Demand
+from mechkin_cli.response import integrate, prepare
+from mechkin_cli.session import Packing
 from mechkin_cli.variants import base_of
 from mechkin_cli.view.page import script_json
 from mechkin_cli.view.scene import page_data
@@ -39,6 +43,7 @@ FILES = {
     "five-link suspension": "mechanisms/classics/five_link_suspension.yaml",
     "7R": "",
 }
+RESPONSES = {"RCSR response of 2 s": "mechanisms/dissertation/rcsr_response.yaml"}
 
 
 def text_of(name: str, rows: int) -> str:
@@ -58,13 +63,9 @@ def text_of(name: str, rows: int) -> str:
     )
 
 
-def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
-    """Milliseconds of one mechanism."""
-    model = mk.loads(text_of(name, rows))
-    analysis = model.analyze()
-    data = page_data([analysis], False)[0]
-    parameters = data["live"]["parameters"]
-    changed = {p["name"]: p["value"] * 1.001 for p in parameters}
+def in_page(name: str, data: dict[str, Any], repeat: int) -> dict[str, Any]:
+    """What the page's program computes of parameters a little changed, and how long it takes."""
+    changed = {p["name"]: p["value"] * 1.001 for p in data["live"]["parameters"]}
     given = {"data": json.loads(script_json(data)), "cases": [changed], "repeat": repeat}
     command = ["node", str(PROGRAM), str(MODULE)]
     done = subprocess.run(
@@ -75,6 +76,18 @@ def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
     (found,) = json.loads(done.stdout)
     if found["end"] != "complete":
         sys.exit(f"{name}: {found['end']}: {found['words']}")
+    return dict(found)
+
+
+def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
+    """Milliseconds of one mechanism."""
+    if name in RESPONSES:
+        return measured_response(name, repeat)
+    model = mk.loads(text_of(name, rows))
+    analysis = model.analyze()
+    data = page_data([analysis], False)[0]
+    parameters = data["live"]["parameters"]
+    found = in_page(name, data, repeat)
     variation = base_of(model.design).variation(tuple(p["name"] for p in parameters))
     recording = Recording(analysis, data, variation)
     recording.record()
@@ -88,12 +101,36 @@ def measured(name: str, rows: int, repeat: int) -> dict[str, float]:
     return {"change": found["milliseconds"], "run": found["run"], "native": min(times)}
 
 
+def measured_response(name: str, repeat: int) -> dict[str, float]:
+    """The same of a response."""
+    model = mk.load(ROOT / RESPONSES[name])
+    found = in_page(name, page_data([model.respond()], False)[0], repeat)
+    run = next(iter(model.problem.responses))
+    packing = Packing(2, 1)
+    response, session = model.response(run), model.design.session_of(run)
+    one = prepare(model.problem, response, packing, session)
+    assert one.begun is not None
+    times = []
+    for _ in range(repeat):
+        start = time.perf_counter()
+        integrate(
+            [(one.free.plan, one.begun)],
+            float(response.moments.values[0]),
+            response.moments.values,
+            tolerance=response.tolerance,
+            fixed_step=response.fixed_step,
+            packing=packing,
+        )
+        times.append(1e3 * (time.perf_counter() - start))
+    return {"change": found["milliseconds"], "run": found["run"], "native": min(times)}
+
+
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rows", type=int, default=361)
     parser.add_argument("--repeat", type=int, default=50)
-    parser.add_argument("names", nargs="*", default=list(FILES))
+    parser.add_argument("names", nargs="*", default=[*FILES, *RESPONSES])
     given = parser.parse_args()
     print(f"{given.rows} rows, ms          change     run  native   ratio")
     for name in given.names:

@@ -21,7 +21,7 @@ import numpy as np
 import pytest
 from references import FILE_OF
 
-from mechkin_cli import load, loads
+from mechkin_cli import Model, load, loads
 from mechkin_cli.tables import Words, rows_table
 from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.page import script_json
@@ -31,7 +31,62 @@ HERE = Path(__file__).resolve().parent
 KERNEL = HERE.parent.parent / "mechkin_cli" / "kernel" / "wasm"
 NODE = shutil.which("node")
 RANDOM = int(os.environ.get("MECHKIN_RANDOM", "0"))
-FEW = ("planar_four_bar", "rcsr", "planetary_gear", "swash_plate", "double_wishbone")
+FEW = (
+    "planar_four_bar",
+    "rcsr",
+    "planetary_gear",
+    "swash_plate",
+    "double_wishbone",
+    "rcsr_response",
+)
+
+SLIDER = """\
+format: 1
+name: slider-crank with a spring
+units: {length: mm, angle: deg}
+parameters: {a: 100 mm, b: 300 mm, k: 40 N/m, start: 60 deg, torque: 0.4 N*m, w: 2 rad/s}
+links:
+  crank: {mass: 1, center_of_mass: [a/2, 0, 0], inertia: {xx: 1000, yy: 1000, zz: 1000}}
+  rod: {mass: .5, center_of_mass: [a + b/2, 0, 0], inertia: {xx: 1000, yy: 4000, zz: 4000}}
+  slider: {mass: .7, center_of_mass: [a + b, 0, 0], inertia: {xx: 1000, yy: 1000, zz: 1000}}
+joints:
+  A: {type: R, links: [ground, crank], point: [0, 0, 0], axis: [0, 0, 1]}
+  B: {type: R, links: [crank, rod], point: [a, 0, 0], axis: [0, 0, 1]}
+  C: {type: S, links: [rod, slider], point: [a + b, 0, 0]}
+  D: {type: P, links: [ground, slider], point: [a + b, 0, 0], axis: [1, 0, 0]}
+loads:
+  - {type: gravity, g: [0, -9810, 0]}
+  - {type: spring, joint: D, coordinate: s, stiffness: k}
+responses:
+  swing:
+    start: {A.theta: start}
+    near: {D.s: -50}
+    time: {from: 0, to: 1, step: 0.25}
+  until:
+    start: {A.theta: start}
+    near: {D.s: -50}
+    time: {from: 0, to: 2, step: 0.25}
+    stop: [{dead_centre: A.theta}]
+  off:
+    start: {A.theta: start, A.theta_dot: w}
+    near: {D.s: -50}
+    efforts: {A.theta: torque*cos(A.theta)}
+    time: {from: 0, to: 1, step: 0.125}
+tables:
+  - name: motion
+    run: RUN
+    columns:
+      - {label: t, value: time}
+      - {label: theta, value: A.theta}
+      - {label: rate, value: A.theta_dot, decimals: 4}
+      - {label: s, value: D.s}
+      - {label: effort, value: EFFORT}
+      - {label: force, value: norm(C.force)}
+      - {label: energy, value: row.kinetic_energy + row.work}
+      - {label: error, value: row.energy_error}
+      - {label: event, value: row.event}
+      - {label: status, value: row.status}
+"""
 
 pytestmark = pytest.mark.skipif(NODE is None, reason="needs node")
 
@@ -42,9 +97,13 @@ def live_stems() -> list[str]:
     return [stem for stem, file in FILE_OF.items() if "\nparameters:" in Path(file).read_text()]
 
 
-def computed(data: dict[str, Any], cases: list[dict[str, float]]) -> list[dict[str, Any]]:
-    """What the page's program makes of some parameters in the file's units."""
-    given = json.dumps({"data": json.loads(script_json(data)), "cases": cases})
+def computed(
+    data: dict[str, Any], cases: list[dict[str, float]], mode: str | None = None
+) -> list[dict[str, Any]]:
+    """What the page's program makes of some parameters in the file's units, with another assembly
+    mode shown."""
+    shown = None if mode is None else {"run": SWEEP, "name": mode}
+    given = json.dumps({"data": json.loads(script_json(data)), "cases": cases, "shown": shown})
     command = [str(NODE), str(HERE / "compute.mjs"), str(KERNEL / "mechkin.wasm.gz")]
     done = subprocess.run(command, input=given, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
@@ -56,27 +115,44 @@ def test_cells_are_those_of_the_command() -> None:
     checked = 0
     for stem in live_stems():
         model = load(FILE_OF[stem])
-        if SWEEP not in model.runs:
-            continue
-        analysis = model.analyze()
-        data, _ = page_data([analysis], modes=False)
-        live = data.get("live")
-        if live is None:
-            assert stem not in FEW
-            continue
-        random = np.random.default_rng(0)
-        own = {one["name"]: one["value"] for one in live["parameters"]}
-        cases: list[dict[str, float]] = [{}]
-        for _ in range(RANDOM or 1):
-            factors = 1.0 + 0.01 * random.standard_normal(len(own))
-            cases.append(dict(zip(own, factors * list(own.values()), strict=True)))
-        for case, found in zip(cases, computed(data, cases), strict=True):
-            if found["end"] != "complete":
-                assert case, f"{stem}: {found['words']}"
-                continue
-            wanted = model.with_parameters(case).analyze() if case else analysis
-            checked += compared(stem, live, found, wanted)
+        checked += sum(checked_run(stem, model, run) for run in model.runs)
     assert checked > 100
+
+
+@pytest.mark.parametrize("run", ["swing", "until", "off"])
+def test_responses_are_those_of_the_command(run: str) -> None:
+    """A spring and an effort that go by parameters, a stop between two rows, a start that moves."""
+    effort = "A.effort" if run == "off" else "A.theta_ddot"
+    text = SLIDER.replace("RUN", run).replace("EFFORT", effort)
+    assert checked_run(run, loads(text), run, spread=0.1) > 10
+
+
+def checked_run(stem: str, model: Model, run: str, spread: float = 0.01) -> int:
+    """Compares the file's own run and random variants; how many columns there were."""
+
+    def ran(of: Model) -> Any:
+        return of.analyze() if run == SWEEP else of.respond(run)
+
+    analysis = ran(model)
+    data, _ = page_data([analysis], modes=False)
+    live = data.get("live")
+    if live is None:
+        assert stem not in FEW
+        return 0
+    random, checked = np.random.default_rng(0), 0
+    own = {one["name"]: one["value"] for one in live["parameters"]}
+    cases: list[dict[str, float]] = [{}]
+    for _ in range(RANDOM or 1):
+        factors = 1.0 + spread * random.standard_normal(len(own))
+        cases.append(dict(zip(own, factors * list(own.values()), strict=True)))
+    for case, found in zip(cases, computed(data, cases), strict=True):
+        if found["end"] != "complete" and not (live["ends_early"] and found["tables"]):
+            assert case, f"{stem}: {found['words']}"
+            continue
+        checked += compared(
+            stem, live, found, ran(model.with_parameters(case)) if case else analysis
+        )
+    return checked
 
 
 def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any) -> int:
@@ -99,10 +175,10 @@ def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any
                 # what the page leaves out has a part in it
                 assert one["rounding"] == own.rounding or None in record["columns"], where
             checked += 1
-    verdicts = rows_table(wanted.result)
+    verdicts = rows_table(wanted.result, wanted.run)
     kept = [at for at, column in enumerate(verdicts.columns) if column.label != "mode"]
     theirs = [[row[at] for at in kept] for row in verdicts.listing.rows]
-    assert [[row[at] for at in kept] for row in texts["rows"]] == theirs, stem
+    assert [[row[at] for at in kept] for row in texts[verdicts.name]] == theirs, stem
     return checked
 
 
@@ -125,6 +201,39 @@ def test_the_power_error_needs_no_other_column_of_forces() -> None:
     assert compared("balance", data["live"], changed, varied) == 3
     errors = varied.tables["balance"].columns[1].values
     assert 0.0 < errors.max() < 1e-12
+
+
+def test_another_mode_follows_the_parameters() -> None:
+    """The command finds it anew: the same numbers but for rounding."""
+    model = load(FILE_OF["planar_four_bar"])
+    data, _ = page_data([model.analyze()], modes=True)
+    letters = [branch["name"] for branch in data["runs"][0]["branches"]]
+    assert len(letters) == 2
+    case = {"b": 1.05 * next(p["value"] for p in data["live"]["parameters"] if p["name"] == "b")}
+    (found,) = computed(data, [case], letters[1])
+    wanted = model.with_parameters(case).analyze(mode=letters[1].removeprefix("mode "))
+    own = model.with_parameters(case).analyze()
+    compared_columns = 0
+    for one in found["other"]:
+        if one["table"] == "rows":
+            continue
+        (column,) = [c for c in wanted.tables[one["table"]].columns if c.label == one["label"]]
+        (away,) = [c for c in own.tables[one["table"]].columns if c.label == one["label"]]
+        numbers = np.frombuffer(base64.b64decode(one["values"]))
+        largest = np.abs(column.values).max()
+        np.testing.assert_allclose(numbers, column.values, atol=1e-9 * largest)
+        compared_columns += not np.allclose(numbers, away.values, atol=1e-3 * largest)
+    assert compared_columns > 1
+
+
+@pytest.mark.parametrize("start", [-140, 0, 20])
+def test_rows_without_a_solution_are_those_of_the_command(start: int) -> None:
+    """A crank that cannot turn fully, driven from a dead centre, through one, and to one."""
+    text = Path(FILE_OF["planar_four_bar"]).read_text()
+    assert "from: 0" in text
+    model = loads(text.replace("from: 0", f"from: {start}"), parameters={"a": "88 mm"})
+    assert not model.analyze().result.solved.all()
+    assert checked_run("ends", model, SWEEP) > 5
 
 
 def test_a_branch_that_ends_says_how_far_it_goes() -> None:

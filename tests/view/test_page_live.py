@@ -154,12 +154,12 @@ def test_keys_belong_to_the_slider_that_has_the_focus(live: Live) -> None:
     assert unnamed == 0
 
 
-def test_other_modes_stay_as_the_file_has_them(live: Live) -> None:
+def test_a_mode_that_does_not_follow_is_as_the_file_has_it(live: Live) -> None:
     browser = live()
     set_to(browser, "a", 33)
     browser.evaluate("document.activeElement.blur()")
     browser.press("m")
-    assert "only the file's own one follows" in text(browser, "#dimensions .remark")
+    assert "cannot be followed to the changed ones" in text(browser, "#dimensions .remark")
     home = FourBar(np.zeros(1))
     other = FourBar(np.zeros(1), -1.0)
     drawn = moved(pose(browser, "coupler"), home.rocker[0])

@@ -72,6 +72,7 @@ Refusal create(std::string_view text, mechkin_plan** to) {
     s.parameters = (size_t)tape.inputs, s.moving = (size_t)tape.outputs - s.constants;
     plan->replayed.resize((size_t)tape.outputs);
   }
+  if (plan->of.response) s.variant_rows = plan->of.response->times.size();
   if (plan->of.variants) {
     s.variant_rows = (size_t)std::max(plan->of.variants->rows, 0L);
     plan->variants.emplace(*plan->of.tape, plan->of.plan, plan->of.outputs, std::move(*plan->of.variants));
@@ -112,6 +113,21 @@ Refusal run(const mechkin_plan& plan, const mechkin_rows& rows) {
   const Request r = request_of(rows, outputs);
   CHECK(check_demand(r, outputs.view().count ? &outputs : nullptr, p));
   if (r.rows) run_rows(p, r, *kernel_unit(), rows.threads);
+  return {};
+}
+
+Refusal run_response(const mechkin_plan& start, const mechkin_plan& motion, const double* parameters, mechkin_response& r) {
+  REQUIRE(start.variants && motion.of.response, "the texts of the plans do not say what a response is");
+  const VariedResponse varied = {*start.variants, *motion.of.tape, motion.of.plan, motion.of.outputs, *motion.of.response};
+  CHECK(check_start(varied));
+  REQUIRE(parameters || !motion.sizes.parameters, "parameters are given");
+  REQUIRE((r.values || !motion.sizes.values) && r.residual && r.condition && r.power_error && r.work, "all columns have their arrays");
+  FloatingPointState state;
+  Result<PlayedResponse> played = play_response(varied, parameters, {r.values, r.residual, r.condition, r.power_error, r.work});
+  CHECK(played.refusal());
+  r.end = (mechkin_end)(int)played->end;
+  r.rows = (size_t)played->rows, r.reached = (size_t)played->reached, r.moments = (size_t)played->moments;
+  r.stop = played->stop, r.time = played->time, r.energy = played->energy;
   return {};
 }
 
@@ -192,6 +208,11 @@ mechkin_status mechkin_run(const mechkin_plan* plan, const mechkin_rows* rows, m
 mechkin_status mechkin_run_variant(const mechkin_plan* plan, const double* parameters, mechkin_variant* variant,
                                    mechkin_message* message) {
   return answer(message, [&] { return run_variant(*plan, parameters, *variant); });
+}
+
+mechkin_status mechkin_run_response(const mechkin_plan* start, const mechkin_plan* motion, const double* parameters,
+                                    mechkin_response* response, mechkin_message* message) {
+  return answer(message, [&] { return run_response(*start, *motion, parameters, *response); });
 }
 
 mechkin_status mechkin_tape_create(const char* text, size_t length, mechkin_tape** tape, mechkin_message* message) {

@@ -46,7 +46,7 @@ typedef struct mechkin_sizes {
   size_t constants;  /* of the plan, then of the quantities */
   size_t parameters; /* of the tape, 0 without one */
   size_t moving;     /* numbers that the tape gives behind the constants: inputs that move with the parameters */
-  size_t variant_rows; /* rows of a variant, 0 where the text does not say what variants have in common */
+  size_t variant_rows; /* rows of a variant or response, 0 where the text does not say what these have in common */
 } mechkin_sizes;
 
 /* A message may be null wherever one is asked for. */
@@ -144,6 +144,28 @@ typedef struct mechkin_variant {
 /* Runs the plan's variant with some parameters (SI); what became of it is in `end`. One at a time for each plan. */
 MECHKIN_API mechkin_status mechkin_run_variant(const mechkin_plan* plan, const double* parameters, mechkin_variant* variant,
                                                mechkin_message* message);
+
+/* The rows of a response with other parameters: its first assembly is continued from the base's; nan where the motion did
+ * not come. It is complete where it came to its last row, or to a stop. */
+typedef struct mechkin_response {
+  double* values;      /* values x variant_rows, SI, angles with their whole turns */
+  double* residual;    /* variant_rows */
+  double* condition;   /* variant_rows */
+  double* power_error; /* variant_rows */
+  double* work;        /* 2 x variant_rows: put in and lost since the first row, J */
+  mechkin_end end;
+  size_t rows;         /* of its table: all, or up to a stop */
+  size_t reached;      /* of these */
+  size_t moments;      /* of the base's that were reached: a stop's own row may be one more */
+  int stop;            /* number of the stop that ended it, -1: none */
+  double time;         /* s: how far it came */
+  double energy;       /* J: the largest kinetic energy at the ends of its steps */
+} mechkin_response;
+
+/* Runs a response: `start` is the plan of its first moment with what variants of it have in common, `motion` that of the
+ * free motion. One at a time for each plan. */
+MECHKIN_API mechkin_status mechkin_run_response(const mechkin_plan* start, const mechkin_plan* motion, const double* parameters,
+                                                mechkin_response* response, mechkin_message* message);
 
 /* A tape by itself, which computes cells of a table from a row's quantities. */
 typedef struct mechkin_tape mechkin_tape;

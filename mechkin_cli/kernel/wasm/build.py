@@ -4,9 +4,10 @@
     python mechkin_cli/kernel/wasm/build.py --check    # builds it again and compares the bytes
 
 It needs `ziglang` from PyPI in the version that `lock.json` names (clang with a C++ library for
-wasm32). Only what a page uses is linked: variants of a sweep, tapes and texts of cells, in the
-narrowest unit; no threads, no exceptions, no library for elementary functions, and no contraction
-of products and sums, so that every number has the bits of the other units.
+wasm32). Only what a page uses is linked: variants of a sweep and of a response, tapes and
+texts of cells, in the narrowest unit; no threads, no exceptions, no library for elementary
+functions, and no contraction of products and sums, so that every number has the bits of the other
+units.
 """
 
 # ruff: noqa: SIM905  options and names are read more easily as lines of text
@@ -34,19 +35,28 @@ COMMON = """-target wasm32-wasi -std=c++17 -msimd128 -mbulk-memory -fno-exceptio
 -ffunction-sections -fdata-sections -Wall -Wextra -g0 -DNDEBUG -DMECHKIN_ONE_THREAD=1
 -Icore -Ic""".split()
 COMMON.append(f"-ffile-prefix-map={KERNEL}=.")
-UNIT = ["-DMECHKIN_LANES=2", "-DMECHKIN_UNIT=mechkin_unit_sse2"]
-FAST = """rows/unit.cpp stepping/infill.cpp stepping/row_curve.cpp stepping/stepper.cpp
-arithmetic/dense.cpp""".split()
+UNIT = """-DMECHKIN_LANES=2 -DMECHKIN_UNIT=mechkin_unit_sse2
+-DMECHKIN_MOTION=mechkin_motion_sse2""".split()
+UNITS = ("rows/unit.cpp", "response/motion_unit.cpp")
+FAST = """rows/unit.cpp response/motion_unit.cpp stepping/infill.cpp stepping/row_curve.cpp
+stepping/stepper.cpp arithmetic/dense.cpp integrator/dop853.cpp integrator/lane_states.cpp
+integrator/march.cpp integrator/march_rows.cpp response/charted_motion.cpp""".split()
 SMALL = """plan/plan_builder.cpp plan/plan_blocks.cpp plan/frozen_plan.cpp plan/same_layout.cpp
 plan/output_list.cpp plan/program_store.cpp plan/function_store.cpp tape/tape_store.cpp
 rows/assembly_size.cpp rows/run.cpp rows/threads.cpp rows/units.cpp stepping/arc.cpp
 stepping/branch_point.cpp stepping/passage.cpp stepping/stretch.cpp stepping/judge.cpp
 stepping/tracker.cpp stepping/polyline.cpp stepping/orbit.cpp stepping/row_pieces.cpp
 stepping/course.cpp stepping/dimension_path.cpp stepping/variants.cpp text/number_text.cpp
+integrator/radau.cpp integrator/radau_newton.cpp integrator/crossings.cpp integrator/kinks.cpp
+integrator/march_start.cpp integrator/sides.cpp integrator/crossing_search.cpp
+response/driven_laws.cpp response/charted_friction.cpp response/slip_trial.cpp response/response.cpp
+response/sign_vectors.cpp response/charted_sizes.cpp response/charted_ways.cpp
+response/charted_sticking.cpp response/charted_crossings.cpp response/crossing_curve.cpp
+response/varied_response.cpp
 text/plan_text.cpp text/table_text.cpp ../c/mechkin.cpp ../wasm/room.cpp""".split()
 EXPORTED = """mechkin_plan_create mechkin_plan_free mechkin_page_sizes mechkin_page_run
-mechkin_tape_create mechkin_tape_free mechkin_tape_run mechkin_tape_outputs mechkin_cell_texts
-malloc free""".split()
+mechkin_page_respond mechkin_tape_create mechkin_tape_free mechkin_tape_run mechkin_tape_outputs
+mechkin_cell_texts malloc free""".split()
 LINKED = """-target wasm32-wasi -mexec-model=reactor -O2 -s -Wl,--gc-sections -Wl,--strip-all
 -Wl,--no-entry -Wl,-z,stack-size=1048576""".split()
 LINKED += [f"-Wl,--export={name}" for name in EXPORTED]
@@ -54,7 +64,7 @@ LINKED += [f"-Wl,--export={name}" for name in EXPORTED]
 
 def sources() -> list[tuple[str, list[str]]]:
     """Each source under `core` with the options of its own."""
-    fast = [(name, ["-O2", *(UNIT if name == "rows/unit.cpp" else [])]) for name in FAST]
+    fast = [(name, ["-O2", *(UNIT if name in UNITS else [])]) for name in FAST]
     return fast + [(name, ["-Os"]) for name in SMALL]
 
 

@@ -32,4 +32,24 @@ int mechkin_page_run(const mechkin_plan* plan, const double* parameters, double*
   return status;
 }
 
+// Runs a response: the same columns in `rows`, then the two of its work; in `told` end, rows, reached, stop, time,
+// energy, moments.
+int mechkin_page_respond(const mechkin_plan* start, const mechkin_plan* motion, const double* parameters, double* rows,
+                         double* told, char* message) {
+  const mechkin_sizes sizes = mechkin_plan_sizes(motion);
+  mechkin_response response = {};
+  const size_t count = sizes.variant_rows;
+  response.values = rows;
+  response.residual = rows + sizes.values * count;
+  response.condition = response.residual + count;
+  response.power_error = response.condition + count;
+  response.work = response.power_error + count;
+  mechkin_message why;
+  const mechkin_status status = mechkin_run_response(start, motion, parameters, &response, &why);
+  std::memcpy(message, why.text, sizeof why.text);
+  told[0] = response.end, told[1] = (double)response.rows, told[2] = (double)response.reached;
+  told[3] = response.stop, told[4] = response.time, told[5] = response.energy, told[6] = (double)response.moments;
+  return status;
+}
+
 }

@@ -58,12 +58,21 @@ class Worker {
   }
 
   VariantStart start(const double* parameters) {
-    VariantStart found = {VariantEnd::other_way, 0.0, {}};
+    VariantStart found = {VariantEnd::other_way, 0.0, {}, {}, {}, {}, {}};
     replayed_.resize(tape_.outputs), verdict_.resize(1);
     wide_.replay(tape_, {1, parameters, replayed_.data(), verdict_.data()}, replay_memory_.data());
     if (verdict_[0] == TAPE_OTHER_WAY) return found;
     found.end = assemble(parameters, replayed_.data()) ? VariantEnd::complete : VariantEnd::lost;
     found.size = plan_.view().size, found.state = state_;
+    const double *const moved = replayed_.data() + moving_;
+    const long table = (long)plan_.view().inputs * base_.rows;
+    found.constants.assign(replayed_.data(), replayed_.data() + constants_);
+    const auto take = [&](const double* orders, std::vector<double>* to) {
+      for (int i = 0; i < plan_.view().inputs; ++i) to->push_back(orders[i * base_.rows + base_.start_row]);
+    };
+    take(moves_ ? moved : base_.inputs.data(), &found.inputs), take(moves_ ? moved : base_.full.data(), &found.full);
+    take(moves_ ? moved + table : base_.rates.data(), &found.rates);
+    if (moves_ && turns(moved)) found.end = VariantEnd::other_way;
     return found;
   }
 

@@ -61,6 +61,8 @@ struct VariantStart {
   VariantEnd end;
   double size;
   std::vector<double> state;
+  std::vector<double> constants;            // of the plan
+  std::vector<double> inputs, full, rates;  // of its row; `full` with whole turns
 };
 
 // Where the rows of an incomplete variant end on one side of the first assembly: a dead centre or a branch point, or
@@ -101,6 +103,7 @@ class Variants {
   unsigned demand() const { return base_.demand; }
   int slots() const { return outputs_.view().slots; }
   int parameters() const { return tape_.view().inputs; }
+  const VariantBase& base() const { return base_; }
   const FrozenPlan& plan() const { return plan_; }
 
  private:

@@ -217,6 +217,7 @@ class Reading {
     if (name == "variants") return set_variants(words);
     if (name == "way") return add_way(words);
     if (name == "course") return set_course(words);
+    if (name == "response") return set_response(words);
     for (const Verb& verb : VERBS)
       if (verb.name == name) {
         REQUIRE(builder_ && outputs_.empty() && !tape_, "records of a plan stand behind `plan` and before all else");
@@ -231,7 +232,9 @@ class Reading {
     CHECK(plan.refusal());
     Result<OutputList> outputs = OutputList::make(*plan, outputs_);
     CHECK(outputs.refusal());
-    return PlanText{std::move(*plan), std::move(*outputs), std::move(tape_), std::move(variants_), std::move(course_tapes_)};
+    if (response_) CHECK(check_response(*response_, tape_ ? &*tape_ : nullptr, *plan, *outputs));
+    return PlanText{std::move(*plan), std::move(*outputs), std::move(tape_), std::move(variants_), std::move(course_tapes_),
+                    std::move(response_)};
   }
 
  private:
@@ -309,11 +312,43 @@ class Reading {
     return {};
   }
 
+  Refusal set_response(Words& words) {
+    REQUIRE(tape_ && !variants_ && !response_, "a response stands once, behind the tape");
+    using Stops = std::vector<std::tuple<int, int, int, double, int, int>>;
+    using Angles = std::vector<std::tuple<int, int, bool>>;
+    std::tuple<Numbers, Stops, double, double, int, int, Numbers, int, bool, std::vector<int>, int, Angles, double, double> values;
+    CHECK(read_all(words, &values));
+    ResponseBase base = {};
+    Stops stops;
+    Angles angles;
+    Numbers limits;
+    int steps, demand;
+    IntegratorSettings& settings = base.settings;
+    std::tie(base.times, stops, settings.tolerance, settings.fixed_step, steps, settings.dense_rows, limits,
+             base.limits.iterations, base.limits.straight, base.start_states, demand, angles, base.same_moment,
+             base.clear) = std::move(values);
+    settings.most_steps = steps, base.demand = (unsigned)demand;
+    REQUIRE(limits.size() == 5, "there are five limits of a motion");
+    for (const double limit : limits) REQUIRE(limit >= 0.0, "a limit is a number from 0 on");
+    REQUIRE(base.limits.iterations >= 0 && base.limits.iterations <= 10000, "iterations: 0 to 10000");
+    base.limits.tight = limits[0], base.limits.coarse = limits[1], base.limits.accept = limits[2];
+    base.limits.jump = limits[3], base.limits.radius = limits[4];
+    for (const auto& [kind, direction, count, at, lengths, rates] : stops) {
+      REQUIRE(kind >= STOP_CROSSING && kind <= STOP_CONDITION && direction >= -1 && direction <= 1, "stops: unknown kind");
+      REQUIRE(std::fabs(at) <= 1e300 && lengths >= -64 && lengths <= 64 && rates <= 64, "stops: a number is too large");
+      base.stops.push_back({kind, direction, count, at, lengths, rates});
+    }
+    for (const auto& [slot, turn, closing] : angles) base.angles.push_back({slot, turn, closing});
+    response_.emplace(std::move(base));
+    return {};
+  }
+
   std::optional<PlanBuilder> builder_;
   std::vector<OutputRecord> outputs_;
   std::optional<TapeStore> tape_;
   std::optional<VariantBase> variants_;
   std::deque<TapeStore> course_tapes_;
+  std::optional<ResponseBase> response_;
 };
 
 // Calls take(line) for every line behind the first, which must be the one of its kind of text.

@@ -12,7 +12,8 @@
 //
 // A record a line: a call of PlanBuilder by its name (`plan` makes the builder) with its arguments in their order, then the
 // OutputRecords, then a TapeStore, then what variants of the plan have in common: a VariantBase (`variants`, its numbers in
-// their order, limits of steps as lists), its ways, and behind a way its course with the tape of that. Integers are decimal; a real number is `x` and the sixteen hexadecimal digits of its
+// their order, limits of steps as lists), its ways, and behind a way its course with the tape of that; or, of the plan of a
+// free motion, a ResponseBase (`response`). Integers are decimal; a real number is `x` and the sixteen hexadecimal digits of its
 // bits, or an integer; a list stands in brackets. So a text says the same bits everywhere, and what it says is checked as
 // every plan is.
 #pragma once
@@ -22,6 +23,7 @@
 #include <string_view>
 
 #include "plan/plan_builder.hpp"
+#include "response/varied_response.hpp"
 #include "stepping/variants.hpp"
 #include "tape/tape_store.hpp"
 
@@ -31,6 +33,7 @@ struct PlanText {
   std::optional<TapeStore> tape;
   std::optional<VariantBase> variants;
   std::deque<TapeStore> course_tapes;  // which the courses of the ways refer to
+  std::optional<ResponseBase> response;
 };
 
 // Refuses what is no such text, with the number of the line.

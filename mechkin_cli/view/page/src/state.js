@@ -5,7 +5,7 @@ import { Branch } from "./branch.js";
 /** The run, branch and row that are shown; `change` events say what became different. */
 export class State extends EventTarget {
   #branches = new Map();
-  #changed = new Map(); // by run: its own branch with changed dimensions
+  #changed = new Map(); // by run: branches with changed dimensions, by their names
 
   constructor(data) {
     super();
@@ -19,11 +19,11 @@ export class State extends EventTarget {
     this.branch = this.run ? this.branches(this.run)[0] : null;
   }
 
-  /** The decoded branches of a run; where dimensions are changed, the first is as they make it. */
+  /** The decoded branches of a run; where dimensions are changed, those that follow are as they make them. */
   branches(run = this.run) {
     const found = this.fileBranches(run);
     const changed = this.#changed.get(run);
-    return changed ? [changed, ...found.slice(1)] : found;
+    return changed ? found.map((each) => changed.get(each.name) ?? each) : found;
   }
 
   /** The branches of a run with the file's dimensions. */
@@ -37,7 +37,11 @@ export class State extends EventTarget {
 
   /** The branch of the file's dimensions that the shown one was made of by changing them; null where nothing is changed. */
   get original() {
-    return this.run && this.branch === this.#changed.get(this.run) ? this.fileBranches()[0] : null;
+    return this.#isChanged(this.branch) ? this.fileBranches().find(({ name }) => name === this.branch.name) : null;
+  }
+
+  #isChanged(branch) {
+    return branch !== null && this.#changed.get(this.run)?.get(branch.name) === branch;
   }
 
   /** The original where it is to be seen beside the changed one. */
@@ -47,7 +51,7 @@ export class State extends EventTarget {
 
   /** What is drawn of a branch: with changed dimensions, or with the file's. */
   drawnOf(branch) {
-    return branch === this.#changed.get(this.run) ? this.drawn : this.data;
+    return this.#isChanged(branch) ? this.drawn : this.data;
   }
 
   /** The row that is shown. */
@@ -106,22 +110,25 @@ export class State extends EventTarget {
 
   /**
    * Shows changed dimensions; null: those of the file again.
-   * @param changed  {runs: {name: {branch, tables}}, drawn}: packed as in the data, `drawn` the parts of these that differ
+   * @param changed  {runs: {name: {branch, tables}}, modes: {run: {name: branch}}, drawn}: packed as in the data, `drawn` the
+   *   parts of these that differ; branches of other assembly modes stand in `modes`
    */
   setChanged(changed) {
-    const wasOwn = this.branch === this.branches()[0];
+    const { name: shown } = this.branch;
     const had = this.original !== null;
     this.#changed.clear();
     this.tables = this.data.tables;
     this.drawn = changed ? { ...this.data, ...changed.drawn } : this.data;
     for (const [name, { branch, tables }] of Object.entries(changed?.runs ?? {})) {
       const run = this.data.runs.find((each) => each.name === name);
-      const [own] = this.fileBranches(run);
-      this.#changed.set(run, new Branch({ ...own.packed, ...branch, name: own.name, own: own.own }, this.data.links.length));
-      const made = new Map((tables ?? []).map((table) => [table.name, table]));
-      this.tables = this.tables.map((table) => (table.run === name ? (made.get(table.name) ?? table) : table));
+      const own = this.fileBranches(run);
+      const made = (of, packed) => new Branch({ ...of.packed, ...packed, name: of.name, own: of.own }, this.data.links.length);
+      const others = own.flatMap((of) => (changed.modes?.[name]?.[of.name] ? [[of.name, made(of, changed.modes[name][of.name])]] : []));
+      this.#changed.set(run, new Map([[own[0].name, made(own[0], branch)], ...others]));
+      const ofRun = new Map((tables ?? []).map((table) => [table.name, table]));
+      this.tables = this.tables.map((table) => (table.run === name ? (ofRun.get(table.name) ?? table) : table));
     }
-    if (wasOwn) [this.branch] = this.branches();
+    this.branch = this.branches().find(({ name }) => name === shown);
     this.place = Math.min(this.place, Math.max(0, this.branch.rows - 1));
     this.#tell("dimensions", ...(had === (this.original !== null) ? [] : ["compare"]));
   }

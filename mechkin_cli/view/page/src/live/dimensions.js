@@ -67,6 +67,12 @@ export class Dimensions extends EventTarget {
     this.#ask();
   }
 
+  /** Computes what is shown once more, as something else of it is looked at. */
+  again() {
+    const found = this.#compute(this.values);
+    if (found) this.show(found);
+  }
+
   reset(name) {
     this.setAll({ [name]: this.own[name] });
   }
@@ -130,7 +136,7 @@ export class Dimensions extends EventTarget {
     this.values = values;
     this.milliseconds = found.milliseconds ?? 0;
     this.show(this.changed ? found : null);
-    if (changed.some((name) => !this.#isAtEnd(name))) this.#say("");
+    if (changed.some((name) => !this.#isAtEnd(name))) this.#say(found.end === "complete" ? "" : sentence(found.words));
     this.dispatchEvent(new Event("change"));
   }
 

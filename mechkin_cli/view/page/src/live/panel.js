@@ -68,8 +68,8 @@ export class DimensionPanel {
     if (changed && !state.original) {
       const runs = state.branches()[0] === state.fileBranches()[0];
       text = runs
-        ? "This run is shown with the file's dimensions: only the sweep follows the changed ones."
-        : "This assembly mode is shown with the file's dimensions: only the file's own one follows the changed ones.";
+        ? "This run is shown with the file's dimensions: it does not follow the changed ones."
+        : "This assembly mode is shown with the file's dimensions: it cannot be followed to the changed ones.";
     }
     this.modes.textContent = text;
   }

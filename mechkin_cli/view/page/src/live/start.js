@@ -6,22 +6,26 @@ import { Attached } from "./attached.js";
 import { Dimensions } from "./dimensions.js";
 import { drawnWith } from "./drawn.js";
 import { changedFile, parameterLines } from "./file_text.js";
-import { LiveRun, loadKernel } from "./kernel.js";
+import { loadKernel } from "./kernel.js";
 import { DimensionPanel } from "./panel.js";
 import { Peaks } from "./peaks.js";
+import { LiveRuns } from "./runs.js";
 
 /** The run that computes, or null where the data or the browser have none. */
 export async function liveRun(data) {
   if (!data.live?.parameters?.length) return null;
   const kernel = await loadKernel();
-  return kernel && new LiveRun(kernel, data);
+  return kernel && new LiveRuns(kernel, data);
 }
 
 /** Shows the panel of dimensions and lets everything follow; gives the dimensions. */
 export function showLive(run, { data, state, tabs, menu }) {
   const live = data.live ?? {};
   const attached = new Attached(data);
+  run.shown = () => ({ run: state.run.name, name: state.branch.name });
   const dimensions = new Dimensions(run, (found) => state.setChanged(found && changedOf(data, run, found, attached)));
+  // an assembly mode is computed when it is shown
+  state.watch((changes) => changes.has("branch") && dimensions.changed && !state.original && dimensions.again());
   const file = live.file;
   // the numbers of a file without parameters are no lines of `parameters:`
   const acts = live.folded ? [] : [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
@@ -40,7 +44,7 @@ function changedOf(data, run, found, attached) {
   const drawing = data.live?.drawing;
   const drawn = found.drawn ?? (drawing && run.numbers ? drawnWith(data, drawing, run.numbers) : {});
   const runs = found.runs ?? { [data.live?.run ?? data.runs[0].name]: { branch: found.branch, tables: found.tables } };
-  return { runs, drawn: { ...drawn, ...attached.moved(drawn) } };
+  return { runs, modes: found.modes ?? {}, drawn: { ...drawn, ...attached.moved(drawn) } };
 }
 
 /** The menu of what can be taken along, in the head of the page. */

@@ -2,21 +2,23 @@
 
 const SIGNIFICANT = 6;
 const [LEAST_PLAIN, MOST_PLAIN] = [-6, 9]; // exponents of a column without exponents, the last one not
-const MEASURES = { residual: 0, condition: 1, power_error: 2 };
+const MEASURES = { residual: 0, condition: 1, power_error: 2, energy_error: 5 };
 
 /** Makes tables of what the kernel found. */
 export class LiveTables {
-  constructor(run, data) {
+  /** @param tables  of the page's data */
+  constructor(run, tables) {
     this.run = run;
     this.live = run.live;
-    this.bases = new Map(data.tables.filter((table) => table.run === run.live.run).map((table) => [table.name, table]));
+    this.bases = new Map(tables.filter((table) => table.run === run.live.run).map((table) => [table.name, table]));
   }
 
-  /** The codes of the rows' verdicts, and whether one is to be looked at more closely. */
+  /** The codes of the rows' verdicts, those `missing` before and behind the others too; whether one is to be looked at more closely. */
   verdicts(first, last, missing) {
     const { run, live: { verdict } } = this;
-    const codes = new Uint8Array(run.count).fill(verdict.words.indexOf(missing));
-    codes.fill(0, first, last);
+    const codes = new Uint8Array(run.shownRows);
+    const [before, behind] = missing.map((word) => verdict.words.indexOf(word));
+    codes.fill(before, 0, first).fill(behind, last);
     let doubtful = false;
     const each = (columns, judge) => {
       for (let row = first; row < last; row += 1) judge(row, columns);
@@ -45,18 +47,20 @@ export class LiveTables {
   made(codes, first, last) {
     const { run, live } = this;
     const keep = (column) => {
-      const kept = new Float64Array(run.count).fill(NaN);
+      const kept = new Float64Array(run.shownRows).fill(NaN);
       for (let row = first; row < last; row += 1) if (Number.isFinite(column[row])) kept[row] = column[row];
       return kept;
     };
-    const given = (k) => Float64Array.from(run.given(k));
+    const given = (k) => Float64Array.from(run.given(k).subarray(0, run.shownRows));
     const curves = new Map(); // values and rounding by table and label
+    const [unitSizes, events] = [run.unitSizes(first, last), run.events()]; // of this run: texts are made when others were run
     const tables = live.tables.map(({ name, columns, sizes: left }) => {
-      const sizes = { ...live.sizes };
+      const sizes = { ...unitSizes };
       for (const [unit, size] of Object.entries(left)) sizes[unit] = Math.max(sizes[unit] ?? 0, size);
       const made = columns.map((column) => {
-        if (column === null || column.words) return { column };
-        const values = column.given !== undefined ? given(column.given) : keep(run.cell(column.cell));
+        if (column === null || column.words) return { column, events };
+        const values = column.given === undefined ? keep(run.cell(column.cell)) : column.every_row ? given(column.given) : keep(run.given(column.given));
+        if (column.first) run.withFirst(values, column.first);
         if (column.unit) sizes[column.unit] = Math.max(sizes[column.unit] ?? 0, largestOf(values));
         return { column, values };
       });
@@ -68,17 +72,18 @@ export class LiveTables {
       return this.#table(this.bases.get(name), codes, made);
     });
     const inputs = new Map(live.row_inputs);
-    const measured = (this.bases.get("rows")?.columns ?? []).map(({ label }) => {
-      const column = { decimals: label === "row" ? 0 : null, words: label === "status" ? "row.status" : null };
+    const rows = live.response?.table ?? "rows";
+    const measured = (this.bases.get(rows)?.columns ?? []).map(({ label }) => {
+      const column = { decimals: label === "row" ? 0 : null, words: { status: "row.status", event: "row.event" }[label] ?? null };
       if (label in MEASURES) {
         const one = { column, values: keep(run.measure(MEASURES[label])), rounding: 0 };
-        curves.set(`rows\n${label}`, one);
+        curves.set(`${rows}\n${label}`, one);
         return one;
       }
       if (inputs.has(label)) return { column, values: given(inputs.get(label)), rounding: 0 };
-      return { column: { words: column.words ?? label } };
+      return { column: { words: column.words ?? label }, events };
     });
-    if (this.bases.has("rows")) tables.push(this.#table(this.bases.get("rows"), codes, measured));
+    if (this.bases.has(rows)) tables.push(this.#table(this.bases.get(rows), codes, measured));
     const columns = (own) => own.flatMap((column) => {
       const found = curves.get(`${column.table}\n${column.label}`);
       return found ? [{ ...column, values: found.values, rounding: found.rounding }] : [];
@@ -92,7 +97,10 @@ export class LiveTables {
       const { column, values, rounding } = one;
       if (column === null) return new Array(codes.length).fill("");
       if (column.words === "row.status") return Array.from(codes, (code) => this.live.verdict.words[code]);
-      if (column.words) return base.rows.map((row) => row[k]);
+      if (column.words === "row.event") return one.events;
+      if (column.words === "row") return Array.from(codes, (_, row) => `${row + 1}`);
+      // the same word in all rows
+      if (column.words) return new Array(codes.length).fill(base.rows[0]?.[k] ?? "");
       return this.#cellTexts(values, column.decimals, rounding);
     };
     let rows = null;
