@@ -1,4 +1,4 @@
-"""The core without Python, built for another platform and run here: the rows of all mechanisms kept.
+"""The core without Python, built for another platform and run here: the bits of all mechanisms.
 
     python -P tests/platforms/core.py x86_64-windows-gnu wine [STEM ...]
     python -P tests/platforms/core.py aarch64-linux-musl qemu-aarch64 [STEM ...]
@@ -16,11 +16,22 @@ import sys
 import tempfile
 from pathlib import Path
 
-from platforms.digests import MECHANISMS, stems
-from pytest import MonkeyPatch
+import pytest
 
-from kernel.test_c_interface import ALONE, SOURCES, Built, calls_of, caught, outputs_of
-from kernel.test_c_interface import run_by_c, wanted_bytes
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from kernel.test_c_interface import (
+    ALONE,
+    SOURCES,
+    Built,
+    calls_of,
+    caught,
+    outputs_of,
+    run_by_c,
+    wanted_bytes,
+)
+from platforms.digests import stems
+
 from mechkin_cli.kernel.plan_text import plan_text
 
 SYSTEMS = {"windows": "Windows", "linux": "Linux", "macos": "Darwin"}
@@ -66,8 +77,8 @@ def built(target: str, runner: list[str], folder: Path) -> Built:
 
 
 def compared(there: Built, stem: str, folder: Path) -> int:
-    """How many runs of an analysis have the same bits there; AssertionError where one has others."""
-    with MonkeyPatch.context() as patch:
+    """How many runs of an analysis have the same bits there; an assertion for others."""
+    with pytest.MonkeyPatch.context() as patch:
         runs = caught(patch, Path(stem).stem)
     for session, rows, ask, batch in runs:
         assert ask.readout is not None
@@ -92,7 +103,8 @@ def main(target: str, runner: str, *asked: str) -> int:
             except AssertionError as error:
                 other.append(stem)
                 print(f"{stem}: {str(error)[:200]}", flush=True)
-    print(f"{target}: {len(chosen) - len(other)} of {len(chosen)} mechanisms, {total} runs, same bits")
+    same = len(chosen) - len(other)
+    print(f"{target}: {same} of {len(chosen)} mechanisms with the same bits, {total} runs")
     return bool(other)
 
 
