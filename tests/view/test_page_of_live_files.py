@@ -91,3 +91,16 @@ def test_tables_and_poses_are_those_of_the_command(
         np.testing.assert_allclose(shown[..., 3:], expected[..., 3:], atol=4 * SINGLE)
         np.testing.assert_allclose(shown[..., :3], expected[..., :3], atol=4 * SINGLE * (size + 1))
     assert browser.told()["said"] == []
+
+
+def test_another_mode_follows_when_it_is_shown(browser: Browser, tmp_path: Path) -> None:
+    browser.open(mk.load(FILE_OF["planar_four_bar"]).view(tmp_path / "page.html"))
+    shown = browser.evaluate(f"""(async () => {{
+      const {{ state }} = window.mechkin;
+      const changed = await {VARIED}([3]);
+      window.mechkin.setBranch(state.branches()[1].name);
+      return [Object.keys(changed), state.branch.own, state.original !== null,
+        state.branch.values.some((each, k) => each !== state.original.values[k]),
+        document.querySelector('#dimensions .remark').textContent];
+    }})()""")
+    assert shown == [["a", "b", "c", "d"], False, True, True, ""]
