@@ -176,9 +176,7 @@ def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any
                 assert one["rounding"] == own.rounding or None in record["columns"], where
             checked += 1
     verdicts = rows_table(wanted.result, wanted.run)
-    kept = [at for at, column in enumerate(verdicts.columns) if column.label != "mode"]
-    theirs = [[row[at] for at in kept] for row in verdicts.listing.rows]
-    assert [[row[at] for at in kept] for row in texts[verdicts.name]] == theirs, stem
+    assert texts[verdicts.name] == [list(row) for row in verdicts.listing.rows], stem
     return checked
 
 

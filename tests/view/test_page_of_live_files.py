@@ -16,11 +16,13 @@ from view.watching import SINGLE
 
 import mechkin_cli as mk
 from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.joints import link_poses
 from mechkin_cli.view.page import Lengths
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-NAMES = [path.stem for path in SWEPT] if TIMES > 1 else ["planar_four_bar", "rcsr"]
+FEW = ["planar_four_bar", "rcsr"]
+NAMES = [*([path.stem for path in SWEPT] if TIMES > 1 else FEW), "rcsr_response"]
 
 # values of a page's parameters, some steps of their sliders away, with which it computes all rows
 VARIED = """(async (steps) => {
@@ -38,9 +40,10 @@ VARIED = """(async (steps) => {
 
 
 def told(browser: Browser) -> dict[str, str]:
-    """The tables of the sweep as CSV, by name."""
+    """The tables of the first run as CSV, by name."""
     found: dict[str, str] = browser.evaluate("""Object.fromEntries(window.mechkin.state.tables
-      .map((table, k) => [table, k]).filter(([table]) => table.run === 'sweep')
+      .map((table, k) => [table, k])
+      .filter(([table]) => table.run === window.mechkin.state.data.runs[0].name)
       .map(([table, k]) => [table.name, window.mechkin.csv(k)]))""")
     return found
 
@@ -67,7 +70,8 @@ def test_tables_and_poses_are_those_of_the_command(
         values: dict[str, Any] = {}
         if case > 0:
             values = browser.evaluate(f"{VARIED}({rng.integers(-9, 9, 5).tolist()})")
-        analysis = (model.with_parameters(values) if values else model).analyze()
+        varied = model.with_parameters(values) if values else model
+        analysis = varied.analyze() if SWEEP in model.runs else varied.respond()
         mine = told(browser)
         for table in analysis.tables:
             theirs = csv_bytes(table).decode()
@@ -87,3 +91,16 @@ def test_tables_and_poses_are_those_of_the_command(
         np.testing.assert_allclose(shown[..., 3:], expected[..., 3:], atol=4 * SINGLE)
         np.testing.assert_allclose(shown[..., :3], expected[..., :3], atol=4 * SINGLE * (size + 1))
     assert browser.told()["said"] == []
+
+
+def test_another_mode_follows_when_it_is_shown(browser: Browser, tmp_path: Path) -> None:
+    browser.open(mk.load(FILE_OF["planar_four_bar"]).view(tmp_path / "page.html"))
+    shown = browser.evaluate(f"""(async () => {{
+      const {{ state }} = window.mechkin;
+      const changed = await {VARIED}([3]);
+      window.mechkin.setBranch(state.branches()[1].name);
+      return [Object.keys(changed), state.branch.own, state.original !== null,
+        state.branch.values.some((each, k) => each !== state.original.values[k]),
+        document.querySelector('#dimensions .remark').textContent];
+    }})()""")
+    assert shown == [["a", "b", "c", "d"], False, True, True, ""]

@@ -64,8 +64,9 @@ export class Player {
     const kept = [];
     if (many) {
       const names = branches.map((each) => each.name);
-      const changed = branches[0] !== this.state.fileBranches()[0];
-      const texts = branches.map(({ name, own }) => (own ? `${name} (${changed ? "changed" : "the file's"})` : name));
+      const file = this.state.fileBranches();
+      const told = (branch, k) => (branch !== file[k] ? " (changed)" : branch.own ? " (the file's)" : "");
+      const texts = branches.map((branch, k) => `${branch.name}${told(branch, k)}`);
       const modes = choice("Assembly mode", texts, (k) => this.state.setBranch(names[k]));
       modes.value = branches.indexOf(this.state.branch);
       kept.push(modes, tick("compare", this.state.compare, (on) => this.state.setCompare(on)));
