@@ -133,7 +133,7 @@ def load_record(layout: Layout, load: LinkLoad | JointLoad | Spring | Damper) ->
         else:
             data, code = (load.damping, 0.0, 0.0), LoadCode.DAMPER
         links = layout.link_number[p.link], layout.link_number[q.link]
-        return record("add_load", code, *links, 0, layout.point(p), layout.point(q), data)
+        return record("add_load", code, *links, 0, layout.point(p), layout.point(q), data, False)
     return _joint_spring(layout, load)
 
 
@@ -177,7 +177,7 @@ def _joint_spring(layout: Layout, load: Spring | Damper) -> PlanRecord:
     else:
         code = LoadCode.COORDINATE_DAMPER
         data = (load.damping / per, 0.0, 0.0)
-    return record("add_load", code, axis, reference, freedom, ZERO, ZERO, data)
+    return record("add_load", code, axis, reference, freedom, ZERO, ZERO, data, False)
 
 
 NO_AXIS = -1

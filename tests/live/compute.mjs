@@ -1,6 +1,7 @@
 // node compute.mjs MODULE < {data, cases: [{name: value}]} > [{end, words, milliseconds, tables}]: what a page computes.
 import { readFileSync } from "node:fs";
 import { gunzipSync } from "node:zlib";
+import { drawnWith } from "../../mechkin_cli/view/page/src/live/drawn.js";
 import { kernelOf, LiveRun } from "../../mechkin_cli/view/page/src/live/kernel.js";
 
 const { data, cases, repeat = 1 } = JSON.parse(readFileSync(0, "utf8"));
@@ -27,7 +28,8 @@ const found = cases.map((values) => {
     tables: (tables ?? []).map(({ name, rows, columns, status }) => ({ name, rows, status, exact: columns.map(({ exact }) => bits(exact) ?? null) })),
     columns: (branch?.columns ?? []).map(({ table, label, values, rounding }) => ({ table, label, values: bits(values), rounding })),
     poses: branch ? [...branch.poses.values].map((x) => Number(x)) : [],
-    arrows: (branch?.arrows ?? []).map(({ name, values }) => ({ name, values: bits(values) })),
+    arrows: (branch?.arrows ?? []).map(({ name, place, values }) => ({ name, place, values: bits(values) })),
+    drawn: branch ? drawnWith(data, data.live.drawing, run.numbers) : {},
   };
 });
 process.stdout.write(JSON.stringify(found));
