@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli.derived import displacement
-from mechkin_cli.expressions import Vector
+from mechkin_cli.expressions import Vector, constant, lookup
+from mechkin_cli.live.load_arrows import arrow_record, axis_of, load_arrows, takes
 from mechkin_cli.mechanism import FIRST, GROUND_NAME, SECOND, reference_point, scale
 from mechkin_cli.tables import effort_names
 from mechkin_cli.tape import Recorded
 from mechkin_cli.units import LENGTH
-from mechkin_cli.view import drawn_joints, half_axis, half_frame
+from mechkin_cli.view import Lengths, drawn_joints, half_axis, half_frame
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Joint, Mechanism
+    from mechkin_cli.mechanism import Attached, Joint, Mechanism
 
     Plain = dict[str, Any]
 
@@ -52,65 +55,49 @@ def pose_records(recording: Any, data: Mapping[str, Any]) -> Later:
 
 
 def arrows_of(recording: Any, data: Mapping[str, Any]) -> Later:
-    """The arrows among those of the data that follow from quantities: of joints and drives."""
+    """The arrows of the data that follow from quantities: of joints, drives and loads."""
     problem = recording.problem
     names = {arrow["name"]: at for at, arrow in enumerate(recording.shown["branches"][0]["arrows"])}
-    known: list[tuple[int, str, str, Any]] = []
     joints: Mapping[str, Joint] = recording.recorded.mechanism.joints
+    pending: list[tuple[int, Attached, Callable[[], Sequence[Any]]]] = []
     for name, at in names.items():
         joint, _, word = name.rpartition(".")
-        if word in ("force", "moment") and joint in joints and _takes(recording, [name]):
-            known.append((at, name, "", joints[joint].point))
+        if word in ("force", "moment") and joint in joints and takes(recording, [name]):
+            pending.append((at, joints[joint].point, partial(_in_space, recording, name)))
     driven = [f"{joint}.{coordinate}" for joint, coordinate in problem.acting]
     for name, effort in zip(driven, effort_names(driven), strict=True):
         own = joints[name.rpartition(".")[0]]
-        axis = f"{own.name}.axis"
-        if effort in names and axis in recording.known and _takes(recording, [effort, axis]):
-            known.append((names[effort], effort, axis, own.point))
+        along = axis_of(recording, own) if effort in names else None
+        if along is not None and takes(recording, [effort]):
+            place = own.point
+            pending.append((names[effort], place, partial(_along, recording, effort, along)))
+    links = [one["name"] for one in data["links"]]
+    for name, place, make in load_arrows(recording, links):
+        if name in names:
+            pending.append((names[name], place, make))
 
     def records() -> list[Plain]:
-        return [
-            {"arrow": at, "cells": _cells(recording, name, axis), "place": _place(recording, place)}
-            for at, name, axis, place in sorted(known)
-        ]
+        pending.sort(key=lambda each: each[0])
+        return [arrow_record(recording, at, place, make()) for at, place, make in pending]
 
     return records
 
 
-def _takes(recording: Any, names: list[str]) -> bool:
-    try:
-        recording.need(names)
-    except Exception as refused:
-        if type(refused).__name__ != "LeftOut":
-            raise
-        return False
-    return True
-
-
-def _place(recording: Any, place: Any) -> list[int | None]:
-    return [recording.number(x) if isinstance(x, Recorded) else None for x in place.vector]
-
-
-def _cells(recording: Any, name: str, axis: str) -> list[int]:
-    """The three components of a vector in the file's units, or of a number along an axis."""
-    units = recording.problem.units
-    quantity = recording.resolve(name)
-    along = _in_space(recording, axis) if axis else _in_space(recording, name)
-    if axis:
-        size = units.from_si(quantity.value, quantity.dimension)
-        values = [size * part for part in along]
-    else:
-        values = [units.from_si(part, quantity.dimension) for part in along]
-    return [recording.cell(value) for value in values]
-
-
 def _in_space(recording: Any, name: str) -> list[Any]:
-    value = recording.resolve(name).value
-    parts = value.components if isinstance(value, Vector) else (value,)
+    """The three components of a vector in the file's units."""
+    units, quantity = recording.problem.units, recording.resolve(name)
+    parts = quantity.value.components if isinstance(quantity.value, Vector) else (quantity.value,)
     found: list[Any] = [0.0, 0.0, 0.0]
     for place, part in zip(recording.known[name].places, parts, strict=True):
-        found[place] = part
+        found[place] = units.from_si(part, quantity.dimension)
     return found
+
+
+def _along(recording: Any, name: str, axis: Callable[[], Sequence[Any]]) -> list[Any]:
+    """A number along an axis, in the file's unit."""
+    quantity = recording.resolve(name)
+    size = recording.problem.units.from_si(quantity.value, quantity.dimension)
+    return [size * part for part in axis()]
 
 
 def drawing_of(recording: Any, data: Mapping[str, Any]) -> Plain:
@@ -143,6 +130,8 @@ def _drawn(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any],
     for at, (_, point) in enumerate(drawn.points.items()):
         yield from _vector(["points", at, "place"], point.vector, True)
     yield from _links(recording, data, own, drawn)
+    yield from _ties(recording, data, own, drawn)
+    yield from _radii(recording, data)
 
 
 def _vector(path: list[Any], vector: Any, is_length: bool) -> Iterator[tuple[list[Any], Any, bool]]:
@@ -180,6 +169,42 @@ def _links(
             for k in range(3):
                 total = sum((v[k] for v in chosen[1:]), start=chosen[0][k])
                 yield ["links", at, "shape", "centre", k], total / count, True
+
+
+def _ties(
+    recording: Any, data: Mapping[str, Any], own: Mechanism, drawn: Mechanism
+) -> Iterator[tuple[list[Any], Any, bool]]:
+    """The ends of springs, dampers and cylinders between points: each is a named point."""
+    lengths = Lengths(recording.problem.units)
+    links = data["links"]
+    run = data["runs"].index(recording.shown)
+    for at, tie in enumerate(recording.shown["ties"]):
+        for k, (link, place) in enumerate(zip(tie["links"], tie["places"], strict=False)):
+            named = (
+                drawn.points[name]
+                for name, point in own.points.items()
+                if point.link == links[link]["name"] and lengths.vector(point.vector) == place
+            )
+            for point in islice(named, 1):
+                yield from _vector(["runs", run, "ties", at, "places", k], point.vector, True)
+
+
+def _radii(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any], Any, bool]]:
+    """The radii of wheels and pulleys whose coupling gives them."""
+    problem, model = recording.problem, recording.analysis.model
+    units, lengths = problem.units, Lengths(problem.units)
+    links = data["links"]
+    for section in model.built.file.couplings.values():
+        for name, text in zip(section.joints, getattr(section, "radii", None) or (), strict=False):
+            joint = problem.mechanism.joints.get(name)
+            radius = constant(text, LENGTH, units, lookup(recording.recorded.parameters))
+            if joint is None or not isinstance(radius, Recorded):
+                continue
+            own = lengths.one(constant(text, LENGTH, units, lookup(problem.parameters)))
+            for at, wheel in enumerate(data["wheels"]):
+                is_there = links[wheel["link"]]["name"] in (joint.first, joint.second)
+                if is_there and wheel["radius"] == own:
+                    yield ["wheels", at, "radius"], radius, True
 
 
 def _points(mechanism: Mechanism, link: str) -> list[Any]:

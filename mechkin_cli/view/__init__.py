@@ -29,7 +29,7 @@ __getattr__, __dir__ = lazy_names(
         "joints": "carried continuous drawn_joints half_axis half_frame link_poses link_shape "
         "plane_of_motion upwards",
         "notebook": "Page widget_of",
-        "page": "PAGE_NAME packed",
+        "page": "PAGE_NAME Lengths packed",
         "scene": "view_page write_view",
         "server": "LiveServer",
     },

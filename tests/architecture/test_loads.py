@@ -21,6 +21,7 @@ MAY_ASK = {
     "balances/dense.py": "wrenches",
     "bridges/mjcf_export.py": "what MuJoCo has for each",
     "idle/idle.py": "what acts on a link that moves idly",
+    "live/load_arrows.py": "how the arrows of each are computed in a page",
     "plan/plan.py": "records of the plan",
     "plan/programs.py": "values of the plan",
     "view/arrows.py": "where the arrows of each are drawn",

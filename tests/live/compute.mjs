@@ -1,6 +1,7 @@
 // node compute.mjs MODULE < {data, cases: [{name: value}], shown: {run, name} of a mode} > [{end, words, milliseconds, tables}]: what a page computes.
 import { readFileSync } from "node:fs";
 import { gunzipSync } from "node:zlib";
+import { drawnWith } from "../../mechkin_cli/view/page/src/live/drawn.js";
 import { kernelOf } from "../../mechkin_cli/view/page/src/live/kernel.js";
 import { LiveRuns } from "../../mechkin_cli/view/page/src/live/runs.js";
 
@@ -31,7 +32,8 @@ const found = cases.map((values) => {
     tables: (tables ?? []).map(({ name, rows, columns, status }) => ({ name, rows, status, exact: columns.map(({ exact }) => bits(exact) ?? null) })),
     columns: columnsOf(branch), other: columnsOf(other),
     poses: branch ? [...branch.poses.values].map((x) => Number(x)) : [],
-    arrows: (branch?.arrows ?? []).map(({ name, values }) => ({ name, values: bits(values) })),
+    arrows: (branch?.arrows ?? []).map(({ name, place, values }) => ({ name, place, values: bits(values) })),
+    drawn: branch ? drawnWith(data, data.live.drawing, run.numbers) : {},
   };
 });
 process.stdout.write(JSON.stringify(found));

@@ -104,3 +104,44 @@ def test_another_mode_follows_when_it_is_shown(browser: Browser, tmp_path: Path)
         document.querySelector('#dimensions .remark').textContent];
     }})()""")
     assert shown == [["a", "b", "c", "d"], False, True, True, ""]
+
+
+LEVER = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg}
+links: {arm: {}}
+joints: {O: {type: R, links: [ground, arm], point: [0, 0]}}
+points: {tip: {link: arm, at: [50, 0]}}
+motion: {inputs: {tip.position.y: {from: -40, to: 60, step: 2}}}
+tables: [{name: t, columns: [tip.position.y, O.theta]}]
+view: {shapes: {arm: none}, paths: []}
+"""
+
+
+def test_a_point_that_is_driven_is_dragged_to_its_dead_centre(
+    browser: Browser, tmp_path: Path
+) -> None:
+    page = mk.loads(LEVER).view(tmp_path / "page.html", modes=False)
+    browser.open(page)
+    browser.evaluate("""(() => { window.said = []; new MutationObserver(() =>
+      window.said.push(document.querySelector('#said').textContent))
+      .observe(document.querySelector('#said'), { childList: true }); })()""")
+
+    def seen(degrees: float, radius: float = 50.0) -> list[float]:
+        x, y = radius * np.cos(np.radians(degrees)), radius * np.sin(np.radians(degrees))
+        found: list[float] = browser.evaluate(f"""(() => {{
+          const {{ stage, mechanism }} = window.mechkin.theatre;
+          const at = mechanism.now(0, [{x}, {y}, 0]).project(stage.camera);
+          const box = stage.renderer.domElement.getBoundingClientRect();
+          return [box.left + (1 + at.x) * box.width / 2, box.top + (1 - at.y) * box.height / 2];
+        }})()""")
+        return found
+
+    first = float(np.degrees(np.arcsin(-0.8)))
+    browser.drag([seen(first), seen(-10), seen(np.degrees(np.arcsin(0.4)), 60.0)])
+    assert browser.evaluate("window.mechkin.row()") == 30, "where the tip is nearest, y = 20 mm"
+    browser.drag([seen(np.degrees(np.arcsin(0.4))), seen(60), seen(80), seen(100), seen(120)])
+    assert browser.evaluate("window.mechkin.row()") in (44, 45)
+    said = browser.evaluate("window.said")
+    assert any(text.startswith("dead centre at tip.position.y = 50 mm") for text in said), said

@@ -1,4 +1,7 @@
-// What is drawn on a joint's axis goes with the joint where dimensions change: wheels, cams, spindles, pulleys.
+// What is drawn on a joint's axis goes with the joint where dimensions change: wheels, cams, spindles, pulleys, belts.
+
+import { cableLine } from "../scene/cables.js";
+import { vector } from "../scene/vectors.js";
 
 const CLOSE = 1e-6; // of the mechanism's size
 const MESH = 0.02; // of the sum of two radii: so near to it their centres are apart where wheels mesh
@@ -13,11 +16,12 @@ export class Attached {
     this.screws = data.screws.map(({ link, centre, axis, nut }) => [on(link, centre, axis), on(nut.link, nut.centre, nut.axis)]);
     this.cables = data.cables.map(({ links, places, axes }) => places.map((place, k) => on(links[k], place, axes[k])));
     this.points = data.cables.map(({ links, places }) => places.map((place, k) => this.#pointAt(links[k], place)));
+    this.belts = data.belts.map((belt) => this.#pulleysOf(belt));
     this.meshes = data.wheels.map((wheel) => this.#meshOf(wheel));
   }
 
   /** The parts of the data that hang on the joints and points of `drawn`. */
-  moved({ joints = this.data.joints, points = this.data.points }) {
+  moved({ joints = this.data.joints, points = this.data.points, wheels = this.data.wheels }) {
     const { data } = this;
     const shift = (place, at) => {
       if (!at) return place;
@@ -26,8 +30,10 @@ export class Attached {
       return place.map((each, k) => each + now[k] - before[k]);
     };
     const centres = data.wheels.map(({ centre }, k) => shift(centre, this.wheels[k]));
+    const radii = wheels.map(({ radius }, k) => (radius === data.wheels[k].radius ? radius * this.#growth(k, centres) : radius));
     return {
-      wheels: data.wheels.map((wheel, k) => ({ ...wheel, centre: centres[k], radius: wheel.radius * this.#growth(k, centres) })),
+      wheels: data.wheels.map((wheel, k) => ({ ...wheel, centre: centres[k], radius: radii[k] })),
+      belts: data.belts.map((belt, k) => this.#laid(belt, this.belts[k], radii, shift)),
       discs: data.discs.map((disc, k) => ({ ...disc, centre: shift(disc.centre, this.discs[k]) })),
       screws: data.screws.map((screw, k) => ({
         ...screw, centre: shift(screw.centre, this.screws[k][0]), nut: { ...screw.nut, centre: shift(screw.nut.centre, this.screws[k][1]) },
@@ -36,6 +42,46 @@ export class Attached {
         ...cable, places: cable.places.map((place, n) => shift(place, this.points[k][n] ?? this.cables[k][n])),
       })),
     };
+  }
+
+  /** The pulleys that a belt runs over, in its order: {wheel, at, centre, turn}, the half of a joint on its carrier, the centre
+   * there, and which way it runs about its axis; null where it is not seen to run over any. */
+  #pulleysOf({ link, line, axis }) {
+    const { joints, wheels, size } = this.data;
+    const pulleys = wheels.flatMap((wheel, k) => {
+      const joint = this.wheels[k]?.joint ?? -1;
+      const half = joints[joint]?.links.indexOf(link) ?? -1;
+      return half < 0 ? [] : [{ wheel: k, at: { joint, half } }];
+    });
+    if (pulleys.length < 2) return null;
+    const off = (place, { wheel, at }) => Math.abs(offLine(place, joints[at.joint].halves[at.half].point, axis) - wheels[wheel].radius);
+    const over = line.map((place) => pulleys.reduce((best, each) => (off(place, each) < off(place, best) - CLOSE * size ? each : best)));
+    const starts = over.flatMap((each, k) => (each === over.at(k - 1) ? [] : [k]));
+    const found = starts.map((start) => {
+      const { wheel, at } = over[start];
+      const next = (start + 1) % line.length;
+      const { point } = joints[at.joint].halves[at.half];
+      const along = point.reduce((sum, each, k) => sum + (line[start][k] - each) * axis[k], 0);
+      const centre = point.map((each, k) => each + along * axis[k]);
+      const [from, to] = [start, next].map((k) => vector(line[k]).sub(vector(centre)));
+      return over[next] === over[start] ? { wheel, at, centre, turn: Math.sign(from.cross(to).dot(vector(axis))) } : null;
+    });
+    return found.length < 2 || found.includes(null) ? null : found;
+  }
+
+  /** A belt with its pulleys where and as large as they are now. */
+  #laid(belt, pulleys, radii, shift) {
+    if (pulleys === null) return belt;
+    const centres = pulleys.map(({ centre, at }) => shift(centre, at));
+    const same = pulleys.every(({ wheel, centre }, k) => distance(centre, centres[k]) === 0 && radii[wheel] === this.data.wheels[wheel].radius);
+    if (same) return belt;
+    // once round, and on to the second pulley again
+    const round = [...pulleys.keys(), 0, 1];
+    const line = cableLine(
+      round.map((k) => vector(centres[k])), round.map((k) => -pulleys[k].turn * radii[pulleys[k].wheel]),
+      round.map(() => vector(belt.axis)), round.map(() => 0),
+    );
+    return { ...belt, line: line.slice(1, -1).map((place) => place.toArray()) };
   }
 
   /** Wheels of a fixed ratio grow with the distance of their centres. */

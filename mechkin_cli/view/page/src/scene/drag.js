@@ -7,6 +7,7 @@ const NEAR = 0.08; // of the rows to either side are looked at first: what is dr
 const CLEARLY = 24; // pixels by which a place farther along must be nearer
 const AROUND = [[1, 0], [-1, 0], [0, 1], [0, -1], [0.7, 0.7], [-0.7, 0.7], [0.7, -0.7], [-0.7, -0.7]];
 const [MOUSE, FINGER] = [5, 18]; // pixels beside a link that still take it
+const [POINT, FINGERTIP] = [10, 24]; // pixels beside a driven point that take it
 const END = 3; // rows from the end of what is solved, within which an end is named
 
 /** Lets the driven link be dragged, by mouse, pen or finger; `say(text)` hears of where it ends. */
@@ -22,25 +23,46 @@ export class Drag {
     for (const end of ["pointerup", "pointercancel"]) this.canvas.addEventListener(end, (event) => this.#drop(event));
   }
 
-  /** The links that may be taken: the one that the input moves, or all that move where it is not a joint or point of the page. */
+  /** What the inputs of the run drive: joints and points of the page. */
+  #driven() {
+    const { data, run } = this.state;
+    const rows = data.tables.find((table) => table.name === "rows" && table.run === run.name);
+    const names = new Set([run.x.label, ...(rows?.columns ?? []).map(({ label }) => label)].filter((each) => each.includes(".")).map((each) => each.split(".")[0]));
+    return { joints: data.joints.filter(({ name }) => names.has(name)), points: data.points.filter(({ name }) => names.has(name)) };
+  }
+
+  /** The links that may be taken: those that inputs move, or all that move where these are not joints or points of the page. */
   links() {
     const { data, run } = this.state;
     if (run.kind !== "sweep") return [];
-    const [name] = run.x.label.split(".");
-    const joint = data.joints.find((each) => each.name === name);
-    if (joint) return joint.links.filter((link) => link !== 0).slice(-1);
-    const point = data.points.find((each) => each.name === name);
-    if (point) return [point.link];
-    return data.links.map((_, link) => link).slice(1);
+    const { joints, points } = this.#driven();
+    const found = [...joints.flatMap(({ links }) => links.filter((link) => link !== 0).slice(-1)), ...points.map(({ link }) => link)];
+    return found.length > 0 ? found : data.links.map((_, link) => link).slice(1);
   }
 
   /** The link and the place on it, as drawn, under a pointer or beside it; null where there is none to be taken. */
-  #under(event, room) {
+  #under(event, finger) {
     if (this.state.branch.poseCount < 2) return null;
     const links = this.links();
+    const point = links.length > 0 ? this.#pointAt(event, finger ? FINGERTIP : POINT) : null;
+    if (point) return point;
+    const room = finger ? FINGER : MOUSE;
     for (const [dx, dy] of [[0, 0], ...AROUND.map((way) => way.map((each) => each * room))]) {
       const found = this.#at(event.clientX + dx, event.clientY + dy, links);
-      if (found || room === 0) return found;
+      if (found) return found;
+    }
+    return null;
+  }
+
+  /** A point that an input moves, where the pointer is at it, whatever is drawn there. */
+  #pointAt(event, room) {
+    const { mechanism, stage } = this.theatre;
+    const drawn = this.state.drawnOf(this.state.branch);
+    const box = this.canvas.getBoundingClientRect();
+    for (const { name } of this.#driven().points) {
+      const { link, place } = drawn.points.find((each) => each.name === name);
+      const at = onScreen(mechanism.now(link, place).project(stage.camera), box);
+      if (Math.hypot(at[0] - event.clientX + box.left, at[1] - event.clientY + box.top) <= room) return { link, place: new Vector3(...place) };
     }
     return null;
   }
@@ -64,7 +86,7 @@ export class Drag {
   #take(event) {
     if (event.target !== this.canvas || event.button !== 0) return undefined;
     if (this.taken) return event.stopPropagation(); // by another finger
-    const under = this.#under(event, event.pointerType === "mouse" ? MOUSE : FINGER);
+    const under = this.#under(event, event.pointerType !== "mouse");
     if (!under || !event.isPrimary) return undefined;
     event.stopPropagation();
     this.player.pause();
@@ -76,7 +98,7 @@ export class Drag {
 
   #move(event) {
     if (!this.taken) {
-      if (event.buttons === 0 && event.pointerType === "mouse") this.canvas.style.cursor = this.#under(event, 0) ? "grab" : "";
+      if (event.buttons === 0 && event.pointerType === "mouse") this.canvas.style.cursor = this.#under(event, false) ? "grab" : "";
       return;
     }
     if (event.pointerId !== this.taken.pointer) return;
@@ -108,8 +130,7 @@ export class Drag {
     const pointer = [event.clientX - box.left, event.clientY - box.top];
     const seen = Array.from(branch.poseRows, (_, index) => {
       const { t, q } = branch.pose(index, this.taken.link);
-      const at = turned(this.taken.place, q).add(new Vector3(...t)).project(camera);
-      return [((1 + at.x) * box.width) / 2, ((1 - at.y) * box.height) / 2];
+      return onScreen(turned(this.taken.place, q).add(new Vector3(...t)).project(camera), box);
     });
     const whole = nearest(seen, branch, pointer, 0, seen.length - 1);
     const here = branch.poseNear(place);
@@ -142,6 +163,9 @@ function visible(object) {
   for (let each = object; each; each = each.parent) if (!each.visible) return false;
   return true;
 }
+
+/** Pixels in a box of what a camera has projected. */
+const onScreen = ({ x, y }, { width, height }) => [((1 + x) * width) / 2, ((1 - y) * height) / 2];
 
 function turned(place, [w, x, y, z]) {
   const twice = new Vector3(x, y, z).cross(place).multiplyScalar(2);

@@ -80,7 +80,7 @@ export class Theatre {
       this.arrows = new Arrows(data, branch, this.unit, this.size);
       this.arrows.zoom = zoom;
     }
-    this.ties = new Ties(data.ties?.[run.name] ?? run.ties, data, branch, this.unit);
+    this.ties = new Ties(data.ties?.[run.name] ?? data.runs[this.data.runs.indexOf(run)].ties, data, branch, this.unit);
     if (this.cables?.cables !== data.cables || this.cables.unit !== this.unit) {
       this.#discard(this.cables?.object);
       this.cables = new Cables(data.cables, this.unit);
