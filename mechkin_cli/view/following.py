@@ -38,6 +38,10 @@ content is compared, too."""
 PATIENCE = 0.4
 """Seconds that a file may be missing while an editor puts a new one in its place."""
 
+FAREWELL = 5.0
+"""Seconds that a picture which is being made may take to end when nobody looks any more: a program
+that ends while its threads compute is aborted."""
+
 LONG = 0.1
 """Seconds: where the other assembly modes took longer last time, the file's own is shown first."""
 
@@ -172,6 +176,8 @@ class Follower:
             self.seen = self.seen._replace(number=self.seen.number + 1, ended=True)
             self._news.notify_all()
         self._wake.set()
+        if self._thread.is_alive():
+            self._thread.join(FAREWELL)
 
     def wait(self, after: int, timeout: float) -> Seen | None:
         """What was seen after `after`; None where that is nothing for so many seconds."""
@@ -198,17 +204,21 @@ class Follower:
             content = _content(self.path)
             now = _hash(content)
             if picture is None or now != hash or picture.hash != hash:
-                raise Changed(
-                    f"{self.path} has changed since this picture of it: nothing was written; look "
-                    "at the new picture and try again"
-                )
+                raise self._changed()
             text = content.decode("utf-8")
             edited = edit_parameters(text, picture.model.built, values, replace)
             if edited.written:
-                content = edited.text.encode("utf-8")
-                _replace(self.path, content)
+                before, content = content, edited.text.encode("utf-8")
+                if not _replace(self.path, before, content):
+                    raise self._changed()
             self._wake.set()
             return Written(_hash(content), edited.written, edited.expressions)
+
+    def _changed(self) -> Changed:
+        return Changed(
+            f"{self.path} has changed since this picture of it: nothing was written; look at the "
+            "new picture and try again"
+        )
 
     def _follow(self) -> None:
         missing_since: float | None = None
@@ -367,9 +377,10 @@ def _hash(content: bytes) -> str:
     return sha256(content).hexdigest()
 
 
-def _replace(path: Path, content: bytes) -> None:
+def _replace(path: Path, before: bytes, content: bytes) -> bool:
     """Puts other content into a file, whole or not at all; its rights stay, and so do links to
-    it.
+    it. False, and nothing is done, where its content is no longer the one before: an editor may
+    save while the new one is written to the disk, and what it saved must stay.
 
     Raises:
         UsageError: it cannot be written.
@@ -384,12 +395,21 @@ def _replace(path: Path, content: bytes) -> None:
             stream.flush()
             os.fsync(descriptor)
         os.chmod(attempt, mode)
-        os.replace(attempt, target)
+        is_same = _content(target) == before
+        if is_same:
+            os.replace(attempt, target)
+        else:
+            os.unlink(attempt)
+    except UsageError:
+        with contextlib.suppress(OSError):
+            os.unlink(attempt)
+        raise
     except OSError as error:
         with contextlib.suppress(OSError):
             os.unlink(attempt)
         reason = error.strerror or str(error)
         raise UsageError(f"cannot write {path}: {reason}; nothing was changed") from error
+    return is_same
 
 
 def _fault(diagnostic: Diagnostic, lines: Sequence[str]) -> Plain:

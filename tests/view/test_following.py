@@ -186,6 +186,24 @@ def test_a_file_that_has_changed_is_not_written(crank: Path, following: Followin
     assert crank.read_text() == newer
 
 
+def test_what_is_saved_while_values_are_written_stays(
+    crank: Path, following: Following, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    follower = following(crank)
+    newer = CRANK.replace("# the crank", "# ours")
+    synced = os.fsync
+
+    def saved_meanwhile(stream: int) -> None:
+        synced(stream)
+        crank.write_text(newer)
+
+    monkeypatch.setattr(os, "fsync", saved_meanwhile)
+    with pytest.raises(Changed, match="has changed since"):
+        follower.write(follower.seen.hash, {"r": 44.0})
+    assert crank.read_text() == newer
+    assert [each.name for each in crank.parent.iterdir()] == ["crank.yaml"]
+
+
 def test_a_file_that_cannot_be_written_stays(crank: Path, following: Following) -> None:
     follower = following(crank)
     with pytest.raises(UsageError, match="did you mean r"):
