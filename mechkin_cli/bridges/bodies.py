@@ -25,6 +25,9 @@ from mechkin_cli.schema import RESERVED
 WORLD: Final = ""
 """The body that does not move, which is `ground`."""
 
+_NOTHING: Final = ("null", "Null", "NULL")
+"""Names that YAML reads as an empty value."""
+
 WIDTH: Final = 96
 """Columns of a line that is not broken."""
 
@@ -179,10 +182,17 @@ class _Writer:
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        self.taken = {"ground", *RESERVED}
+        joints = [joint.name for body in robot.bodies.values() for joint in body.joints]
+        stems = [name.rpartition(".")[0] for name in joints]
+        self.theirs = {*robot.bodies, *joints, *stems, *robot.points}
+        self.taken = {"ground", *RESERVED, *_NOTHING}
         self.links: dict[str, str] = {WORLD: "ground"}
         self.coordinates: dict[str, tuple[str, bool]] = {}
         """Of the joints of the other file: the coordinate here, and whether it is an angle."""
+        self.led: set[str] = set()
+        """Joints of the other file that follow another one along a thread."""
+        self.is_idle = False
+        self.renamed: dict[str, str] = {}
         self.near: dict[str, str] = {}
         self.poses: list[str] = []
         self.lines: dict[str, list[str]] = {
@@ -226,6 +236,8 @@ class _Writer:
             number += 1
             found = f"{name}_{number}"
         self.taken.add(found)
+        if found != wanted and wanted in self.theirs:
+            self.renamed[wanted] = found
         return found
 
     def _whole(self, body: str) -> str:
@@ -286,15 +298,16 @@ class _Writer:
         apart = any(joint.ref for joint in joints) or not _is_none(shift)
         if sorted(motions) == ["slide", "turn"]:
             turn, slide = sorted(joints, key=lambda joint: joint.motion != "turn")
-            if float(turn.axis @ slide.axis) < 1.0 - tolerances.SAME_PLACE**2:
+            if float(np.linalg.norm(turn.axis - slide.axis)) > tolerances.SAME_PLACE:
                 return False
             lead = self._lead(turn, slide)
             kind, more = ("C", "") if lead is None else ("H", f"lead: {_number(lead)}")
             places = _on_axis(turn.axis, turn.anchor, turn.ref, slide.ref, shift, first, second)
             own = self._joint(_stem(joints), kind, first, second, *places, more)
             self._coordinate(turn, f"{own}.theta", True)
-            if lead is None:
-                self._coordinate(slide, f"{own}.s", False)
+            self._coordinate(slide, f"{own}.s", False)
+            if lead is not None:
+                self.led.add(slide.name)
             return True
         if motions == ["turn", "turn"] and not apart:
             one, two = joints
@@ -314,10 +327,12 @@ class _Writer:
             x, y, turn = joints
             if np.linalg.norm(np.cross(x.axis, y.axis) - turn.axis) > tolerances.SAME_PLACE:
                 return False
-            place = shift @ [*(turn.anchor + x.ref * x.axis + y.ref * y.axis), 1.0]
+            # the body turns about its own point, wherever the slides have carried it
+            at_zero = turn.anchor - x.ref * x.axis - y.ref * y.axis
+            place = shift @ [*turn.anchor, 1.0]
             ways = about(turn.axis, turn.ref) @ x.axis
             places = (
-                _either("point", first, turn.anchor, second, place[:3]),
+                _either("point", first, at_zero, second, place[:3]),
                 _either("normal", first, turn.axis, second, shift[:3, :3] @ turn.axis),
                 _either("x", first, x.axis, second, shift[:3, :3] @ ways),
             )
@@ -437,7 +452,7 @@ class _Writer:
     def _drive(self, choose: Choose) -> None:
         """Drives all coordinates of a tree, the first one over its range; some where there are
         loops."""
-        led = {next(iter(one.factors)) for one in self.robot.sums}
+        led = self.led | {next(iter(one.factors)) for one in self.robot.sums}
         free = [name for joint, (name, _) in self.coordinates.items() if joint not in led]
         words = ("x", "y", "z", "rz", "ry", "rx")
         poses = [f"{name}.{word}" for name in self.poses for word in words]
@@ -450,7 +465,9 @@ class _Writer:
 
         halves = any(body.whole for body in self.robot.bodies.values())
         if self.robot.closings or halves:
-            text(choose(free, text))
+            chosen = choose(free, text)
+            text(chosen)
+            self.is_idle = bool(free) and not chosen and not poses
             return
         text(free)
         if free:
@@ -482,6 +499,7 @@ class _Writer:
         source = re.sub(r"[^\w .+-]+", "_", Path(robot.file).name, flags=re.ASCII)
         parts = [f"# From {source} ({robot.format})."]
         parts += [f"# Left out: {what}." for what in map(_told, robot.left_out.items())]
+        parts += [f"# Renamed: {self._renamed()}."] if self.renamed else []
         parts += [
             "format: 1",
             f'name: "{title}"',
@@ -500,7 +518,21 @@ class _Writer:
             parts += ["", "loads:", *self.lines["loads"]]
         return "\n".join(parts) + "\n"
 
+    def _renamed(self) -> str:
+        """What is called otherwise here, since names are letters, digits and underscores."""
+        plain = {
+            found: "".join(c if c.isprintable() else "_" for c in wanted[:40])
+            for wanted, found in self.renamed.items()
+        }
+        return listed(f"{wanted} is {found}" for found, wanted in plain.items())
+
     def _notes(self) -> Iterator[Diagnostic]:
+        if self.renamed:
+            yield Diagnostic("renamed", "note", f"renamed: {self._renamed()}")
+        if self.is_idle:
+            told = "no inputs were found that drive it in the drawn pose"
+            hint = "write motion: with as many inputs as mechkin mobility finds freedoms"
+            yield Diagnostic("not-driven", "warning", told, hint=hint)
         for item in self.robot.left_out.items():
             yield Diagnostic("left-out", "warning", f"left out: {_told(item)}")
 

@@ -93,15 +93,20 @@ def imported_robot(text: str, file: str, closed: tuple[str, ...] = ()) -> Import
     if root.tag == "robot":
         from mechkin_cli.bridges.urdf import read_urdf
 
-        return mechanism_text(read_urdf(root, file, closed), driven)
-    if root.tag != "mujoco":
+        robot = read_urdf(root, file, closed)
+    elif root.tag != "mujoco":
         hint = "MJCF begins with <mujoco>, URDF with <robot>"
         refuse("unknown-format", f"<{root.tag[:40]}> is no robot", root.at, hint)
-    if closed:
+    elif closed:
         raise UsageError("--close is for URDF; MJCF closes loops by <equality>: write it there")
-    from mechkin_cli.bridges.mjcf_import import read_mjcf
+    else:
+        from mechkin_cli.bridges.mjcf_import import read_mjcf
 
-    return mechanism_text(read_mjcf(root, file), driven)
+        robot = read_mjcf(root, file)
+    if not robot.bodies:
+        what = "joint and a second link" if root.tag == "robot" else "body with a joint"
+        refuse("no-bodies", f"<{root.tag}> has nothing that moves", root.at, f"add a {what}")
+    return mechanism_text(robot, driven)
 
 
 def driven(free: list[str], text_of_inputs: Callable[[list[str]], str]) -> list[str]:

@@ -249,6 +249,11 @@ def read_table(text: str, file: str, dimensions: int = 3) -> Table:
     first = lines[0][1]
     separator = next((one for one in "\t;" if one in first), ",")
     rows = [(number, line, _cells(line, separator)) for number, line in lines]
+    # spreadsheets write rows of empty cells
+    rows = [row for row in rows if any(row[2])]
+    if not rows:
+        hint = "write a row for each point: name, x, y, z"
+        refuse("empty-table", "the table has no rows", Place(file, lines[0][0], 1), hint)
     heading = _heading(rows[0], file, dimensions)
     wrong: list[Diagnostic] = []
     points = []
@@ -280,7 +285,10 @@ class Heading(NamedTuple):
 
 def _cells(line: str, separator: str) -> list[str]:
     try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+        return [
+            cell.strip()
+            for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+        ]
     except (csv.Error, StopIteration):
         return [cell.strip() for cell in line.split(separator)]
 

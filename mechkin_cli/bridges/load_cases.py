@@ -249,7 +249,8 @@ def _notes(analysis: Analysis, cases: dict[int, list[LinkWrench]]) -> Iterator[D
             "warning",
             f"what acts on {listed(off)} does not add up to zero",
             measured=f"{worst:.2g} of the largest force",
-            hint="what rods without bodies and curves do is not among the loads; add it by hand",
+            hint="what rods without bodies, curves and drives of points do is not among the loads; "
+            "add it by hand",
         )
 
 

@@ -26,7 +26,8 @@ _SIZES: Final = {
 
 def geom_mass(geom: Element, turn_of: Callable[[Element], Any]) -> tuple[float, Any, Any] | None:
     """The mass of a geom (kg), its frame (4, 4) on its body, and its inertia about its centre in
-    that frame (kg m^2); None of one whose shape is not known here, such as a mesh.
+    that frame (kg m^2); None of one whose shape is not known here, such as a mesh or the shell of
+    an ellipsoid.
 
     Raises:
         InvalidFile: its sizes are missing or not positive.
@@ -45,10 +46,17 @@ def geom_mass(geom: Element, turn_of: Callable[[Element], Any]) -> tuple[float, 
     else:
         frame, half = _between(geom, ends)
     size = _sizes(geom, kind, size, half)
-    volume, shape = _shape(kind, size)
+    is_shell = geom.attributes.get("shellinertia", "false") == "true"
     mass = geom.number("mass")
+    if is_shell and kind == "ellipsoid":
+        return None if mass is None or mass > 0.0 else (0.0, frame, np.zeros((3, 3)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        content, shape = _shell(kind, size) if is_shell else _shape(kind, size)
+    if not np.isfinite(shape).all():
+        told = f"the {kind} is too small to have a mass"
+        refuse("no-size", told, geom.at, "write its size in metres")
     if mass is None:
-        mass = volume * (geom.number("density", DENSITY) or 0.0)
+        mass = content * (geom.number("density", DENSITY) or 0.0)
     if mass < 0.0:
         refuse("no-mass", "the mass of a geom is negative", geom.at, "correct it")
     return mass, frame, mass * np.diag(shape)
@@ -73,13 +81,9 @@ def _between(geom: Element, ends: Any) -> tuple[Any, float]:
 
 def _sizes(geom: Element, kind: str, size: Any, half: float | None) -> Any:
     if half is not None:
-        # the first size is the radius, or half the width and the depth
-        size = [
-            size[0],
-            size[1] if kind in ("box", "ellipsoid") and size.size > 1 else size[0],
-            half,
-        ]
-        size = size if kind in ("box", "ellipsoid") else [size[0], half]
+        # the first size is the radius, or half the width and half the depth; others do not count
+        across = size[:1].repeat(2 if kind in ("box", "ellipsoid") else 1)
+        size = np.array([*across, half])
     needed = _SIZES[kind][-1]
     if len(size) < needed or not all(value > 0.0 for value in size[:needed]):
         told = f"a {kind} needs {needed} positive numbers of size"
@@ -109,3 +113,26 @@ def _shape(kind: str, size: Any) -> tuple[float, Any]:
     ends = ball * (0.4 * r * r + 0.25 * h * h + 0.375 * h * r)
     along = cylinder * 0.5 * r * r + ball * 0.4 * r * r
     return volume, np.array([(cylinder * across + ends), cylinder * across + ends, along]) / volume
+
+
+def _shell(kind: str, size: Any) -> tuple[float, Any]:
+    """Area, and the moments of inertia by mass, of a thin shell."""
+    if kind == "sphere":
+        return 4.0 * np.pi * size[0] ** 2, np.full(3, 2.0 / 3.0 * size[0] ** 2)
+    if kind == "box":
+        x, y, z = size
+        faces = 8.0 * np.array([y * z, x * z, x * y])
+        area = float(faces.sum())
+        squares = size**2 * (faces + (area - faces) / 3.0) / area
+        return area, squares.sum() - squares
+    r, half = size
+    side = 4.0 * np.pi * r * half
+    # the ends: two discs, or two halves of a ball's shell with their centres r/2 beyond
+    if kind == "cylinder":
+        ends, along, across = 2.0 * np.pi * r * r, 0.5 * r * r, 0.25 * r * r + half * half
+    else:
+        ends, along = 4.0 * np.pi * r * r, 2.0 / 3.0 * r * r
+        across = along + half * half + half * r
+    area = side + ends
+    x = (side * (r * r / 2.0 + half * half / 3.0) + ends * across) / area
+    return area, np.array([x, x, (side * r * r + ends * along) / area])

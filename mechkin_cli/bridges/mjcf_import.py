@@ -32,6 +32,8 @@ _LEFT_OUT: Final = (
     *("extension", "size"),
 )
 _ON_BODIES: Final = ("camera", "light", "plugin")
+_ORIENTATIONS: Final = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
+_DISABLED: Final = ("equality", "limit", "spring", "damper", "passive", "constraint")
 _GRAVITY: Final = (0.0, 0.0, -9.81)
 
 
@@ -52,6 +54,10 @@ class _Reader:
         for element in root.all("compiler"):
             self.compiler |= element.attributes
         self.in_degrees = self.compiler.get("angle", "degree") != "radian"
+        self.groups = (0.0, np.inf)
+        for element in self.root.all("compiler"):
+            given = element.numbers("inertiagrouprange", (2,))
+            self.groups = self.groups if given is None else (float(given[0]), float(given[1]))
         self.model.angle = "deg" if self.in_degrees else "rad"
         self.classes: dict[str, dict[str, dict[str, str]]] = {"": {}}
         self.sites: dict[str, tuple[str, Any]] = {}
@@ -65,13 +71,18 @@ class _Reader:
         """All sections in their order of need."""
         self._check()
         for element in self.root.all("default"):
-            self._defaults(element, {}, "main")
+            self._defaults(element, self.classes[""], "main")
         gravity = None
         for option in self.root.all("option"):
-            gravity = option.numbers("gravity", (3,), None) if gravity is None else gravity
+            given = option.numbers("gravity", (3,))
+            gravity = gravity if given is None else given
         self.model.gravity = np.array(_GRAVITY) if gravity is None else gravity
+        for option in self.root.all("option"):
+            for flag in option.all("flag"):
+                self._flag(flag)
         for world in self.root.all("worldbody"):
             self._children(world, WORLD, np.eye(4), "")
+        self._bound_masses()
         self._scale_masses()
         for element in self.root.all("equality"):
             self._equality(element)
@@ -99,6 +110,31 @@ class _Reader:
             place = next(self.root.all("compiler")).at
             refuse("not-read", "global coordinates are not read", place, "use local ones")
 
+    def _flag(self, flag: Element) -> None:
+        """Takes gravity away where a flag does; what else one switches off is named, and stays."""
+        if flag.attributes.get("gravity") == "disable":
+            self.model.gravity = None
+        for word in _DISABLED:
+            if flag.attributes.get(word) == "disable":
+                self.model.leave_out("flags that disable", word)
+
+    def _bound_masses(self) -> None:
+        """Brings masses and inertias to what the compiler demands of each body."""
+        for element in self.root.all("compiler"):
+            least = element.number("boundmass", "0") or 0.0
+            least_inertia = element.number("boundinertia", "0") or 0.0
+            is_balanced = element.attributes.get("balanceinertia", "false") == "true"
+            if not (least > 0.0 or least_inertia > 0.0 or is_balanced):
+                continue
+            for body in self.bodies.values():
+                if body.centre is None:
+                    body.add(0.0, body.frame[:3, 3], np.zeros((3, 3)))
+                body.mass = max(body.mass, least)
+                moments, axes = np.linalg.eigh(body.inertia)
+                if is_balanced and moments[0] + moments[1] < moments[2]:
+                    moments = np.full(3, moments.mean())
+                body.inertia = axes @ np.diag(np.maximum(moments, least_inertia)) @ axes.T
+
     def _scale_masses(self) -> None:
         """Brings the mass of all bodies to what the compiler says."""
         for element in self.root.all("compiler"):
@@ -117,7 +153,7 @@ class _Reader:
         for child in element.children:
             if child.tag != "default":
                 values = {k: v for k, v in child.attributes.items() if k != "class"}
-                own[child.tag] = own.get(child.tag, {}) | values
+                own[child.tag] = _over(own.get(child.tag, {}), values)
         name = element.attributes.get("class", name)
         self.classes[name] = own
         if name == "main":
@@ -133,7 +169,7 @@ class _Reader:
             hint = f"define it under <default>; known are {known}"
             refuse("unknown-class", f"there is no class {name[:40]!r}", element.at, hint)
         given = self.classes[name].get(element.tag, {})
-        return element._replace(attributes=given | element.attributes)
+        return element._replace(attributes=_over(given, element.attributes))
 
     # Bodies.
 
@@ -167,11 +203,17 @@ class _Reader:
         body = Body(name, parent, frame, element.at)
         self.bodies[name] = body
         around = element.attributes.get("childclass", around)
+        if (element.number("gravcomp", "0") or 0.0) != 0.0:
+            self.model.leave_out("gravcomp of bodies", name)
         inertial = element.first("inertial")
-        if inertial is not None and self.compiler.get("inertiafromgeom", "auto") != "true":
+        from_geoms = self.compiler.get("inertiafromgeom", "auto") == "true"
+        if inertial is not None and not from_geoms:
             self._inertial(inertial, body)
             self.drawn.add(name)
         self._children(element, name, frame, around)
+        if inertial is not None and from_geoms and not body.mass:
+            # its geoms have no mass, or there are none
+            self._inertial(inertial, body)
 
     def _pose(self, element: Element) -> Any:
         place = element.numbers("pos", (3,), "0 0 0")
@@ -244,17 +286,25 @@ class _Reader:
         full = self._full(element, around)
         name = full.attributes.get("name", "")
         self.model.leave_out("geoms (shapes and contacts)")
-        if parent == WORLD or parent in self.drawn:
+        if parent == WORLD or parent in self.drawn or not self._counts(full):
             return
         found = geom_mass(full, self._turn)
         if found is None:
             kind = full.attributes.get("type", "sphere")
-            self.model.leave_out(f"masses of geoms of type {kind[:20]}", name)
+            shell = "shells of " if kind == "ellipsoid" else ""
+            self.model.leave_out(f"masses of {shell}geoms of type {kind[:20]}", name)
             return
         mass, placed, tensor = found
         turn = (frame @ placed)[:3, :3]
         if mass > 0.0:
             self.bodies[parent].add(mass, (frame @ placed)[:3, 3], turn @ tensor @ turn.T)
+
+    def _counts(self, geom: Element) -> bool:
+        """Whether the compiler takes a geom for the mass of its body."""
+        if self.compiler.get("inertiafromgeom", "auto") == "false":
+            return False
+        group = geom.number("group", "0") or 0.0
+        return bool(self.groups[0] <= group <= self.groups[1])
 
     def _joint(self, element: Element, body: str, frame: Any, around: str) -> None:
         is_free = element.tag == "freejoint"
@@ -291,6 +341,10 @@ class _Reader:
             read(spring_ref),
             float(damping[0]) if has_value else 0.0,
         )
+        if np.any(stiffness[1:]) or np.any(damping[1:]):
+            self.model.leave_out("stiffness and damping beyond the linear", name)
+        if "springdamper" in full.attributes:
+            self.model.leave_out("springdamper of joints", name)
         for word in ("armature", "frictionloss"):
             if (full.number(word, "0") or 0.0) != 0.0:
                 self.model.leave_out(f"{word} of joints", name)
@@ -420,6 +474,10 @@ class _Reader:
             name = element.attributes.get("name", "")
             stiffness = element.numbers("stiffness", (1, 2, 3), "0")
             damping = element.numbers("damping", (1, 2, 3), "0")
+            if np.any(stiffness[1:]) or np.any(damping[1:]):
+                self.model.leave_out("stiffness and damping beyond the linear", name)
+            if "range" in element.attributes:
+                self.model.leave_out("ranges of tendons", name)
             if element.tag != "spatial":
                 if np.any(stiffness) or np.any(damping):
                     self.model.leave_out("springs of fixed tendons", name)
@@ -463,6 +521,14 @@ class _Reader:
                     self.model.exact[body] = _turned(values, tensor)
             else:
                 self.model.leave_out("custom data", name)
+
+
+def _over(given: dict[str, str], own: dict[str, str]) -> dict[str, str]:
+    """Attributes over those of a class; an orientation of its own replaces that of the class,
+    however either is written."""
+    if not own.keys().isdisjoint(_ORIENTATIONS):
+        given = {key: value for key, value in given.items() if key not in _ORIENTATIONS}
+    return given | own
 
 
 def _turned(values: Any, turn: Any) -> Any:

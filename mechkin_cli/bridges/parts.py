@@ -72,7 +72,7 @@ def text_of(path: Path) -> str:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise UsageError(f"{path} cannot be read: {reason}; make it readable") from None
-    return decoded(content, str(path))
+    return decoded(content, str(path), is_yaml=False)
 
 
 def refuse(

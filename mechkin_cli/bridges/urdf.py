@@ -148,14 +148,16 @@ def _joints(joint: Element, frame: Any, robot: Robot) -> list[Turning]:
     default = np.array([1.0, 0.0, 0.0])
     own = default if element is None else element.direction("xyz", "1 0 0")
     axis, place = frame[:3, :3] @ own, frame[:3, 3]
-    if kind == "floating":
-        return [Turning(name, "free", frame[:3, :3] @ _Z, place)]
     damping, limits = 0.0, None
     dynamics = joint.first("dynamics")
     if dynamics is not None:
         damping = dynamics.number("damping", "0") or 0.0
         if dynamics.number("friction", "0"):
             robot.leave_out("friction of joints", name)
+        if damping and kind in ("floating", "planar"):
+            robot.leave_out("damping of floating and planar joints", name)
+    if kind == "floating":
+        return [Turning(name, "free", frame[:3, :3] @ _Z, place)]
     limit = joint.first("limit")
     if limit is not None and kind in ("revolute", "prismatic"):
         low, high = limit.number("lower", "0") or 0.0, limit.number("upper", "0") or 0.0

@@ -34,7 +34,7 @@ class Band(NamedTuple):
         sampled: the ends of the middle part of the samples.
         shares: of the square of the scatter, by parameter, the largest first.
         place: where the shares hold, in words.
-        misleads: rows that slopes are wrong about (rows,).
+        inaccurate: rows whose first-order estimate is off (rows,).
     """
 
     label: str
@@ -44,7 +44,7 @@ class Band(NamedTuple):
     sampled: Ends
     shares: dict[str, float]
     place: str
-    misleads: Bools
+    inaccurate: Bools
 
 
 class Bands(NamedTuple):
@@ -66,7 +66,7 @@ class Bands(NamedTuple):
 
 
 _HEIGHT, _ABOVE = 2.6, 0.7
-_WORST, _SAMPLED, _ROOT, _MISLEADS = "#c8d7ea", "#6f9bd1", "#0a3069", "#a40e26"
+_WORST, _SAMPLED, _ROOT, _OFF = "#c8d7ea", "#6f9bd1", "#0a3069", "#a40e26"
 MOST_BARS = 8
 """Parameters that have a bar; the rest share one."""
 
@@ -97,10 +97,10 @@ def _over_rows(axes: Axes, picture: Bands, band: Band) -> None:
     axes.fill_between(places, wide[2], wide[3], color=_SAMPLED, label=part, linewidth=0)
     for end, label in zip(band.root_sum_square, ("root sum square", None), strict=True):
         axes.plot(places, np.resize(end, places.size), "--", color=_ROOT, linewidth=1, label=label)
-    if band.misleads.any():
-        at = picture.places[band.misleads]
-        label = "slopes mislead"
-        axes.plot(at, np.zeros(at.size), "x", color=_MISLEADS, markersize=4, label=label)
+    if band.inaccurate.any():
+        at = picture.places[band.inaccurate]
+        label = "first order is off"
+        axes.plot(at, np.zeros(at.size), "x", color=_OFF, markersize=4, label=label)
     axes.set_ylabel(f"{band.label}\noff nominal{f' [{band.unit}]' if band.unit else ''}")
 
 

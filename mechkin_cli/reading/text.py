@@ -120,14 +120,17 @@ def read_text(path: str | Path) -> str:
     return decoded(content, str(path))
 
 
-def decoded(content: bytes, file: str) -> str:
-    """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`."""
+def decoded(content: bytes, file: str, is_yaml: bool = True) -> str:
+    """The text of a file's bytes; `file` is its name in messages. Raises `InvalidFile`.
+
+    In a text that is not YAML tabs may begin a line, and so may a percent sign.
+    """
     check_size(len(content), file)
     try:
         text = content.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         raise _not_utf8(content, error, file) from None
-    check_characters(text, file)
+    check_characters(text, file, is_yaml)
     return text
 
 
@@ -147,16 +150,18 @@ def check_size(size: int, file: str) -> None:
         raise InvalidFile([diagnostic])
 
 
-def check_characters(text: str, file: str) -> None:
+def check_characters(text: str, file: str, is_yaml: bool = True) -> None:
     """Raise `InvalidFile` at the first character that a mechanism file may not hold.
 
-    These are NUL and other control characters, invisible line breaks, tabs in the indentation, and
-    directives (`%` in the first column).
+    These are NUL and other control characters and invisible line breaks; in YAML also tabs in the
+    indentation, and directives (`%` in the first column).
     """
     if found := INVISIBLE.search(text):
         place = place_at(text, found.start(), file)
         hint = "delete it; a mechanism file is plain UTF-8 text"
         raise _invalid("bad-character", f"{character_name(found[0])} in the text", place, hint)
+    if not is_yaml:
+        return
     if found := _TAB_IN_INDENTATION.search(text):
         place = place_at(text, found.start(1), file)
         raise _invalid("tab", "a tab in the indentation", place, "indent with blanks")

@@ -1,6 +1,6 @@
 """First-order sensitivities of quantities to parameters, over the rows of a run.
 
-In reading order: slopes that mislead, rows by their places, the result, the call.
+In reading order: slopes that soon bend, rows by their places, the result, the call.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 
 def bending_notes(s: Sensitivities) -> list[str]:
-    """Notes on slopes that mislead: steep ones that soon bend, as beside a dead centre. One for
+    """Notes on steep slopes that soon bend, as beside a dead centre. One for
     each quantity, on the slope that bends soonest."""
     notes = []
     for quantity in s.quantities:
@@ -48,8 +48,8 @@ def bending_notes(s: Sensitivities) -> list[str]:
             far = f"{s.reach(quantity, name)[row]:.2g} {s.unit_of(name)}".rstrip()
             place = f"{s.place[row]:.6g} {s.along_unit}".rstrip()
             notes.append(
-                f"{quantity}: slopes mislead near {place}, as beside a dead centre: a tenth is "
-                f"wrong for a change of {name} by {far}"
+                f"{quantity}: near {place}, as beside a dead centre, the first-order estimate is "
+                f"off by a tenth for a change of {name} by {far}"
             )
     return notes
 

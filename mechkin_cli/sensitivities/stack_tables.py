@@ -38,7 +38,7 @@ class _Stack(Protocol):
     def sampled(self, quantity: str) -> Any: ...
     def quantile(self, quantity: str, part: float) -> Floats: ...
     def left_out(self, quantity: str) -> Floats: ...
-    def misleads(self, quantity: str) -> Bools: ...
+    def inaccurate(self, quantity: str) -> Bools: ...
     def widest(self, quantity: str) -> int: ...
     def place_of(self, row: int) -> str: ...
 
@@ -91,8 +91,8 @@ def rows_table(t: _Stack, quantities: Sequence[str] = (), short: bool = False) -
         columns.append(column_of_numbers(f"{quantity} samples lost", "", lost, 0))
         for name, share in t.shares(quantity).items():
             columns.append(column_of_numbers(f"{quantity} share of {name}", "", share))
-        words = ["misleads" if one else "ok" for one in t.misleads(quantity).tolist()]
-        columns.append(TableColumn(f"{quantity} slopes", "", words_of(words)))
+        words = ["inaccurate" if one else "ok" for one in t.inaccurate(quantity).tolist()]
+        columns.append(TableColumn(f"{quantity} first order", "", words_of(words)))
         if short:
             columns[own + 1 :] = [
                 replace(column, label=column.label.removeprefix(quantity).strip())
@@ -186,7 +186,7 @@ def record_of(t: _Stack) -> dict[str, Any]:
                 "lost": sampled.lost.tolist(),
             },
             "left_out": _plain(t.left_out(quantity)),
-            "misleads": t.misleads(quantity).tolist(),
+            "inaccurate": t.inaccurate(quantity).tolist(),
         }
     return {
         "name": slopes.model.name,
@@ -225,7 +225,7 @@ def picture_of(t: _Stack) -> Bands:
             off(sampled_ends(t, quantity)),
             {name: float(share[row]) for name, share in t.shares(quantity).items()},
             t.place_of(row),
-            t.misleads(quantity),
+            t.inaccurate(quantity),
         )
 
     along = f"{slopes.along} [{slopes.along_unit}]" if slopes.along_unit else slopes.along

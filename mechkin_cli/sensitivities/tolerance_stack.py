@@ -22,7 +22,15 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.sensitivities.first_order import Sensitivities, chosen_parameters, sensitivities
 from mechkin_cli.sensitivities.stack_tables import files_of, picture_of, record_of
 from mechkin_cli.show import Bools, Floats, Listed, Listing
-from mechkin_cli.variants import draws, normal, one_value, uniform, vary, with_parameters
+from mechkin_cli.variants import (
+    draws,
+    has_scipy,
+    normal,
+    one_value,
+    uniform,
+    vary,
+    with_parameters,
+)
 
 if TYPE_CHECKING:
     import pandas
@@ -149,9 +157,9 @@ class Tolerances(Listed):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.asarray(np.sum(second, axis=0) / (0.5 * (high - low)))
 
-    def misleads(self, quantity: str) -> Bools:
-        """Rows whose stack is not to be trusted: more than a tenth is left out, a sample or an end
-        of a band has no position, or there is no slope."""
+    def inaccurate(self, quantity: str) -> Bools:
+        """Rows whose first-order estimate is not to be trusted: more than a tenth is left out, a
+        sample or an end of a band has no position, or there is no slope."""
         part = self.left_out(quantity)
         missing = ~np.isfinite(self.scatter(quantity))
         lost = (self.sampled(quantity).lost > 0) | (self.lost_ends(quantity) > 0)
@@ -221,7 +229,7 @@ class Tolerances(Listed):
 
     def to_pandas(self) -> pandas.DataFrame:
         """A line for each row: the place, then of each quantity its columns: `O4.theta`, `least`,
-        `largest`, `scatter`, `sampled mean`, `sampled scatter`, `share of P1`, `misleads`;
+        `largest`, `scatter`, `sampled mean`, `sampled scatter`, `share of P1`, `inaccurate`;
         `attrs["units"]` has their units.
 
         Raises:
@@ -245,7 +253,7 @@ class Tolerances(Listed):
             }
             units |= dict.fromkeys(own, self.slopes.unit_of(quantity))
             shares = {f"{quantity} share of {n}": v for n, v in self.shares(quantity).items()}
-            columns |= own | shares | {f"{quantity} misleads": self.misleads(quantity)}
+            columns |= own | shares | {f"{quantity} inaccurate": self.inaccurate(quantity)}
         frame = pandas.DataFrame(columns)
         frame.attrs["units"] = units
         return frame
@@ -274,7 +282,8 @@ class Tolerances(Listed):
             if np.isfinite(share[row]):
                 part = f"{100.0 * share[row]:.0f} %"
                 notes.append(f"{name} makes {part} of the scatter of {quantity} at {place}")
-        count = int(self.misleads(quantity).sum())
+        rows_off = self.inaccurate(quantity)
+        count = int(rows_off.sum())
         if count:
             infinite = np.isinf(self.nominal(quantity))
             lost = self.sampled(quantity).lost + self.lost_ends(quantity) > 0
@@ -283,8 +292,12 @@ class Tolerances(Listed):
             if infinite.any():
                 at = f"{self.slopes.place[int(infinite.argmax())]:.6g} {self.slopes.along_unit}"
                 why += f", it is infinite at the dead centre at {at.rstrip()}"
+            parts = self.left_out(quantity)[rows_off]
+            parts = parts[np.isfinite(parts)]
+            by = f" by up to {100.0 * parts.max():.2g} % of half the band" if parts.size else ""
             notes.append(
-                f"{quantity}: slopes mislead in {count} of {self.slopes.rows.size} rows{why}"
+                f"{quantity}: the first-order estimate is off{by} in {count} of "
+                f"{self.slopes.rows.size} rows{why}"
             )
         return notes
 
@@ -332,6 +345,11 @@ def stack(
         raise UsageError(f"method is one of {', '.join(METHODS)}, not {method}")
     if distribution not in DEVIATIONS:
         raise UsageError(f"distribution is one of {', '.join(DEVIATIONS)}, not {distribution}")
+    if (method != "random" or distribution == "normal") and not has_scipy():
+        raise UsageError(
+            "latin, sobol and normal distributions are drawn with scipy, which is not here: "
+            "pip install 'mechkin[studies]', or draw uniformly with the method random"
+        )
     samples = a_whole_number("samples", samples, "draws", tolerances.FEWEST_SAMPLES)
     seed = a_whole_number("seed", seed, "", 0)
     bands = {name: _band(model, name, given[name]) for name in names}
@@ -365,7 +383,7 @@ def _band(model: Solvable, name: str, given: Setting | Sequence[Setting]) -> Ban
         band = Band(-half, half)
     if not band.least < band.most:
         raise UsageError(
-            f"{name}: the tolerance from {band.least:.6g} to {band.most:.6g} holds nothing; write "
-            "the smaller end first"
+            f"{name}: the tolerance from {band.least + 0.0:.6g} to {band.most + 0.0:.6g} has no "
+            "width; write half a band above zero, or both ends, the smaller one first"
         )
     return band

@@ -367,7 +367,8 @@ so: at rows that lie up to a fortieth of it before a dead centre. No tolerance o
 large as a two-hundredth of its size."""
 
 LINEAR: Final = 0.1
-"""A second-order term beyond this part of the first-order one makes a slope misleading."""
+"""A second-order term beyond this part of the first-order one makes an estimate by slopes alone
+inaccurate."""
 
 TOLD_APART: Final = 1e-5
 """Angles of assemblies (rad), slides and places of joints (parts of the mechanism's size) that are

@@ -82,10 +82,18 @@ def mjcf(seed: int) -> str:
     )
     bodies = []
     for number in range(5):
+        kinds = dice.choice(sets)
+        axes, places = ([numbers(dice, 3, 0.8) for _ in kinds] for _ in range(2))
+        if dice.random() < 0.5 and len(kinds) > 1:
+            # one pair of several freedoms: E, C, or U where no ref is in its way
+            axes = ["1 0 0", "0 1 0", "0 0 1"] if len(kinds) == 3 else axes
+            axes = axes[:1] * 2 if kinds == ["hinge", "slide"] else axes
+            places = places[:1] * 3
+        refs = dice.choice([["0"] * 3, ["0.4", "0", "-0.3"]])
         joints = "".join(
-            f'<joint name="q{number}.{k}" type="{kind}" axis="{numbers(dice, 3)}" '
-            f'pos="{numbers(dice, 3, 0.2)}" ref="{dice.choice(["0", "0.4"])}"/>'
-            for k, kind in enumerate(dice.choice(sets))
+            f'<joint name="q{number}.{k}" type="{kind}" axis="{axes[k]}" '
+            f'pos="{places[k]}" ref="{refs[k]}"/>'
+            for k, kind in enumerate(kinds)
         )
         bodies.append(
             f'<frame pos="0 0 0.1"><body name="b{number}" pos="{numbers(dice, 3)}" '

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import random
 import re
 from pathlib import Path
 
@@ -28,6 +30,10 @@ rod_outer,-130,690,248
 wheel,0,760,310
 contact,0,762,0
 """
+
+
+NAMES = [row.partition(",")[0] for row in ROWS.split()]
+SIZES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}
 
 
 def put_in(table: str, template: str = SUSPENSION, **options: object):
@@ -143,3 +149,35 @@ def test_the_command(
     assert "is there already" in capsys.readouterr().err
     assert import_(Path("car.csv")) == 2
     assert "--template suspension" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("seed", range(8 * int(os.environ.get("MECHKIN_RANDOM", "1"))))
+def test_random_tables(seed: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Separators, decimal commas, quotes, units, orders, empty rows and remarks change nothing."""
+    dice = random.Random(seed)
+    unit, size = dice.choice(list(SIZES.items()))
+    separator = dice.choice([",", ", ", ";", "\t"])
+    comma = separator in ";\t" and dice.random() < 0.5
+    heads = ["name", f"x [{unit}]", f"Y ({unit})", f"z[{unit}]", "remark"]
+    order = dice.sample(range(5), 5)
+    wanted, lines = {}, [separator.join(heads[k] for k in order)]
+    for name in dice.sample(NAMES, len(NAMES)):
+        form = dice.choice([".3f", ".9g", ".4e"])
+        texts = [f"{dice.uniform(-500, 800) / size:{form}}" for _ in "xyz"]
+        wanted[name] = [float(text) * size for text in texts]
+        shown = dice.choice([name, name.replace("_", "-").upper(), name.replace("_", " ")])
+        written = [text.replace(".", ",") if comma else text for text in texts]
+        cells = [shown, *written, dice.choice(["", "7"])]
+        quoted = [f'"{cell}"' if dice.random() < 0.2 else cell for cell in cells]
+        lines.append(separator.join(quoted[k] for k in order))
+        lines += dice.choice([[], [], [separator.strip(" ") * 4], ["# front axle"]])
+    table = tmp_path / "points.csv"
+    end = dice.choice(["\n", "\r\n"])
+    table.write_bytes((dice.choice(["", "\ufeff"]) + end.join(lines)).encode())
+    out = tmp_path / "car.yaml"
+    assert import_(table, out=out, template="suspension") == 0, capsys.readouterr().err
+    found = mk.load(out).parameters
+    for name, place in wanted.items():
+        for axis, value in zip("xyz", place, strict=True):
+            scale = SIZES[found.unit(f"{name}_{axis}")]
+            assert found[f"{name}_{axis}"] * scale == pytest.approx(value, abs=1e-9)

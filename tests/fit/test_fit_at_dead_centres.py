@@ -78,7 +78,7 @@ def test_samples_of_what_is_infinite_are_lost() -> None:
     sampled = found.sampled("D.effort")
     assert sampled.lost.tolist() == [0, 0, 0, 0, 16]
     assert found.lost_ends("D.effort").tolist() == [0, 0, 0, 0, 2]
-    assert found.misleads("D.effort").tolist() == [False] * 4 + [True]
+    assert found.inaccurate("D.effort").tolist() == [False] * 4 + [True]
     assert np.isnan(sampled.mean[-1])
     assert np.isnan(sampled.deviation[-1])
     # the torque within its band makes the same part of the effort in every other row
@@ -88,5 +88,5 @@ def test_samples_of_what_is_infinite_are_lost() -> None:
     np.testing.assert_allclose(parts, parts[0], rtol=1e-9)
     assert "it is infinite at the dead centre at 40 mm" in repr(found)
     before = mk.loads(BEFORE).tolerances({"T": "0.1 N*m"}, ["D.effort"], samples=16)
-    assert not before.misleads("D.effort").any()
+    assert not before.inaccurate("D.effort").any()
     np.testing.assert_allclose(before.sampled("D.effort").mean, sampled.mean[:-1], rtol=1e-14)

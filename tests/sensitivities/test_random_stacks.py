@@ -80,7 +80,7 @@ def test_samples_scatter_as_slopes_say(seed: int) -> None:
         left = t.left_out(quantity) * (t.worst(quantity)[1] - nominal)
         assert (np.abs(sampled.mean - nominal) < SIGMAS * sampled.mean_error + left).all()
         assert (np.abs(sampled.deviation - scatter) < SIGMAS * sampled.deviation_error + left).all()
-        assert not t.misleads(quantity).any()
+        assert not t.inaccurate(quantity).any()
         if distribution == "uniform":
             low, high = t.worst(quantity)
             room = left + 1e-9 * np.abs(nominal)
@@ -111,4 +111,4 @@ def test_to_pandas() -> None:
     assert (frame["C.theta scatter"] == t.scatter(output)).all()
     assert (frame["C.theta share of a"] + frame["C.theta share of b"] - 1.0).abs().max() < 1e-12
     assert frame.attrs["units"]["C.theta scatter"] == "deg"
-    assert not frame["C.theta misleads"].any()
+    assert not frame["C.theta inaccurate"].any()

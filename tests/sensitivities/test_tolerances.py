@@ -53,7 +53,7 @@ def test_a_linear_stack(method: str, distribution: str, sigmas: float) -> None:
     assert np.abs(sampled.mean - drawn.mean(axis=0)).max() < 1e-12
     assert np.abs(sampled.deviation - drawn.std(axis=0, ddof=1)).max() < 1e-12
     assert np.abs(t.quantile("C.theta", 0.9) - np.quantile(drawn, 0.9, axis=0)).max() < 1e-12
-    assert not t.misleads("C.theta").any()
+    assert not t.inaccurate("C.theta").any()
     assert "of the scatter of C.theta at" in repr(t)
 
 
@@ -71,7 +71,7 @@ def test_a_dead_centre_inside_a_band() -> None:
     text = text.replace("crank: 0.1 m", "crank: 0.5 m").replace("rod: 0.35 m", "rod: 0.33 m")
     text = text.replace("to: 360, step: 10", "to: 40, step: 10")
     t = mk.loads(text).tolerances({"rod": 0.01}, ["D.s"], samples=256)
-    assert t.misleads("D.s").tolist() == [False, False, False, False, True]
+    assert t.inaccurate("D.s").tolist() == [False, False, False, False, True]
     edge = 0.5 * np.sin(np.radians(40.0))
     expected = 256 * (edge - 0.32) / 0.02
     assert abs(t.sampled("D.s").lost[-1] - expected) <= 1  # a Latin hypercube has even slices
@@ -84,7 +84,7 @@ def test_what_is_refused() -> None:
     for given, more, words in (
         ({"e": 1}, {}, "there is no parameter e"),
         ({"a": "1 deg"}, {}, "a = 1 deg"),
-        ({"a": [0.2, 0.1]}, {}, "holds nothing"),
+        ({"a": [0.2, 0.1]}, {}, "has no width"),
         ({"a": [1, 2, 3]}, {}, "one number, or two"),
         ({"a": 0.1}, {"method": "dice"}, "method is one of"),
         ({"a": 0.1}, {"distribution": "flat"}, "distribution is one of"),

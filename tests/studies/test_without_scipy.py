@@ -47,3 +47,11 @@ def test_others_say_what_to_install(plain: Any, vary: dict[str, Any], method: st
 @pytest.mark.parametrize(("vary", "method"), NEEDING)
 def test_with_scipy_they_are_drawn(vary: dict[str, Any], method: str) -> None:
     assert len(mk.load(RCSR).study(study(vary, method))["P1"]) == 8
+
+
+def test_tolerances_say_it_too(plain: Any) -> None:
+    bands, of = {"P1": "0.01 in"}, ["O4.theta"]
+    for more in ({}, {"method": "sobol"}, {"method": "random", "distribution": "normal"}):
+        with pytest.raises(mk.UsageError, match=r"scipy.*pip install 'mechkin\[studies\]'"):
+            plain.tolerances(bands, of, samples=4, **more)
+    assert plain.tolerances(bands, of, samples=4, method="random").samples == 4

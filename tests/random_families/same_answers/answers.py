@@ -294,7 +294,7 @@ def ask_tolerances(m, q, knobs):
             "drawn",
             "left_out",
             "lost_ends",
-            "misleads",
+            "inaccurate",
             "nominal",
             "root_sum_square",
             "sampled",
