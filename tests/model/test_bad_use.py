@@ -15,7 +15,7 @@ import mechkin_cli as mk
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 
-CALLS_PER_ARGUMENT = 200 * TIMES
+CALLS_PER_ARGUMENT = 80 * TIMES
 DOCUMENTED = (mk.UsageError, mk.InvalidFile, mk.ExpressionError)
 CURES = (
     "expected",

@@ -16,7 +16,10 @@ from random_families.no_wrong_row.difficult import (
 )
 from random_families.no_wrong_row.run import run_one
 
-COUNT = 24 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
+COUNT = 12 * TIMES
+PART = 3 if TIMES == 1 else 1
+"""Of those that were difficult every third is tried, or all with `MECHKIN_RANDOM=2`."""
 
 
 def check(numbers: list[int], series: int, solved: int) -> None:
@@ -32,11 +35,11 @@ def check(numbers: list[int], series: int, solved: int) -> None:
 
 
 def test_no_row_is_wrong_or_lost() -> None:
-    check([n for n in (*range(COUNT), *DIFFICULT) if n not in NOT_YET], 1, 5 * COUNT)
+    check([n for n in (*range(COUNT), *DIFFICULT[::PART]) if n not in NOT_YET], 1, 5 * COUNT)
 
 
 def test_arms_platforms_shafts_and_ties() -> None:
-    numbers = [*range(COUNT // 2), *SECOND_DIFFICULT]
+    numbers = [*range(COUNT // 2), *SECOND_DIFFICULT[::PART]]
     check([n for n in numbers if n not in SECOND_NOT_YET], 2, 5 * COUNT)
 
 
