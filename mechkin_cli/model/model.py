@@ -569,8 +569,7 @@ class Model(Listed):
         """The model with other values of some parameters: nothing is read, checked or built anew.
 
         The file's own assembly is continued to that of the new parameters, along the straight line
-        between them; where it ends before, rows are `branch-lost`. A response begins in an assembly
-        that is continued likewise; where it ends before, it is chosen anew as the file says.
+        between them; where it ends before, rows are `branch-lost`, and a response chooses anew.
 
         Args:
             parameters: values by name; a number is in the unit that the parameter has in the file's

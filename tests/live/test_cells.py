@@ -176,7 +176,13 @@ def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any
                 assert one["rounding"] == own.rounding or None in record["columns"], where
             checked += 1
     verdicts = rows_table(wanted.result, wanted.run)
-    assert texts[verdicts.name] == [list(row) for row in verdicts.listing.rows], stem
+    # which letter a mode has with other parameters, only a search of all modes tells
+    is_letter = wanted.result.mode not in ("home", "near")
+    kept = [
+        at for at, one in enumerate(verdicts.columns) if not (is_letter and one.label == "mode")
+    ]
+    theirs = [[row[at] for at in kept] for row in verdicts.listing.rows]
+    assert [[row[at] for at in kept] for row in texts[verdicts.name]] == theirs, stem
     return checked
 
 
