@@ -35,7 +35,7 @@ from mechkin_cli.reading import value_spans
 from mechkin_cli.session import input_rest
 from mechkin_cli.sweep import has_turns, limited, slack_quantities
 from mechkin_cli.tables import ROW_TEXTS, Words, row_texts, table_sizes
-from mechkin_cli.tape import Recorded, TraceLost, is_traced, tape_values
+from mechkin_cli.tape import Recorded, TraceLost, Verdict, is_traced, tape_values
 from mechkin_cli.units import LENGTH, UnitSystem
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import (
@@ -69,6 +69,10 @@ MOST_PARAMETERS = 60
 OF_SIZE = 0.1
 """How far a slider moves a place to either side, in parts of the mechanism's size."""
 
+SLIGHTLY = 1e-4
+"""Change of a number, in parts of it or of the largest, by which it is tried whether the file stays
+computed in the same way."""
+
 NUMBERS = "Points, masses and springs"
 """What the numbers of a file without parameters are called."""
 
@@ -93,6 +97,8 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         return None
     numbers = with_numbers(design, MOST_PARAMETERS)
     varied, fixed = _variation(design if numbers is None else numbers.design)
+    if varied is not None and numbers is not None:
+        varied = _changeable(numbers.design, varied)
     if varied is None:
         return None
     names = list(varied.recorder.inputs)
@@ -207,6 +213,17 @@ def _variation(design: Design) -> tuple[SessionVariation | None, dict[str, str]]
         if name not in held:
             fixed[name] = "with another value the file is computed in another way"
     return (base.variation(held) if held else None), fixed
+
+
+def _changeable(design: Design, varied: SessionVariation) -> SessionVariation | None:
+    """The recording of those parameters that may become a little larger or smaller by themselves:
+    others, such as a place on a line about which a rod spins, make the file another."""
+    own = varied.values
+    step = SLIGHTLY * np.diag(np.maximum(np.abs(own), np.abs(own).max()))
+    verdicts = varied.verdicts(np.hstack([own[:, None] + step, own[:, None] - step]))
+    other = (verdicts == Verdict.OTHER_WAY).reshape(2, own.size).all(axis=0)
+    names = [name for name, no in zip(varied.recorder.inputs, other, strict=True) if not no]
+    return base_of(design).variation(names) if names else None
 
 
 def _recordable(base: Any, names: Sequence[str]) -> list[str]:
