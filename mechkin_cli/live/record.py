@@ -69,10 +69,6 @@ MOST_PARAMETERS = 60
 OF_SIZE = 0.1
 """How far a slider moves a place to either side, in parts of the mechanism's size."""
 
-SLIGHTLY = 1e-4
-"""Change of a number, in parts of it or of the largest, by which it is tried whether the file stays
-computed in the same way."""
-
 NUMBERS = "Points, masses and springs"
 """What the numbers of a file without parameters are called."""
 
@@ -219,7 +215,8 @@ def _changeable(design: Design, varied: SessionVariation) -> SessionVariation | 
     """The recording of those parameters that may become a little larger or smaller by themselves:
     others, such as a place on a line about which a rod spins, make the file another."""
     own = varied.values
-    step = SLIGHTLY * np.diag(np.maximum(np.abs(own), np.abs(own).max()))
+    largest = np.abs(own).max()
+    step = np.diag(tolerances.TRIED_DIMENSION * np.where(own == 0.0, largest, np.abs(own)))
     verdicts = varied.verdicts(np.hstack([own[:, None] + step, own[:, None] - step]))
     other = (verdicts == Verdict.OTHER_WAY).reshape(2, own.size).all(axis=0)
     names = [name for name, no in zip(varied.recorder.inputs, other, strict=True) if not no]
