@@ -11,12 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from mechkin_cli import tolerances
 from mechkin_cli.expressions import ExpressionError, Quantity, parse
 from mechkin_cli.live.numbers import with_numbers
 from mechkin_cli.live.recording import LeftOut, Recording, factor_of
 from mechkin_cli.live.response import ResponseRecording
 from mechkin_cli.reading import value_spans
-from mechkin_cli.tape import TraceLost
+from mechkin_cli.tape import TraceLost, Verdict
 from mechkin_cli.units import UnitSystem
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import SWEEP
@@ -55,6 +58,8 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         return None
     numbers = with_numbers(design, MOST_PARAMETERS)
     varied, fixed = _variation(design if numbers is None else numbers.design, analysis.run)
+    if varied is not None and numbers is not None:
+        varied = _changeable(_varied_by(numbers.design, analysis.run), varied)
     if varied is None:
         return None
     names = list(varied.recorder.inputs)
@@ -160,6 +165,13 @@ Varied = Callable[[Sequence[str]], "SessionVariation | None"]
 """How a run depends on some parameters; None where no recording holds that."""
 
 
+def _varied_by(design: Design, run: str) -> Varied:
+    base = base_of(design)
+    if run == SWEEP:
+        return base.variation
+    return lambda names: base.response_variation(names, run)
+
+
 def _variation(design: Design, run: str) -> tuple[SessionVariation | None, dict[str, str]]:
     """How a run depends on all parameters that a recording holds, and why others are fixed."""
     problem, fixed = design.problem, {}
@@ -176,16 +188,24 @@ def _variation(design: Design, run: str) -> tuple[SessionVariation | None, dict[
             fixed[name] = f"the page has sliders for {MOST_PARAMETERS} parameters"
         else:
             free.append(name)
-    base = base_of(design)
-
-    def varied(names: Sequence[str]) -> SessionVariation | None:
-        return base.variation(names) if run == SWEEP else base.response_variation(names, run)
-
+    varied = _varied_by(design, run)
     held = _recordable(varied, free)
     for name in free:
         if name not in held:
             fixed[name] = "with another value the file is computed in another way"
     return (varied(held) if held else None), fixed
+
+
+def _changeable(of: Varied, varied: SessionVariation) -> SessionVariation | None:
+    """The recording of those parameters that may become a little larger or smaller by themselves:
+    others, such as a place on a line about which a rod spins, make the file another."""
+    own = varied.values
+    largest = np.abs(own).max()
+    step = np.diag(tolerances.TRIED_DIMENSION * np.where(own == 0.0, largest, np.abs(own)))
+    verdicts = varied.verdicts(np.hstack([own[:, None] + step, own[:, None] - step]))
+    other = (verdicts == Verdict.OTHER_WAY).reshape(2, own.size).all(axis=0)
+    names = [name for name, no in zip(varied.recorder.inputs, other, strict=True) if not no]
+    return of(names) if names else None
 
 
 def _recordable(varied: Varied, names: Sequence[str]) -> list[str]:

@@ -264,6 +264,11 @@ LONGEST_DIMENSION_STEP: Final = 1.0
 """Longest step from the base variant (0) to another (1): variants are near each other as a rule,
 and the tests of a step shorten it where they are not."""
 
+TRIED_DIMENSION: Final = 1e-4
+"""Change of a dimension, in parts of it or of the largest, by which it is tried whether the file
+stays computed in the same way: far above every test of what is parallel or coincides, and far below
+what a slider moves."""
+
 LEAST_STEP: Final = 1e-15
 """Step (in parts of max(1, |path|)) below which a branch cannot be followed in double precision."""
 

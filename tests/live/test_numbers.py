@@ -55,6 +55,10 @@ def test_the_page_shows_what_the_edited_file_gives() -> None:
     model = load(SUSPENSION)
     analysis = model.analyze()
     data, _ = page_data([analysis], modes=False)
+    offered = {one["name"] for one in data["live"]["parameters"]}
+    # off the line of the strut its halves would no longer spin freely: the file would be another
+    assert "joints.A5.point.x" in offered
+    assert not {"joints.A6.point.x", "joints.B6.point.z"} & offered
     own, changed = computed(data, [{}, CASE])
     compared("suspension", data["live"], own, analysis)
     lifted = with_numbers(model.design, 60)

@@ -1,4 +1,5 @@
-"""Writes `docs/view.png`: the page of a five-link suspension at its first row, in 256 colours."""
+"""Writes `docs/view.png`: the page of a five-link suspension with a hard point moved, in 256
+colours."""
 
 from __future__ import annotations
 
@@ -17,6 +18,18 @@ import mechkin_cli as mk
 TARGET = Path(__file__).parents[2] / "docs" / "view.png"
 WIDTH, HEIGHT = 1200, 760
 
+# the outer end of the track rod is put higher up, and its slider is in view
+MOVE = """(() => {
+  const { dimensions, curves } = window.mechkin;
+  document.querySelector("#dimensions .fixed").open = true;
+  dimensions.set("joints.B5.point.z", 315);
+  window.mechkin.seek(12);
+  const slider = document.querySelector("[aria-label='joints.B5.point.z'] input");
+  const panel = document.querySelector("#dimensions");
+  const box = panel.getBoundingClientRect();
+  panel.scrollTop += slider.getBoundingClientRect().top - box.top - panel.clientHeight / 2;
+})()"""
+
 
 def main() -> int:
     reason = missing()
@@ -28,6 +41,9 @@ def main() -> int:
         mk.load(FILE_OF["five_link_suspension"]).view(page)
         browser = Browser(SOFTWARE_GL)
         browser.open(page, width=WIDTH, height=HEIGHT)
+        browser.evaluate(MOVE)
+        browser.press("f")
+        browser.evaluate("new Promise((done) => setTimeout(done, 4000))")
         browser.shot(shot)
         browser.close()
         colours = Image.open(shot).convert("RGB").quantize(256, dither=Image.Dither.NONE)

@@ -19,6 +19,7 @@ from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.joints import link_poses
 from mechkin_cli.view.page import Lengths
+from mechkin_cli.view.scene import page_data
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 FEW = ["planar_four_bar", "rcsr"]
@@ -145,3 +146,44 @@ def test_a_point_that_is_driven_is_dragged_to_its_dead_centre(
     assert browser.evaluate("window.mechkin.row()") in (44, 45)
     said = browser.evaluate("window.said")
     assert any(text.startswith("dead centre at tip.position.y = 50 mm") for text in said), said
+
+
+BELT = """
+format: 1
+plane: xy
+units: {length: mm, angle: deg, force: N}
+parameters: {d: 200 mm, r: 30 mm, q: 60 mm}
+links: {small: {}, large: {}}
+joints:
+  A: {type: R, links: [ground, small], point: [0, 0]}
+  B: {type: R, links: [ground, large], point: [d, 20]}
+couplings: {K: {type: belt, joints: [A, B], radii: [r, q], crossed: false}}
+motion: {inputs: {A.theta: {from: 0, to: 360, step: 90}}}
+tables: [{name: t, columns: [A.theta, B.theta]}]
+"""
+
+
+@pytest.mark.parametrize("crossed", ["false", "true"])
+def test_a_belt_is_laid_anew_over_its_pulleys(
+    browser: Browser, tmp_path: Path, crossed: str
+) -> None:
+    text = BELT.replace("crossed: false", f"crossed: {crossed}")
+    browser.open(mk.loads(text).view(tmp_path / "page.html", modes=False))
+    line = browser.evaluate("""(async () => {
+      const { dimensions, state } = window.mechkin;
+      dimensions.setAll({ d: 260, q: 45 });
+      for (let k = 0; k < 4; k += 1) await new Promise((done) => requestAnimationFrame(done));
+      return state.drawn.belts[0].line;
+    })()""")
+    other = text.replace("d: 200 mm", "d: 260 mm").replace("q: 60 mm", "q: 45 mm")
+    data, _ = page_data([mk.loads(other).analyze()], modes=False)
+    theirs = np.array(data["belts"][0]["line"])
+    # both are polygons on the same line: corners lie within an arc's rise of the other's sides
+    rise = 60.0 * (1.0 - np.cos(np.radians(6.0)))
+    for one, ring in ((np.array(line), theirs), (theirs, np.array(line))):
+        sides = np.roll(ring, -1, axis=0) - ring
+        square = np.maximum(np.einsum("ij,ij->i", sides, sides), 1e-30)
+        for corner in one:
+            share = np.clip(np.einsum("ij,ij->i", corner - ring, sides) / square, 0.0, 1.0)
+            off = np.linalg.norm(ring + share[:, None] * sides - corner, axis=1)
+            assert off.min() < rise, corner

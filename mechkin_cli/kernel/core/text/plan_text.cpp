@@ -150,6 +150,7 @@ constexpr Verb VERBS[] = {
     {"add_function", said<&PlanBuilder::add_function>},
     {"add_relation", said<&PlanBuilder::add_relation>},
     {"add_mesh", said<&PlanBuilder::add_mesh>},
+    {"add_force", said<&PlanBuilder::add_force>},
     {"add_place", said<&PlanBuilder::add_place>},
     {"add_axis", said<&PlanBuilder::add_axis>},
     {"set_course", said<&PlanBuilder::set_course>},
