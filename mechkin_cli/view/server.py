@@ -34,7 +34,7 @@ QUIET = 10.0
 MOST_ASKED = 1 << 16
 """Bytes of a request that writes: some hundred parameters."""
 
-LIVE = Path(__file__).with_name("live")
+SHELL = Path(__file__).with_name("shell")
 FRAME_RIGHTS = "allow-scripts allow-downloads allow-modals"
 """Of a page in a frame: it has no origin, so that it reaches nothing of the page around it."""
 
@@ -248,7 +248,7 @@ def frames_source(name: str) -> str:
 
 
 def _source(name: str) -> str:
-    return LIVE.joinpath(name).read_text(encoding="utf-8").strip()
+    return SHELL.joinpath(name).read_text(encoding="utf-8").strip()
 
 
 def _digest(text: str) -> str:

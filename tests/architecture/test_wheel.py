@@ -25,8 +25,8 @@ NEEDED = (
     "mechkin_cli/bench/hard_mechanisms.json",
     "mechkin_cli/templates/four-bar.yaml",
     "mechkin_cli/view/page.html",
-    "mechkin_cli/view/live/shell.html",
-    "mechkin_cli/view/live/widget.js",
+    "mechkin_cli/view/shell/shell.html",
+    "mechkin_cli/view/shell/widget.js",
 )
 
 

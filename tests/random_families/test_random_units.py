@@ -105,7 +105,7 @@ def answers(
     (folder / "m.yaml").write_text(written(text or TEMPLATES[which], words, rng, explicit))
     model = mk.load(folder / "m.yaml")
     found = dict(each for run in model.runs for each in read(model, run, words))
-    return found | dict(cams_of(model, words)) | dict(shown(model))
+    return found | dict(cams_of(model, words)) | dict(shown(model, words))
 
 
 @cache
@@ -154,8 +154,9 @@ def cams_of(model: mk.Model, words: dict[str, str]) -> Iterator[tuple[str, Any]]
             yield f"{name}: pressure angle", ("angle", np.asarray(cam.pressure_angle) * angle)
 
 
-def shown(model: mk.Model) -> Iterator[tuple[str, Any]]:
-    """What a page is told of sizes and directions, which is in SI whatever the file's units."""
+def shown(model: mk.Model, words: dict[str, str]) -> Iterator[tuple[str, Any]]:
+    """What a page is told of sizes and directions, which is in SI whatever the file's units, and
+    of its sliders, which is in these."""
 
     def numbers(value: Any) -> Iterator[float]:
         if isinstance(value, float):
@@ -169,6 +170,9 @@ def shown(model: mk.Model) -> Iterator[tuple[str, Any]]:
         given = getattr(settings, name)
         for number, value in enumerate(given.values() if name == "shapes" else [given]):
             yield f"{name} {number}", (name, np.array([*numbers(value)]))
+    for name, ends in settings.parameters.items():
+        kind = kind_of(str(model.problem.parameters[name].dimension))
+        yield f"slider of {name}", (kind, np.array(ends) * factor(kind, words))
 
 
 def kind_of(dimension: str) -> str:

@@ -120,7 +120,8 @@ Result<PlayedResponse> play_response(const VariedResponse& response, const doubl
 
   const VariantStart start = response.start.start(parameters);
   played.end = start.end;
-  if (start.end != VariantEnd::complete) return played;
+  if (start.turns) played.end = VariantEnd::other_way;
+  if (played.end != VariantEnd::complete) return played;
   FrozenPlan begin(response.start.plan()), plan(response.plan);
   OutputList outputs(response.outputs);
   const KernelUnit& unit = *kernel_unit(2);

@@ -58,7 +58,7 @@ class Worker {
   }
 
   VariantStart start(const double* parameters) {
-    VariantStart found = {VariantEnd::other_way, 0.0, {}, {}, {}, {}, {}};
+    VariantStart found = {VariantEnd::other_way, 0.0, {}, {}, {}, {}, {}, false};
     replayed_.resize(tape_.outputs), verdict_.resize(1);
     wide_.replay(tape_, {1, parameters, replayed_.data(), verdict_.data()}, replay_memory_.data());
     if (verdict_[0] == TAPE_OTHER_WAY) return found;
@@ -72,7 +72,7 @@ class Worker {
     };
     take(moves_ ? moved : base_.inputs.data(), &found.inputs), take(moves_ ? moved : base_.full.data(), &found.full);
     take(moves_ ? moved + table : base_.rates.data(), &found.rates);
-    if (moves_ && turns(moved)) found.end = VariantEnd::other_way;
+    found.turns = moves_ && turns(moved);
     return found;
   }
 

@@ -63,6 +63,7 @@ struct VariantStart {
   std::vector<double> state;
   std::vector<double> constants;            // of the plan
   std::vector<double> inputs, full, rates;  // of its row; `full` with whole turns
+  bool turns;  // whether an input that moves with the parameters has whole turns, which the file takes off
 };
 
 // Where the rows of an incomplete variant end on one side of the first assembly: a dead centre or a branch point, or
