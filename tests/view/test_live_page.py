@@ -197,8 +197,12 @@ def test_new_data_are_shown_where_the_reader_is(browser: Browser, tmp_path: Path
     browser.evaluate("window.model.set('row', 1)")
     eventually(lambda: browser.inside(OFF), 43)
     eventually(lambda: browser.inside(ROWS), 1)
+    browser.inside(
+        "(() => { const go = ({ data }) => { if (data?.mechkin !== 'where') return; "
+        "removeEventListener('message', go); window.mechkin.seek(0); }; "
+        "addEventListener('message', go); })()"
+    )
     browser.evaluate(f"window.model.set('_data', {json.dumps(crank(44))})")
-    browser.inside("window.mechkin.seek(0)")
     eventually(lambda: browser.inside(OFF), 44)
     eventually(lambda: [browser.inside(ROWS), browser.evaluate("window.saved.row")], [0, 0])
     # the same place is another row where there are more of them

@@ -99,7 +99,8 @@ class Frames {
     const place = (await this.where()) ?? this.#place;
     held.frame.contentWindow.postMessage({ mechkin: "data", text, place }, "*");
     await Promise.race([held.shown, wait(MOST_WAIT)]);
-    // the reader may have gone on while the next page was drawn behind
+    // the reader may have gone on while the next page was drawn behind; what is done after this answer would be lost
+    if (this.seen) this.seen.frame.inert = true;
     const later = (await this.where()) ?? place;
     if (JSON.stringify(later) !== JSON.stringify(place)) held.frame.contentWindow.postMessage({ mechkin: "go", place: later }, "*");
     // the next one may have been opened meanwhile
