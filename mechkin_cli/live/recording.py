@@ -36,7 +36,7 @@ from mechkin_cli.verdict import (
     Status,
     has_forces,
 )
-from mechkin_cli.view import packed
+from mechkin_cli.view import Lengths, packed
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
@@ -431,6 +431,7 @@ class Recording:
             "verdict": verdict,
             "arrows": arrow_records,
             "poses": pose_data,
+            "home": Lengths(problem.units).vector(problem.mechanism.datum),
             "length": factor_of(length),
             "drawing": drawing,
             "inputs": inputs,

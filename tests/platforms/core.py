@@ -1,4 +1,4 @@
-"""The core without Python, built for another platform and run here: the bits of all mechanisms.
+"""The core without Python, built for another platform and run here: the bits of all sweeps kept.
 
     python -P tests/platforms/core.py x86_64-windows-gnu wine [STEM ...]
     python -P tests/platforms/core.py aarch64-linux-musl qemu-aarch64 [STEM ...]
@@ -30,9 +30,11 @@ from kernel.test_c_interface import (
     run_by_c,
     wanted_bytes,
 )
-from platforms.digests import stems
+from platforms.digests import MECHANISMS, stems
 
+from mechkin_cli import load
 from mechkin_cli.kernel.plan_text import plan_text
+from mechkin_cli.verdict import SWEEP
 
 SYSTEMS = {"windows": "Windows", "linux": "Linux", "macos": "Darwin"}
 
@@ -93,6 +95,7 @@ def compared(there: Built, stem: str, folder: Path) -> int:
 def main(target: str, runner: str, *asked: str) -> int:
     """Builds, compares, and prints what differs."""
     chosen = [each for each in stems() if not asked or Path(each).name in asked]
+    chosen = [each for each in chosen if SWEEP in load(MECHANISMS / f"{each}.yaml").runs]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         there = built(target, runner.split(), folder)

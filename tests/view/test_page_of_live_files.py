@@ -15,6 +15,8 @@ from view.browser import Browser
 from view.watching import SINGLE
 
 import mechkin_cli as mk
+from mechkin_cli.live.numbers import with_numbers
+from mechkin_cli.live.record import MOST_PARAMETERS
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.joints import link_poses
@@ -22,7 +24,7 @@ from mechkin_cli.view.page import Lengths
 from mechkin_cli.view.scene import page_data
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-FEW = ["planar_four_bar", "rcsr"]
+FEW = ["planar_four_bar", "rcsr", "lecture_ex3_3_translation"]
 NAMES = [*([path.stem for path in SWEPT] if TIMES > 1 else FEW), "rcsr_response"]
 
 # values of a page's parameters, some steps of their sliders away, with which it computes all rows
@@ -56,6 +58,16 @@ def columns(text: str, without: list[str]) -> list[list[str]]:
     return [[row[k] for k in kept] for row in (header, *rows)]
 
 
+def with_values(model: mk.Model, values: dict[str, float]) -> Any:
+    """The mechanism with a page's values, which of a file without parameters are its numbers."""
+    lifted = with_numbers(model.design, MOST_PARAMETERS)
+    if lifted is None or not values:
+        return model.with_parameters(values) if values else model
+    names = {one.name: parameter for parameter, one in lifted.numbers.items()}
+    given = {names[name]: value for name, value in values.items()}
+    return model.of(lifted.design).with_parameters(given)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_tables_and_poses_are_those_of_the_command(
     browser: Browser, tmp_path: Path, name: str
@@ -71,7 +83,7 @@ def test_tables_and_poses_are_those_of_the_command(
         values: dict[str, Any] = {}
         if case > 0:
             values = browser.evaluate(f"{VARIED}({rng.integers(-9, 9, 5).tolist()})")
-        varied = model.with_parameters(values) if values else model
+        varied = with_values(model, values)
         analysis = varied.analyze() if SWEEP in model.runs else varied.respond()
         mine = told(browser)
         for table in analysis.tables:
@@ -85,7 +97,7 @@ def test_tables_and_poses_are_those_of_the_command(
         poses = browser.evaluate("[...window.mechkin.state.branch.values]")
         expected = link_poses(analysis.result, links)
         expected[:, :, :3] = Lengths(model.problem.units).array(expected[:, :, :3])
-        shown = np.reshape(poses, expected.shape)
+        shown = np.array(poses, dtype=float).reshape(expected.shape)
         turned = np.sign(np.einsum("plk,plk->pl", shown[..., 3:], expected[..., 3:]))
         shown[..., 3:] *= turned[..., None]
         size = np.abs(expected[..., :3]).max()

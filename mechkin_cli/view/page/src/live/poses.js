@@ -1,6 +1,6 @@
 // Poses of links from what the kernel's run writes of each: a place on it, and the ground axes as drawn on it.
 
-const AT_HOME = [0, 0, 0, 1, 0, 0, 0];
+const AS_DRAWN = [1, 0, 0, 0]; // a quaternion
 
 /** Poses of the rows from `first` to before `last`, as the page's data have them. */
 export function posesOf(run, first, last) {
@@ -8,9 +8,10 @@ export function posesOf(run, first, last) {
   const links = data.links.length;
   const count = last - first;
   const values = new Float32Array(count * links * 7);
+  const atHome = [...live.home, ...AS_DRAWN]; // as in the file's rows: what is drawn is told about the mechanism's datum
   const moving = new Set(live.poses.map(({ link }) => link));
   for (let link = 0; link < links; link += 1) {
-    if (!moving.has(link)) for (let row = 0; row < count; row += 1) values.set(AT_HOME, (row * links + link) * 7);
+    if (!moving.has(link)) for (let row = 0; row < count; row += 1) values.set(atHome, (row * links + link) * 7);
   }
   for (const pose of live.poses) posesOfLink(run, pose, first, count, links, values);
   return { rows: Int32Array.from({ length: count }, (_, row) => first + row), values };
