@@ -9,74 +9,46 @@ from __future__ import annotations
 
 import ctypes
 import os
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
-from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
-from kernel.compiler import COMPILER, SOURCES, built_core, compile_with
+from kernel.c_programs import (
+    C_COMPILER,
+    CMAKE,
+    HEADERS,
+    PROGRAM,
+    STRICT,
+    Built,
+    Recorded,
+    built_alone,
+    calls_of,
+    caught,
+    of_core,
+    outputs_of,
+    picked,
+    run_by_c,
+    wanted_bytes,
+)
+from kernel.compiler import COMPILER, built_core
+from live.slider_crank import slider_crank
 from references import FILE_OF
 
-from mechkin_cli import load
+from mechkin_cli import load, loads
 from mechkin_cli.kernel.plan_text import plan_text
 from mechkin_cli.plan.outputs import OutputPlan
-from mechkin_cli.plan.plan import plan_records
 from mechkin_cli.plan.records import flatten
-from mechkin_cli.session.kernel_run import POSITIONS, RESIDUAL_TESTS, Ask, Batch, RowInputs, run
-from mechkin_cli.session.session import Session
+from mechkin_cli.session.kernel_run import run
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Verdict
 from mechkin_cli.variants.design import Base
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-C_COMPILER = shutil.which(os.environ.get("CC", "cc"))
-CMAKE = shutil.which("cmake")
 pytestmark = pytest.mark.skipif(
     None in (COMPILER, C_COMPILER, CMAKE), reason="needs compilers and CMake"
 )
-
-ALONE = [
-    "-DMECHKIN_C_INTERFACE=ON",
-    "-DMECHKIN_NARROW=ON",
-    "-DBUILD_SHARED_LIBS=ON",
-    "-DCMAKE_BUILD_TYPE=Release",
-    "-DCMAKE_CXX_FLAGS=-fno-exceptions -fno-rtti",
-    # whoever looks for these stops the build
-    *(f"-DCMAKE_DISABLE_FIND_PACKAGE_{name}=ON" for name in ("Python", "Python3", "nanobind")),
-]
-GIVEN = RowInputs._fields[:-1]
-OTHER_WAY = 2
-FOUND = ("outputs", "first", "second", "side", "condition", "power_error", "loads")
-
-
-class Built(NamedTuple):
-    library: Path
-    program: Path
-
-
-def of_core(core: Path, folder: Path) -> Path:
-    """The library in C of a core that was built for Python."""
-    whole = ["-Wl,--whole-archive", str(core), "-Wl,--no-whole-archive"]
-    options = ["-O1", "-shared", "-pthread", "-fno-exceptions", "-fno-rtti", *whole]
-    return compile_with(SOURCES.parent / "c" / "mechkin.cpp", folder / "libmechkin.so", *options)
-
-
-def built_alone(folder: Path) -> Path:
-    generator = ["-G", "Ninja"] if shutil.which("ninja") else []
-    assert CMAKE is not None
-    for command in (
-        [CMAKE, "-S", str(SOURCES.parent), "-B", str(folder), *generator, *ALONE],
-        [CMAKE, "--build", str(folder), "--parallel", "2"],
-    ):
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
-    (library,) = (folder / "c").glob("libmechkin.*")
-    return library
 
 
 @pytest.fixture(scope="module")
@@ -84,110 +56,16 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     folder = tmp_path_factory.mktemp("alone")
     core = built_core() if TIMES == 1 and sys.platform == "linux" else None
     library = of_core(core, folder) if core else built_alone(folder)
-    program = folder / "c_rows"
-    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"]
-    source = Path(__file__).with_name("c_rows.c")
+    program = folder / "c_runs"
     linked = ["-L", str(library.parent), "-lmechkin", f"-Wl,-rpath,{library.parent}"]
-    headers = ["-I", str(SOURCES.parent / "c")]
-    command = [str(C_COMPILER), *strict, str(source), *headers, "-o", str(program), *linked]
+    command = [str(C_COMPILER), *STRICT, str(PROGRAM), *HEADERS, "-o", str(program), *linked]
     subprocess.run(command, check=True)
     return Built(library, program)
 
 
-def calls_of(session: Session, size: float) -> Iterator[tuple[str, Any]]:
-    for call, arguments in plan_records(session.layout, size):
-        yield "plan" if call == "units" else call, arguments
-
-
-def outputs_of(session: Session, ask: Ask) -> list[Any]:
-    if ask.readout is None:
-        return []
-    plan = OutputPlan(session.layout, None, session.driven)
-    for wanted in ask.readout.wanted:
-        plan.add(wanted)
-    return plan.records
-
-
-def run_by_c(
-    built: Built,
-    folder: Path,
-    text: str,
-    rows: RowInputs,
-    ask: Ask,
-    size: float,
-    like: Batch,
-    parameters: np.ndarray | None = None,
-    threads: int = 1,
-) -> list[bytes]:
-    """Constants, then what `like` has in the program's order, then flags, as bytes; nothing where
-    the parameters lead another way."""
-    given = [getattr(rows, name) for name in GIVEN]
-    found = [getattr(like, name) for name in FOUND]
-    if not ask.demand:
-        found[FOUND.index("side")] = None
-    bits = [
-        sum(1 << k for k, array in enumerate(arrays) if array is not None)
-        for arrays in (given, found)
-    ]
-    head = [rows.inputs.shape[1], int(ask.demand), ask.iterations, threads]
-    head += [parameters is not None, *bits]
-    (folder / "plan.txt").write_text(text, encoding="ascii")
-    numbers = [*(ask.tests or RESIDUAL_TESTS), size]
-    parts = [np.array(numbers), parameters, *given]
-    with (folder / "given.bin").open("wb") as file:
-        file.write(np.array(head, np.int64).tobytes())
-        for part in parts:
-            if part is not None:
-                file.write(np.ascontiguousarray(part, np.float64).tobytes())
-    names = [str(folder / name) for name in ("plan.txt", "given.bin", "found.bin")]
-    done = subprocess.run([str(built.program), *names], check=False)
-    if done.returncode == OTHER_WAY:
-        return []
-    assert done.returncode == 0
-    data = (folder / "found.bin").read_bytes()
-    arrays = [like.states, like.residual, like.correction, *(a for a in found if a is not None)]
-    constants = len(data) - sum(array.nbytes for array in arrays) - like.flags.nbytes
-    cuts = np.cumsum([0, constants, *(array.nbytes for array in arrays), like.flags.nbytes])
-    return [data[a:b] for a, b in pairwise(cuts)]
-
-
-def wanted_bytes(constants: list[np.ndarray], ask: Ask, like: Batch) -> list[bytes]:
-    found = [like.states, like.residual, like.correction]
-    for name in FOUND:
-        array = getattr(like, name)
-        if array is not None and (name != "side" or ask.demand):
-            found.append(array)
-    return [np.concatenate(constants).tobytes(), *(a.tobytes() for a in (*found, like.flags))]
-
-
-def picked(batch: Batch, rows: Any) -> Batch:
-    return Batch(*(array if array is None else array[..., rows].copy() for array in batch))
-
-
-Caught = tuple[Session, RowInputs, Ask, Batch]
-
-
-def caught(monkeypatch: pytest.MonkeyPatch, stem: str) -> list[Caught]:
-    """Every run in doubles, with quantities to read, of an analysis of all tables; as it was found,
-    for what is read of it is made continuous in its place."""
-    runs: list[Caught] = []
-    ran = Session.run
-
-    def catching(
-        self: Session, rows: RowInputs, ask: Ask = POSITIONS, *rest: Any, **more: Any
-    ) -> Batch:
-        batch = ran(self, rows, ask, *rest, **more)
-        if ask.readout is not None and not ask.readout.points and not (rest or more):
-            runs.append((self, rows, ask, picked(batch, slice(None))))
-        return batch
-
-    monkeypatch.setattr(Session, "run", catching)
-    analysis = load(FILE_OF[stem]).analyze()
-    assert analysis.tables
-    return runs
-
-
-@pytest.mark.parametrize("stem", ["planar_four_bar", "rcsr", "stewart", "lecture_crane_30"])
+@pytest.mark.parametrize(
+    "stem", ["planar_four_bar", "rcsr", "stewart", "lecture_crane_30", "tackle"]
+)
 def test_rows_have_the_bits_of_pythons_session(
     built: Built, stem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -252,6 +130,16 @@ def test_a_tape_gives_the_rows_of_other_parameters(
             continue
         assert found == wanted_bytes([plan.constants, outputs.constants], ask, like)
     assert verdicts == [0, 0, 0, last]
+
+
+@pytest.mark.parametrize("run", ["swing", "until", "off", "response"])
+def test_a_response_has_the_bits_that_python_gives(built: Built, run: str, tmp_path: Path) -> None:
+    """To its last row or up to a stop, with the file's parameters and with others."""
+    model = load(FILE_OF["rcsr_response"]) if run == "response" else loads(slider_crank(run))
+    recorded = Recorded.of(model, run)
+    assert len(recorded.names) > 5
+    recorded.compare(built, tmp_path, model, run)
+    recorded.compare(built, tmp_path, recorded.varied(model, 0.01), run)
 
 
 PLAN = """\

@@ -85,6 +85,7 @@ int output_width(int type) {
     case OUT_CLOSING:
     case OUT_HOLDING_MOMENT:
     case OUT_MULTIPLIER:
+    case OUT_TENSION:
     case OUT_REACTION_LEVEL:
     case OUT_KINETIC_ENERGY:
     case OUT_POTENTIAL_ENERGY:

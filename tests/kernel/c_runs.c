@@ -1,8 +1,11 @@
-/* Runs rows by the interface in C: c_rows PLAN GIVEN FOUND.
+/* Runs rows, and responses, by the interface in C: c_runs PLAN GIVEN FOUND, or c_runs START MOTION GIVEN FOUND.
  *
- * GIVEN: int64 rows, demand, iterations, threads, with parameters or not, which given arrays there are (bits, in the order
+ * Of rows, GIVEN: int64 rows, demand, iterations, threads, with parameters or not, which given arrays there are (bits, in the order
  * of mechkin_rows) and which found ones are asked for (likewise, after those that always are); then doubles: tight, coarse,
- * accept, size, the parameters, the given arrays. FOUND: the constants, then the found arrays in their order. */
+ * accept, size, the parameters, the given arrays. FOUND: the constants, then the found arrays in their order.
+ *
+ * Of a response, GIVEN: the parameters. FOUND: int64 end, rows, reached, moments, stop; then doubles: time, energy, and the
+ * found arrays in their order. */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,10 +23,11 @@ static void check(const char* what, mechkin_status status, const mechkin_message
   if (status != MECHKIN_OK) stop(what, message->text);
 }
 
+/* Filled with a byte that no run writes into every place: what is left unwritten shows. */
 static void* allocate(size_t size) {
   void* memory = malloc(size ? size : 1);
   if (!memory) stop("memory", "none");
-  return memory;
+  return memset(memory, 0xa5, size);
 }
 
 static double* numbers(FILE* file, size_t count) {
@@ -45,21 +49,28 @@ static char* whole_text(const char* name, size_t* length) {
   return text;
 }
 
-int main(int count, char** names) {
+static mechkin_plan* plan_of(const char* name) {
+  mechkin_message message;
+  mechkin_plan* plan;
+  size_t length;
+  char* text = whole_text(name, &length);
+  check("plan", mechkin_plan_create(text, length, &plan, &message), &message);
+  free(text);
+  return plan;
+}
+
+/* names: the program, PLAN, GIVEN, FOUND */
+static void run_rows(char** names) {
   enum { ROWS, DEMAND, ITERATIONS, THREADS, VARIED, GIVEN, FOUND, HEAD };
   int64_t head[HEAD];
   mechkin_message message;
   mechkin_plan* plan;
   mechkin_sizes sizes;
   mechkin_rows rows;
-  size_t length, k;
-  char* text;
+  size_t k;
   double* tests;
   FILE *given, *found;
-  if (count != 4) stop(names[0], "PLAN GIVEN FOUND");
-  text = whole_text(names[1], &length);
-  check("plan", mechkin_plan_create(text, length, &plan, &message), &message);
-  free(text);
+  plan = plan_of(names[1]);
   sizes = mechkin_plan_sizes(plan);
 
   given = fopen(names[2], "rb");
@@ -106,5 +117,52 @@ int main(int count, char** names) {
     if (fclose(found)) stop(names[3], "cannot be written");
   }
   mechkin_plan_free(plan);
+}
+
+/* names: the program, START, MOTION, GIVEN, FOUND */
+static void run_response(char** names) {
+  mechkin_plan *start = plan_of(names[1]), *motion = plan_of(names[2]);
+  const mechkin_sizes sizes = mechkin_plan_sizes(motion);
+  const size_t rows = sizes.variant_rows;
+  mechkin_response response;
+  mechkin_message message;
+  FILE *given = fopen(names[3], "rb"), *found;
+  double* parameters;
+  if (!given) stop(names[3], "not there");
+  parameters = numbers(given, sizes.parameters);
+  memset(&response, 0, sizeof response);
+  response.values = allocate(sizes.values * rows * sizeof(double));
+  response.residual = allocate(rows * sizeof(double));
+  response.condition = allocate(rows * sizeof(double));
+  response.power_error = allocate(rows * sizeof(double));
+  response.work = allocate(2 * rows * sizeof(double));
+  check("response", mechkin_run_response(start, motion, parameters, &response, &message), &message);
+
+  found = fopen(names[4], "wb");
+  if (!found) stop(names[4], "cannot be written");
+  {
+    const int64_t told[] = {(int64_t)response.end, (int64_t)response.rows, (int64_t)response.reached,
+                            (int64_t)response.moments, (int64_t)response.stop};
+    fwrite(told, sizeof *told, sizeof told / sizeof *told, found);
+  }
+  fwrite(&response.time, sizeof(double), 1, found);
+  fwrite(&response.energy, sizeof(double), 1, found);
+  fwrite(response.values, sizeof(double), sizes.values * rows, found);
+  fwrite(response.residual, sizeof(double), rows, found);
+  fwrite(response.condition, sizeof(double), rows, found);
+  fwrite(response.power_error, sizeof(double), rows, found);
+  fwrite(response.work, sizeof(double), 2 * rows, found);
+  if (fclose(found)) stop(names[4], "cannot be written");
+  mechkin_plan_free(start);
+  mechkin_plan_free(motion);
+}
+
+int main(int count, char** names) {
+  if (count == 4)
+    run_rows(names);
+  else if (count == 5)
+    run_response(names);
+  else
+    stop(names[0], "PLAN GIVEN FOUND, or START MOTION GIVEN FOUND");
   return 0;
 }
