@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from kernel.compiler import SOURCES, compile_with
+from live.slider_crank import rubbing_slider_crank, slider_crank, stiff_slider_crank
 from references import FILE_OF
 
-from mechkin_cli import Model, load
+from mechkin_cli import Model, load, loads
 from mechkin_cli.live.response import ResponseRecording
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.plan import plan_records
@@ -161,6 +162,21 @@ def caught(monkeypatch: pytest.MonkeyPatch, stem: str) -> list[Caught]:
     analysis = load(FILE_OF[stem]).analyze()
     assert analysis.tables
     return runs
+
+
+def moving(name: str) -> tuple[Model, str]:
+    """A model and its response, by a name of `RESPONSES`."""
+    if name == "rcsr_response":
+        return load(FILE_OF[name]), "response"
+    others = {"rubbing": rubbing_slider_crank, "stiff": stiff_slider_crank}
+    if name in others:
+        return loads(others[name]()), "swing"
+    return loads(slider_crank(name)), name
+
+
+RESPONSES = ("rcsr_response", "swing", "until", "off", "rubbing", "stiff")
+"""To the last row, up to a stop, from a start that moves; with friction, and by the implicit
+method."""
 
 
 class Recorded(NamedTuple):

@@ -20,12 +20,14 @@ from kernel.c_programs import (
     CMAKE,
     HEADERS,
     PROGRAM,
+    RESPONSES,
     STRICT,
     Built,
     Recorded,
     built_alone,
     calls_of,
     caught,
+    moving,
     of_core,
     outputs_of,
     picked,
@@ -33,14 +35,13 @@ from kernel.c_programs import (
     wanted_bytes,
 )
 from kernel.compiler import COMPILER, built_core
-from live.slider_crank import slider_crank
 from references import FILE_OF
 
-from mechkin_cli import load, loads
+from mechkin_cli import load
 from mechkin_cli.kernel.plan_text import plan_text
 from mechkin_cli.plan.outputs import OutputPlan
 from mechkin_cli.plan.records import flatten
-from mechkin_cli.session.kernel_run import run
+from mechkin_cli.session.kernel_run import run as run_kernel
 from mechkin_cli.tape.recorder import register
 from mechkin_cli.tape.tape import Verdict
 from mechkin_cli.variants.design import Base
@@ -122,7 +123,7 @@ def test_a_tape_gives_the_rows_of_other_parameters(
         plan = variation.plan(values, size)
         outputs = variation.reading(ask.readout.wanted).outputs(values)
         readout = ask.readout._replace(outputs=outputs)
-        like = run(plan, rows, ask._replace(readout=readout))
+        like = run_kernel(plan, rows, ask._replace(readout=readout))
         found = run_by_c(built, tmp_path, text, rows, ask, size, like, values)
         verdicts.append(int(variation.verdicts(values[:, None])[0]))
         if verdicts[-1] == Verdict.OTHER_WAY:
@@ -132,10 +133,13 @@ def test_a_tape_gives_the_rows_of_other_parameters(
     assert verdicts == [0, 0, 0, last]
 
 
-@pytest.mark.parametrize("run", ["swing", "until", "off", "response"])
-def test_a_response_has_the_bits_that_python_gives(built: Built, run: str, tmp_path: Path) -> None:
-    """To its last row or up to a stop, with the file's parameters and with others."""
-    model = load(FILE_OF["rcsr_response"]) if run == "response" else loads(slider_crank(run))
+@pytest.mark.parametrize("name", RESPONSES)
+def test_a_response_has_the_bits_that_python_gives(built: Built, name: str, tmp_path: Path) -> None:
+    """With the file's parameters and with others."""
+    model, run = moving(name)
+    report = model.respond(run).result.report
+    assert report is not None
+    assert report.stiff == (name == "stiff")
     recorded = Recorded.of(model, run)
     assert len(recorded.names) > 5
     recorded.compare(built, tmp_path, model, run)

@@ -55,3 +55,23 @@ def slider_crank(run: str) -> str:
     """The file with a table of one of its responses."""
     effort = "A.effort" if run == "off" else "A.theta_ddot"
     return SLIDER.replace("RUN", run).replace("EFFORT", effort)
+
+
+FRICTION = """\
+  - {type: friction, joint: A, coefficient: 0.1, radius: 5 mm}
+  - {type: friction, joint: D, coefficient: 0.2}
+"""
+STIFF_DAMPER = """\
+  - {type: damper, joint: D, coordinate: s, damping: 1e7 N*s/m}
+"""
+
+
+def rubbing_slider_crank() -> str:
+    """With friction, and a C for an R: nothing is held twice, so the reactions are unique."""
+    text = slider_crank("swing").replace("B: {type: R", "B: {type: C")
+    return text.replace("loads:\n", f"loads:\n{FRICTION}", 1)
+
+
+def stiff_slider_crank() -> str:
+    """With a damper so strong that only an implicit method takes long steps."""
+    return slider_crank("swing").replace("loads:\n", f"loads:\n{STIFF_DAMPER}", 1)

@@ -19,7 +19,6 @@ import stat
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -30,20 +29,21 @@ from kernel.c_programs import (
     ALONE,
     HEADERS,
     PROGRAM,
+    RESPONSES,
     STRICT,
     Built,
     Recorded,
     calls_of,
     caught,
+    moving,
     outputs_of,
     run_by_c,
     wanted_bytes,
 )
 from kernel.compiler import SOURCES
-from live.slider_crank import slider_crank
 from platforms.digests import MECHANISMS, stems
 
-from mechkin_cli import Model, load, loads
+from mechkin_cli import load
 from mechkin_cli.kernel.plan_text import plan_text
 from mechkin_cli.verdict import SWEEP
 
@@ -103,20 +103,14 @@ def compared(there: Built, stem: str, folder: Path) -> int:
     return len(runs)
 
 
-def responses() -> Iterator[tuple[str, Model, str]]:
-    """Names, models and their responses: to the last row, up to a stop, from a start that moves."""
-    yield "rcsr_response", load(MECHANISMS / "dissertation" / "rcsr_response.yaml"), "response"
-    for run in ("swing", "until", "off"):
-        yield run, loads(slider_crank(run)), run
-
-
 def compared_responses(there: Built, folder: Path) -> tuple[int, int]:
     """How many responses have the same bits there, with the file's parameters and with others, and
     how many there are."""
     same = total = 0
-    for name, model, run in responses():
+    for name in RESPONSES:
+        model, run = moving(name)
         recorded = Recorded.of(model, run)
-        for spread in (0.0, 0.01, 0.02):
+        for spread in (0.0, 0.005, 0.01):
             total += 1
             varied = recorded.varied(model, spread) if spread else model
             try:
