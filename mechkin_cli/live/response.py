@@ -36,6 +36,7 @@ from mechkin_cli.verdict import CLEAR_CONDITION
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.mechanism import JointLoad, Wanted
+    from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tables import ColumnLayout
 
     Plain = dict[str, Any]
@@ -128,6 +129,16 @@ class ResponseRecording(Recording):
 
     # Tables.
 
+    @property
+    def _rows_name(self) -> str:
+        """The table of verdicts."""
+        return f"{self.analysis.run}.rows"
+
+    @property
+    def _first_graph(self) -> SolverGraph:
+        """The structure in which the first assembly is found."""
+        return self.start.base.graph
+
     def _column_record(self, table: str, layout: ColumnLayout) -> Plain | None:
         record = super()._column_record(table, layout)
         first = self._starts.get(layout.expression.text.strip())
@@ -200,7 +211,7 @@ class ResponseRecording(Recording):
                 "factor": factor_of(self.problem.units.conversion(TIME)),
                 "energies": [reading.slots[name].start for name in ENERGIES],
                 "rounding": float(tolerances.ENERGY_ROUNDING),
-                "table": f"{self.analysis.run}.rows",
+                "table": self._rows_name,
             },
             "sizes": self._sizes(),
         }

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from references import FILE_OF, SWEPT
 from view.browser import Browser
+from view.test_live_page import eventually
 from view.watching import SINGLE
 
 import mechkin_cli as mk
@@ -116,7 +117,36 @@ def test_another_mode_follows_when_it_is_shown(browser: Browser, tmp_path: Path)
         state.branch.values.some((each, k) => each !== state.original.values[k]),
         document.querySelector('#dimensions .remark').textContent];
     }})()""")
-    assert shown == [["a", "b", "c", "d"], False, True, True, ""]
+    remark = (
+        "Assembly modes are called by their letters in the file; with the changed dimensions they "
+        "may have others."
+    )
+    assert shown == [["a", "b", "c", "d"], False, True, True, remark]
+
+
+def test_an_empty_column_says_why(browser: Browser, tmp_path: Path) -> None:
+    browser.open(mk.load(FILE_OF["planar_four_bar"]).view(tmp_path / "page.html", modes=False))
+    browser.click("#tab-tables")
+    tables = browser.evaluate("window.mechkin.state.tables.map(({ name }) => name)")
+    browser.evaluate(f"""(() => {{
+      const choice = document.querySelector('#tables select');
+      choice.selectedIndex = {tables.index("rows")};
+      choice.dispatchEvent(new Event('change'));
+    }})()""")
+    cells = """[...document.querySelectorAll('#tables th, #tables tr[data-at="0"] td')]
+      .filter((_, k, all) => k % (all.length / 2) === 2)
+      .map((cell) => [cell.textContent, cell.title])"""
+    eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
+    browser.evaluate("window.mechkin.dimensions.set('a', 41)")
+    why = (
+        "empty with changed dimensions: only a search of all assembly modes tells the letter of one"
+    )
+    eventually(lambda: browser.evaluate(cells), [["mode", why], ["", why]])
+    listed = "document.querySelector('#dimensions details:last-of-type').textContent"
+    assert "mode of rows" in browser.evaluate(listed)
+    assert "mechkin analyze planar_four_bar.yaml --set a=41" in browser.evaluate(listed)
+    browser.evaluate("window.mechkin.dimensions.reset('a')")
+    eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
 
 
 LEVER = """

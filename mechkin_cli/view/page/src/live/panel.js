@@ -70,6 +70,8 @@ export class DimensionPanel {
       text = runs
         ? "This run is shown with the file's dimensions: it does not follow the changed ones."
         : "This assembly mode is shown with the file's dimensions: it cannot be followed to the changed ones.";
+    } else if (changed && state.branches().length > 1) {
+      text = "Assembly modes are called by their letters in the file; with the changed dimensions they may have others.";
     }
     this.modes.textContent = text;
   }
