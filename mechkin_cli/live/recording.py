@@ -364,9 +364,11 @@ class Recording:
             "loops": bool(self.variation.base.graph.blocks),
         }
 
-    def is_left(self) -> bool:
-        """Whether the page leaves the whole run to the command."""
-        return self.problem.mechanism.has_arcs or not self._is_base()
+    def why_left(self) -> str | None:
+        """Why the page leaves the whole run to the command; None where it does not."""
+        if self.problem.mechanism.has_arcs:
+            return "whether cables stay on their pulleys is judged beside the run"
+        return None if self._is_base() else "its rows are not those of the file's own assembly"
 
     def _plan(self, demand: Demand) -> Plain:
         """The text of the plan, and what it ends with for the other modes that are shown."""
@@ -409,11 +411,16 @@ class Recording:
         ]
         return {"rates": rates, "kinds": kinds}
 
-    def record(self) -> Plain | None:
-        """The record, without what is said of parameters and file."""
+    def record(self) -> Plain:
+        """The record, without what is said of parameters and file.
+
+        Raises:
+            LeftOut: the page leaves the whole run to the command.
+        """
         problem, variation = self.problem, self.variation
-        if self.is_left():
-            return None
+        why = self.why_left()
+        if why is not None:
+            raise LeftOut(why)
         self._needs()
         # arrows ask for forces that the command does not compute: no power error is told by them
         asked = demand_of(problem.mechanism, self.wanted.values()) | self.beside
@@ -433,11 +440,11 @@ class Recording:
         self.reading = variation.reading(self.wanted.values())
         width = sum(slot.stop - slot.start for slot in self.reading.slots.values())
         if width * problem.motion.rows > MOST_LIVE_NUMBERS:
-            return None
+            raise LeftOut("it has more numbers than a page computes at every change")
         plan = self._plan(demand)
         tables = self._table_records()
         if not any(column for table in tables for column in table["columns"]):
-            return None
+            raise LeftOut("a page computes none of the columns of its tables")
         verdict = self._verdict() | {"power": has_power}
         arrow_records = arrows()
         pose_data = poses()

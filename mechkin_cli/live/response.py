@@ -67,13 +67,17 @@ class ResponseRecording(Recording):
         super().__init__(analysis, data, SessionVariation(free, first, start.recorder, recorded))
         self.known = {**self.known, **response_quantities()}
 
-    def is_left(self) -> bool:
-        """Whether the page leaves the whole response to the command."""
+    def why_left(self) -> str | None:
+        """As of a sweep."""
         limits = (stop.limit for stop in self.response.stops if isinstance(stop, CrossingEnd))
-        rebounds = any(limit and limit.restitution is not None for limit in limits)
+        if any(limit and limit.restitution is not None for limit in limits):
+            return "something in it rebounds, by a restitution"
         rates = {(one.joint, one.coordinate) for one in self.response.start if one.rate is not None}
-        others = rates - set(self.response.independent)
-        return rebounds or bool(others or bends(self.problem) or super().is_left())
+        if rates - set(self.response.independent):
+            return "its start gives the rate of a coordinate that follows from others"
+        if bends(self.problem):
+            return "functions in it have corners, where their slopes jump"
+        return super().why_left()
 
     # What columns read.
 
