@@ -101,6 +101,7 @@ class ResponseRecording(Recording):
 
     def _needs(self) -> None:
         self.need(ENERGIES)  # which every response is judged by
+        self.need(list(self._rates_of_start()))
         super()._needs()
 
     def _given_efforts(self, name: str) -> list[JointLoad]:
@@ -163,14 +164,19 @@ class ResponseRecording(Recording):
                     found[name] = {"si": self.number(number), "factor": factor}
         return found
 
+    def _rates_of_start(self) -> Iterator[str]:
+        """Those by which tables measure rounding."""
+        for name in self._starts:
+            if size_of_rate(self.known[name].dimension, self.analysis.result) is not None:
+                yield name
+
     def _rates(self) -> Iterator[tuple[str, Plain]]:
         """Those of the start's coordinates."""
-        for name, first in self._starts.items():
-            dimension = self.known[name].dimension
-            if size_of_rate(dimension, self.analysis.result) is not None:
-                self.need([name])
-                value = self.problem.units.from_si(scalar_of(self.resolve(name)), dimension)
-                yield name, {"cell": self.cell(value), "first": first}
+        for name in self._rates_of_start():
+            value = self.problem.units.from_si(
+                scalar_of(self.resolve(name)), self.known[name].dimension
+            )
+            yield name, {"cell": self.cell(value), "first": self._starts[name]}
 
     # The record.
 

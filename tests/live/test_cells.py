@@ -129,13 +129,16 @@ def test_responses_are_those_of_the_command(run: str) -> None:
     assert checked_run(run, loads(text), run, spread=0.1) > 10
 
 
-def checked_run(stem: str, model: Model, run: str, spread: float = 0.01) -> int:
+def checked_run(
+    stem: str, model: Model, run: str, spread: float = 0.01, variants: int = RANDOM or 1
+) -> int:
     """Compares the file's own run and random variants; how many columns there were."""
 
     def ran(of: Model) -> Any:
         return of.analyze() if run == SWEEP else of.respond(run)
 
     analysis = ran(model)
+    own_verdicts = verdict_texts(analysis)
     data, _ = page_data([analysis], modes=False)
     live = data.get("live")
     if live is None:
@@ -145,14 +148,16 @@ def checked_run(stem: str, model: Model, run: str, spread: float = 0.01) -> int:
     random, checked = np.random.default_rng(0), 0
     own = {one["name"]: one["value"] for one in live["parameters"]}
     cases: list[dict[str, float]] = [{}]
-    for _ in range(RANDOM or 1):
+    for _ in range(variants):
         factors = 1.0 + spread * random.standard_normal(len(own))
         cases.append(dict(zip(own, factors * list(own.values()), strict=True)))
     for case, found in zip(cases, computed(data, cases), strict=True):
         if found["end"] != "complete" and not (live["ends_early"] and found["tables"]):
             assert case, f"{stem}: {found['words']}"
             continue
-        checked += compared(stem, live, found, ran(with_values(model, case)) if case else analysis)
+        wanted = ran(with_values(model, case)) if case else analysis
+        verdicts = verdict_texts(wanted) if case else own_verdicts
+        checked += compared(stem, live, found, wanted, verdicts)
     return checked
 
 
@@ -167,7 +172,23 @@ def with_values(model: Model, values: dict[str, float]) -> Any:
     return model.of(lifted.design).with_parameters(given)
 
 
-def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any) -> int:
+def verdict_texts(analysis: Any) -> dict[str, list[str]]:
+    """The table of rows and verdicts as the command writes it, by column. It is to be read before
+    a page is made of the run, whose arrows may read forces that no table has."""
+    for table in analysis.tables:
+        assert table.listing
+    table = rows_table(analysis.result, analysis.run)
+    labels = [one.label for one in table.columns]
+    return dict(zip(labels, map(list, zip(*table.listing.rows, strict=True)), strict=True))
+
+
+def compared(
+    stem: str,
+    live: dict[str, Any],
+    found: dict[str, Any],
+    wanted: Any,
+    verdicts: dict[str, list[str]] | None = None,
+) -> int:
     """Compares all cells that the page computes; how many columns there were."""
     texts = {table["name"]: table["rows"] for table in found["tables"]}
     values = {(one["table"], one["label"]): one for one in found["columns"]}
@@ -187,13 +208,15 @@ def compared(stem: str, live: dict[str, Any], found: dict[str, Any], wanted: Any
                 # what the page leaves out has a part in it
                 assert one["rounding"] == own.rounding or None in record["columns"], where
             checked += 1
-    verdicts = rows_table(wanted.result, wanted.run)
-    left = {one["label"] for one in live["left"] if one["table"] == verdicts.name}
+    name = rows_table(wanted.result, wanted.run).name
+    left = {one["label"] for one in live["left"] if one["table"] == name}
     assert left <= {"mode", "proof"}
-    for at, one in enumerate(verdicts.columns):
-        theirs = [row[at] for row in verdicts.listing.rows]
-        mine = [row[at] for row in texts[verdicts.name]]
-        assert mine == ([""] * len(theirs) if one.label in left else theirs), f"{stem}: {one.label}"
+    columns = zip(*texts[name], strict=True)
+    for mine, (label, theirs) in zip(
+        columns, (verdicts or verdict_texts(wanted)).items(), strict=True
+    ):
+        wanted_texts = [""] * len(theirs) if label in left else theirs
+        assert list(mine) == wanted_texts, f"{stem}: {label}"
     return checked
 
 
