@@ -49,7 +49,7 @@ def edit_parameters(
         text: of the file, with its byte order mark if it has one.
         built: the same file, checked.
         values: by name, in the file's units; those that the file has already change nothing. The
-            numbers of a file without parameters have the names of `file_numbers`.
+            numbers that are no parameters have the names of `file_numbers`.
         replace: those whose expressions are replaced by numbers; others are left alone.
 
     Raises:

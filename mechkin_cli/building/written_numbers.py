@@ -40,11 +40,9 @@ class FileNumber(NamedTuple):
 
 
 def file_numbers(document: Document) -> Iterator[FileNumber]:
-    """The numbers of a file without parameters that are written without unit or expression:
-    places of joints and points, masses, and what springs between points are."""
+    """The numbers of a file that are written without unit or expression: places of joints and
+    points, masses, and what springs between points are."""
     data: Any = document.data
-    if data.get("parameters"):
-        return
     spans = value_spans(document.text)
     for path, dimension in _paths(data):
         text = spans[path].text if path in spans else ""

@@ -1,4 +1,4 @@
-"""A file without parameters, built once more with some of its numbers as parameters.
+"""A file, built once more with some of its numbers as parameters.
 
 What they lead to can then be recorded as that of any parameter.
 """
@@ -25,8 +25,8 @@ class WithNumbers(NamedTuple):
 
 
 def with_numbers(design: Design, most: int) -> WithNumbers | None:
-    """The design of a file without parameters, with at most so many numbers of it as parameters;
-    None where it has none."""
+    """The design of a file, with at most so many numbers of it as parameters beside its own; None
+    where it has none."""
     built = design.built
     document, units = built.document, built.problem.units
     found = list(islice(file_numbers(document), most))
@@ -49,7 +49,11 @@ def with_numbers(design: Design, most: int) -> WithNumbers | None:
     tables = document.tables
     try:
         source = open_data(
-            {**data, "parameters": parameters}, document.file, {}, document.folder, tables
+            {**data, "parameters": {**data.get("parameters", {}), **parameters}},
+            document.file,
+            {},
+            document.folder,
+            tables,
         )
         return WithNumbers(Design(build(*source, {}, built.problem.stopped), design.stem), numbers)
     except InvalidFile:

@@ -43,32 +43,66 @@ NUMBERS = "Points, masses and springs"
 """What the numbers of a file without parameters are called."""
 
 
-def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
-    """What the page of a run computes by itself; None where it can compute nothing.
+def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain:
+    """What the page of a run computes by itself; where it can compute nothing, `why`, with the
+    command that does.
 
     Args:
         analysis: the sweep, or the response, in the file's own mode, whose page it is.
         data: of the page without this record.
     """
+    try:
+        return _record(analysis, data)
+    except (LeftOut, TraceLost) as lost:
+        why = str(lost)
+    except (TypeError, ValueError):  # numpy refuses recorded numbers in words of its own
+        why = "what follows from its numbers cannot be recorded"
+    named = bool(analysis.model.design.problem.parameters)
+    return {
+        "run": analysis.run,
+        "why": why,
+        "named": named,
+        "command": _command(data, "NAME=VALUE"),
+    }
+
+
+def _command(data: Mapping[str, Any], setting: str) -> str:
+    return f"mechkin analyze {data['file']} --set {setting}"
+
+
+def _record(analysis: Analysis, data: Mapping[str, Any]) -> Plain:
+    """The record.
+
+    Raises:
+        LeftOut, TraceLost, TypeError, ValueError: there is none, and why.
+    """
     design = analysis.model.design
     solved = analysis.result.solved
-    if isinstance(design, VariedDesign) or not (
-        solved.any() if analysis.run == SWEEP else solved.all()
-    ):
-        return None
-    numbers = with_numbers(design, MOST_PARAMETERS)
-    varied, fixed = _variation(design if numbers is None else numbers.design, analysis.run)
-    if varied is not None and numbers is not None:
-        varied = _changeable(_varied_by(numbers.design, analysis.run), varied)
+    if isinstance(design, VariedDesign):
+        raise LeftOut("it is shown with other values of parameters than the file has")
+    if not (solved.any() if analysis.run == SWEEP else solved.all()):
+        raise LeftOut(
+            "no row has a solution" if analysis.run == SWEEP else "it ends before its last row"
+        )
+    lost = _why_fixed(design.problem, analysis.run)
+    if lost is not None:
+        raise LeftOut(lost)
+    numbers = None
+    varied, fixed = _variation(design, analysis.run, list(design.problem.parameters))
     if varied is None:
-        return None
+        # of a file without parameters, or with such alone as how many rows there are
+        numbers = with_numbers(design, MOST_PARAMETERS)
+        if numbers is None:
+            raise LeftOut(
+                "the file has nothing to change but what it is computed in another way by"
+            )
+        varied, _ = _variation(numbers.design, analysis.run, list(numbers.numbers))
+        if varied is not None:
+            varied = _changeable(_varied_by(numbers.design, analysis.run), varied)
+    if varied is None:
+        raise LeftOut("with any one of its numbers changed the file is computed in another way")
     names = list(varied.recorder.inputs)
-    try:
-        record = recording_of(analysis, data, varied).record()
-    except (LeftOut, TraceLost, ValueError, TypeError):
-        return None
-    if record is None:
-        return None
+    record = recording_of(analysis, data, varied).record()
     file = analysis.model.built.document
     if numbers is None:
         paths: dict[str, KeyPath] = {name: ("parameters", name) for name in names}
@@ -80,18 +114,13 @@ def live_record(analysis: Analysis, data: Mapping[str, Any]) -> Plain | None:
         parameters = [
             _file_number(numbers.design.problem, name, one, reach) for name, one in chosen.items()
         ]
-        fixed = {}
         record["left"] = [one | {"command": None} for one in record["left"]]
     return {
         "run": analysis.run,
         "parameters": parameters,
         "folded": None if numbers is None else NUMBERS,
         "fixed": [
-            {
-                "name": name,
-                "why": why,
-                "command": f"mechkin analyze {data['file']} --set {name}=...",
-            }
+            {"name": name, "why": why, "command": _command(data, f"{name}=...")}
             for name, why in fixed.items()
         ],
         **record,
@@ -172,12 +201,27 @@ def _varied_by(design: Design, run: str) -> Varied:
     return lambda names: base.response_variation(names, run)
 
 
-def _variation(design: Design, run: str) -> tuple[SessionVariation | None, dict[str, str]]:
-    """How a run depends on all parameters that a recording holds, and why others are fixed."""
-    problem, fixed = design.problem, {}
+def _why_fixed(problem: Problem, run: str) -> str | None:
+    """Why no number of a run may change in a page; None where some may."""
+    if run == SWEEP:
+        if problem.follow is not None:
+            return "the file leaves loops out, and which ones depends on what is asked for"
+        return None
+    response = problem.responses[run]
+    if response.driven:
+        return "laws of time drive coordinates in it"
+    return "coordinates are held in it" if response.held else None
+
+
+def _variation(
+    design: Design, run: str, names: Sequence[str]
+) -> tuple[SessionVariation | None, dict[str, str]]:
+    """How a run depends on all of some parameters that a recording holds, and why others are
+    fixed."""
+    fixed = {}
     document = design.built.document
     free: list[str] = []
-    for name in problem.parameters:
+    for name in names:
         try:
             expression = parse(str(document.data["parameters"][name]))  # type: ignore[index, call-overload]
         except (ExpressionError, KeyError, TypeError):

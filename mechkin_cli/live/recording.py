@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.assembly import HOME, NEAR
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName
 from mechkin_cli.kernel.plan_text import record_lines, tape_text
 from mechkin_cli.live.cells import MEASURES, CellRecorder, scalar_of
@@ -25,14 +26,24 @@ from mechkin_cli.mechanism import (
     read_for,
 )
 from mechkin_cli.plan import REACTION_KINDS, Demand, demand_of
+from mechkin_cli.search import has_one_assembly
 from mechkin_cli.session import input_rest
 from mechkin_cli.sweep import first_assembly, has_turns, limited, slack_quantities
-from mechkin_cli.tables import ROW_EVENT, ROW_TEXTS, Words, row_texts, size_kinds, size_of_rate
+from mechkin_cli.tables import (
+    ROW_EVENT,
+    ROW_PROOF,
+    ROW_TEXTS,
+    Words,
+    row_texts,
+    size_kinds,
+    size_of_rate,
+)
 from mechkin_cli.tape import Recorded, TraceLost, is_traced, tape_values
 from mechkin_cli.units import LENGTH
 from mechkin_cli.verdict import (
     CLEAR_CONDITION,
     CONDITION_LIMITS,
+    SWEEP,
     Status,
     has_forces,
 )
@@ -42,6 +53,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.mechanism import Problem, Wanted
     from mechkin_cli.show import Floats
+    from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tables import ColumnLayout, Columns
     from mechkin_cli.units import Conversion
     from mechkin_cli.variants import SessionVariation
@@ -62,6 +74,12 @@ def factor_of(conversion: Conversion) -> list[float]:
 
 NOT_UNIQUE = "redundant constraints may leave it open"
 """Why a reaction is not computed in a page; the powers of its row are, as the command has them."""
+
+IN_INTERVALS = "it is proven in intervals"
+
+ANY_LETTER = "only a search of all assembly modes tells the letter of one"
+"""Why the letter of the mode is not written beside changed dimensions: others may come or go, or
+change places with it."""
 
 
 class LeftOut(Exception):
@@ -135,7 +153,7 @@ class Recording:
         if wanted.kind in DERIVED_KINDS and wanted.kind not in BEARING_KINDS:
             return "it is found by more than one run"
         if wanted.kind == "error_bound":
-            return "it is proven in intervals"
+            return IN_INTERVALS
         if session.is_redundant and wanted.kind in REACTION_KINDS:
             return NOT_UNIQUE
         frictions = problem.mechanism.frictions
@@ -217,6 +235,23 @@ class Recording:
 
     # Tables.
 
+    @property
+    def _rows_name(self) -> str:
+        """The table of verdicts."""
+        return "rows"
+
+    @cached_property
+    def _keeps_letter(self) -> bool:
+        """Whether there is one assembly whatever the dimensions, and the file's run has its
+        letter."""
+        named = self.analysis.result.mode not in (HOME, NEAR)
+        return named and has_one_assembly(self._first_graph)
+
+    @property
+    def _first_graph(self) -> SolverGraph:
+        """The structure in which the first assembly is found."""
+        return self.variation.base.graph
+
     def _columns(self) -> Iterator[tuple[Columns, ColumnLayout, int]]:
         for table, layout in zip(self.analysis.tables, self.analysis.layouts, strict=True):
             for at, column in enumerate(layout.columns):
@@ -226,8 +261,17 @@ class Recording:
         self.left.append({"table": table, "label": layout.label, "why": why})
 
     def _needs(self) -> None:
+        words = {} if self._keeps_letter else {"row.mode": ANY_LETTER}
+        if self.analysis.run == SWEEP and self.analysis.result.is_certified:
+            words[ROW_PROOF] = IN_INTERVALS
+        for name, why in words.items():
+            label = name.removeprefix("row.")
+            self.left.append({"table": self._rows_name, "label": label, "why": why})
         for table, layout, _ in self._columns():
-            if layout.expression.text.strip() in row_texts(self.analysis.run):
+            text = layout.expression.text.strip()
+            if text in words:
+                self._leave(table.name, layout, words[text])
+            if text in row_texts(self.analysis.run):
                 continue
             try:
                 self.need(self.read_by(layout))
@@ -320,9 +364,11 @@ class Recording:
             "loops": bool(self.variation.base.graph.blocks),
         }
 
-    def is_left(self) -> bool:
-        """Whether the page leaves the whole run to the command."""
-        return self.problem.mechanism.has_arcs or not self._is_base()
+    def why_left(self) -> str | None:
+        """Why the page leaves the whole run to the command; None where it does not."""
+        if self.problem.mechanism.has_arcs:
+            return "whether cables stay on their pulleys is judged beside the run"
+        return None if self._is_base() else "its rows are not those of the file's own assembly"
 
     def _plan(self, demand: Demand) -> Plain:
         """The text of the plan, and what it ends with for the other modes that are shown."""
@@ -365,11 +411,16 @@ class Recording:
         ]
         return {"rates": rates, "kinds": kinds}
 
-    def record(self) -> Plain | None:
-        """The record, without what is said of parameters and file."""
+    def record(self) -> Plain:
+        """The record, without what is said of parameters and file.
+
+        Raises:
+            LeftOut: the page leaves the whole run to the command.
+        """
         problem, variation = self.problem, self.variation
-        if self.is_left():
-            return None
+        why = self.why_left()
+        if why is not None:
+            raise LeftOut(why)
         self._needs()
         # arrows ask for forces that the command does not compute: no power error is told by them
         asked = demand_of(problem.mechanism, self.wanted.values()) | self.beside
@@ -389,11 +440,11 @@ class Recording:
         self.reading = variation.reading(self.wanted.values())
         width = sum(slot.stop - slot.start for slot in self.reading.slots.values())
         if width * problem.motion.rows > MOST_LIVE_NUMBERS:
-            return None
+            raise LeftOut("it has more numbers than a page computes at every change")
         plan = self._plan(demand)
         tables = self._table_records()
         if not any(column for table in tables for column in table["columns"]):
-            return None
+            raise LeftOut("a page computes none of the columns of its tables")
         verdict = self._verdict() | {"power": has_power}
         arrow_records = arrows()
         pose_data = poses()

@@ -36,6 +36,7 @@ from mechkin_cli.verdict import CLEAR_CONDITION
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
     from mechkin_cli.mechanism import JointLoad, Wanted
+    from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tables import ColumnLayout
 
     Plain = dict[str, Any]
@@ -66,13 +67,17 @@ class ResponseRecording(Recording):
         super().__init__(analysis, data, SessionVariation(free, first, start.recorder, recorded))
         self.known = {**self.known, **response_quantities()}
 
-    def is_left(self) -> bool:
-        """Whether the page leaves the whole response to the command."""
+    def why_left(self) -> str | None:
+        """As of a sweep."""
         limits = (stop.limit for stop in self.response.stops if isinstance(stop, CrossingEnd))
-        rebounds = any(limit and limit.restitution is not None for limit in limits)
+        if any(limit and limit.restitution is not None for limit in limits):
+            return "something in it rebounds, by a restitution"
         rates = {(one.joint, one.coordinate) for one in self.response.start if one.rate is not None}
-        others = rates - set(self.response.independent)
-        return rebounds or bool(others or bends(self.problem) or super().is_left())
+        if rates - set(self.response.independent):
+            return "its start gives the rate of a coordinate that follows from others"
+        if bends(self.problem):
+            return "functions in it have corners, where their slopes jump"
+        return super().why_left()
 
     # What columns read.
 
@@ -96,6 +101,7 @@ class ResponseRecording(Recording):
 
     def _needs(self) -> None:
         self.need(ENERGIES)  # which every response is judged by
+        self.need(list(self._rates_of_start()))
         super()._needs()
 
     def _given_efforts(self, name: str) -> list[JointLoad]:
@@ -128,6 +134,16 @@ class ResponseRecording(Recording):
 
     # Tables.
 
+    @property
+    def _rows_name(self) -> str:
+        """The table of verdicts."""
+        return f"{self.analysis.run}.rows"
+
+    @property
+    def _first_graph(self) -> SolverGraph:
+        """The structure in which the first assembly is found."""
+        return self.start.base.graph
+
     def _column_record(self, table: str, layout: ColumnLayout) -> Plain | None:
         record = super()._column_record(table, layout)
         first = self._starts.get(layout.expression.text.strip())
@@ -148,14 +164,19 @@ class ResponseRecording(Recording):
                     found[name] = {"si": self.number(number), "factor": factor}
         return found
 
+    def _rates_of_start(self) -> Iterator[str]:
+        """Those by which tables measure rounding."""
+        for name in self._starts:
+            if size_of_rate(self.known[name].dimension, self.analysis.result) is not None:
+                yield name
+
     def _rates(self) -> Iterator[tuple[str, Plain]]:
         """Those of the start's coordinates."""
-        for name, first in self._starts.items():
-            dimension = self.known[name].dimension
-            if size_of_rate(dimension, self.analysis.result) is not None:
-                self.need([name])
-                value = self.problem.units.from_si(scalar_of(self.resolve(name)), dimension)
-                yield name, {"cell": self.cell(value), "first": first}
+        for name in self._rates_of_start():
+            value = self.problem.units.from_si(
+                scalar_of(self.resolve(name)), self.known[name].dimension
+            )
+            yield name, {"cell": self.cell(value), "first": self._starts[name]}
 
     # The record.
 
@@ -200,7 +221,7 @@ class ResponseRecording(Recording):
                 "factor": factor_of(self.problem.units.conversion(TIME)),
                 "energies": [reading.slots[name].start for name in ENERGIES],
                 "rounding": float(tolerances.ENERGY_ROUNDING),
-                "table": f"{self.analysis.run}.rows",
+                "table": self._rows_name,
             },
             "sizes": self._sizes(),
         }

@@ -416,9 +416,9 @@ class Model(Listed):
         """
         return view.widget_of(self, run, mode, modes)
 
-    def live_record(self, analysis: Any, data: Mapping[str, Any]) -> dict[str, Any] | None:
+    def live_record(self, analysis: Any, data: Mapping[str, Any]) -> dict[str, Any]:
         """What a page of a run computes it from with other parameters, beside the `data` that it
-        shows; None where it cannot: see `mechkin_cli.live`."""
+        shows, or `why` it cannot: see `mechkin_cli.live`."""
         return live.live_record(analysis, data)
 
     # Positions, modes, what can move.

@@ -185,6 +185,12 @@ AT_SIX_DISTANCES = 40
 """Bound of a body that six distances hold."""
 
 
+def has_one_assembly(graph: SolverGraph) -> bool:
+    """Whether the structure alone says that there is one assembly at most at any inputs, whatever
+    the dimensions."""
+    return all(most_of_block(graph, block) == 1 for block in graph.blocks)
+
+
 def most_of_block(graph: SolverGraph, block: Block) -> int | None:
     """The proven bound of a block at fixed inputs and upstream states, None where none is known."""
     coupled = [bool(graph.closings[c].terms) for c in block.closings]

@@ -168,6 +168,7 @@ class BranchScene:
         poses[:, :, :3] = lengths.array(poses[:, :, :3])
         codes = self.analysis.result.status[self.rows]
         posed = self.rows[self.posed]
+        columns = list(self.curves)  # before arrows read forces
         arrows = arrow_records(self.analysis, posed, self.links, lengths) if self.forces else []
         # 0: ok, 1: a position with a reservation, 2: no position
         doubts = [0 if one is Status.ok else 1 if one.has_solution else 2 for one in Status]
@@ -180,14 +181,17 @@ class BranchScene:
             "poses": {"rows": packed("i32", self.posed), "values": packed("f32", poses)},
             "status": {"words": words, "doubts": doubts, "codes": packed("u8", codes)},
             "marks": run_marks(self.analysis, self.axis.name, self.axis.values),
-            "columns": list(self.curves),
+            "columns": columns,
             "arrows": arrows,
         }
 
     @cached_property
     def verdicts(self) -> Columns:
-        """The table of its rows and their verdicts."""
-        return rows_table(self.analysis.result, self.analysis.run)
+        """The table of its rows and their verdicts, as they are now: arrows may read forces, and
+        then there is a power error that the command does not write."""
+        table = rows_table(self.analysis.result, self.analysis.run)
+        rows = np.arange(self.analysis.rows)
+        return replace(table, columns=tuple(column.part(rows) for column in table.columns))
 
     @cached_property
     def curves(self) -> tuple[Plain, ...]:

@@ -309,8 +309,8 @@ class ShownModel(Protocol):
         """All assembly modes at the first row of a run."""
         ...
 
-    def live_record(self, analysis: Any, data: Any) -> dict[str, Any] | None:
-        """What the page of a run computes it from with other parameters; None where it cannot."""
+    def live_record(self, analysis: Any, data: Any) -> dict[str, Any]:
+        """What the page of a run computes it from with other parameters, or `why` it cannot."""
         ...
 
     def analyze(self, *, tables: Sequence[str], mode: str) -> ShownAnalysis:

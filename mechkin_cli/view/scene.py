@@ -413,11 +413,13 @@ def page_data(
     analyses: Sequence[ShownAnalysis], modes: bool = True
 ) -> tuple[Plain, list[Diagnostic]]:
     """The data of the page, and the notes on what it leaves out; `live` is what the page computes
-    its runs with other parameters from: the first of them, which leads, and the `others`."""
+    its runs with other parameters from: the first of them, which leads, and the `others`; `still`
+    are the runs that it cannot compute, and why."""
     scene, notes = view_scene(analyses, modes)
     data = scene.record()
-    asked = (one.model.live_record(one, data) for one in analyses)
-    records = [record for record in asked if record is not None]
+    asked = [one.model.live_record(one, data) for one in analyses]
+    records = [record for record in asked if "why" not in record]
+    data["still"] = [record for record in asked if "why" in record]
     if not records:
         return data, notes
     for other in records[1:]:

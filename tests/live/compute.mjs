@@ -29,7 +29,7 @@ const found = cases.map((values) => {
   runs.sort((a, b) => a - b);
   return {
     run: runs[0], end, words, milliseconds: times.length ? times[0] : milliseconds,
-    tables: (tables ?? []).map(({ name, rows, columns, status }) => ({ name, rows, status, exact: columns.map(({ exact }) => bits(exact) ?? null) })),
+    tables: (tables ?? []).map(({ name, rows, columns, status }) => ({ name, rows, status, why: columns.map(({ why }) => why ?? null), exact: columns.map(({ exact }) => bits(exact) ?? null) })),
     columns: columnsOf(branch), other: columnsOf(other),
     poses: branch ? [...branch.poses.values].map((x) => Number(x)) : [],
     arrows: (branch?.arrows ?? []).map(({ name, place, values }) => ({ name, place, values: bits(values) })),

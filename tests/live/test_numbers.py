@@ -3,17 +3,17 @@ shows, and only these numbers change in its text."""
 
 from __future__ import annotations
 
+import base64
 import difflib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from live.test_cells import NODE, compared, computed
+from live.test_cells import NODE, compared, computed, with_values
 from references import FILE_OF
 
 from mechkin_cli import load, loads
 from mechkin_cli.building import edit_parameters, file_numbers
-from mechkin_cli.live.numbers import with_numbers
 from mechkin_cli.view.scene import page_data
 
 SUSPENSION = FILE_OF["five_link_suspension"]
@@ -28,10 +28,33 @@ def test_places_and_masses_have_names() -> None:
     assert found["links.carrier.mass"].text == "32"
 
 
-def test_a_file_with_parameters_has_none() -> None:
+def test_a_page_offers_numbers_only_where_no_parameter_varies() -> None:
+    """The leg's only parameter says how many rows there are."""
+    data, _ = page_data([load(FILE_OF["walking_leg"]).analyze()], modes=False)
+    names = [one["name"] for one in data["live"]["parameters"]]
+    assert len(names) == 22
+    assert "joints.upper_B.point.x" in names
+    assert [one["name"] for one in data["live"]["fixed"]] == ["step"]
     text = Path(SUSPENSION).read_text(encoding="utf-8")
     named = text.replace("links:\n", "parameters: {m: 32 kg}\nlinks:\n", 1).replace("32\n", "m\n")
-    assert [*file_numbers(loads(named).built.document)] == []
+    data, _ = page_data([loads(named).analyze()], modes=False)
+    assert [one["name"] for one in data["live"]["parameters"]] == ["m"]
+
+
+@pytest.mark.skipif(NODE is None, reason="needs node")
+def test_numbers_beside_parameters_are_those_of_the_edited_file() -> None:
+    model = load(FILE_OF["walking_leg"])
+    text = model.built.document.text
+    assert "-38, -7.8" in text
+    data, _ = page_data([model.analyze()], modes=False)
+    names = ("joints.upper_B.point.x", "joints.lower_B.point.x")
+    (found,) = computed(data, [dict.fromkeys(names, -37.5)])
+    wanted = loads(text.replace("-38, -7.8", "-37.5, -7.8")).analyze().tables["walk"]
+    for column in wanted.columns:
+        (one,) = [one for one in found["columns"] if one["label"] == column.label]
+        numbers = np.frombuffer(base64.b64decode(one["values"]))
+        size = np.abs(column.values).max()
+        np.testing.assert_allclose(numbers, column.values, atol=1e-9 * size)
 
 
 def test_only_the_numbers_change_in_the_text() -> None:
@@ -61,11 +84,7 @@ def test_the_page_shows_what_the_edited_file_gives() -> None:
     assert not {"joints.A6.point.x", "joints.B6.point.z"} & offered
     own, changed = computed(data, [{}, CASE])
     compared("suspension", data["live"], own, analysis)
-    lifted = with_numbers(model.design, 60)
-    assert lifted is not None
-    names = {one.name: parameter for parameter, one in lifted.numbers.items()}
-    values = {names[name]: value for name, value in CASE.items()}
-    varied = model.of(lifted.design).with_parameters(values).analyze()
+    varied = with_values(model, CASE).analyze()
     assert compared("suspension", data["live"], changed, varied) > 10
     text = edit_parameters(model.built.document.text, model.built, CASE).text
     for one, before, now in zip(

@@ -34,6 +34,30 @@ def eventually(ask: Callable[[], Any], wanted: Any) -> None:
     assert found == wanted
 
 
+LATE = """(() => {
+  const { scene, renderer } = window.mechkin.theatre.stage;
+  const users = new Map();
+  scene.traverse(({ material }) => {
+    const program = material && renderer.properties.get(material).currentProgram;
+    if (program) users.set(program, (users.get(program) ?? new Set()).add(material));
+  });
+  return [users.size > 2, [...users].filter(([program, own]) => program.usedTimes <= own.size)
+    .map(([program]) => program.type)];
+})()"""
+"""Whether several programs draw, and those that the drawing alone uses."""
+
+
+def test_a_picture_waits_for_no_program(server: LiveServer, browser: Browser) -> None:
+    """All programs of the drawing are compiled while its frame waits, so that these are used there,
+    too. By software that takes some hundredths of a second for each, at every change of the file.
+    """
+    # what turns about y has a floor, of lines with colours
+    server.follower.path.write_text(CRANK.replace("[0, 0, 1]", "[0, 1, 0]"))
+    browser.visit(server.address)
+    eventually(lambda: browser.inside("Boolean(window.mechkin.theatre?.stage.floor)"), True)
+    eventually(lambda: browser.inside(LATE), [True, []])
+
+
 def test_the_page_follows_the_file(server: LiveServer, browser: Browser) -> None:
     path = server.follower.path
     browser.visit(server.address)

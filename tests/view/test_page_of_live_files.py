@@ -5,18 +5,19 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from live.test_cells import with_values
 from references import FILE_OF, SWEPT
 from view.browser import Browser
+from view.test_live_page import eventually
 from view.watching import SINGLE
 
 import mechkin_cli as mk
-from mechkin_cli.live.numbers import with_numbers
-from mechkin_cli.live.record import MOST_PARAMETERS
 from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.verdict import SWEEP
 from mechkin_cli.view.joints import link_poses
@@ -24,7 +25,7 @@ from mechkin_cli.view.page import Lengths
 from mechkin_cli.view.scene import page_data
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-FEW = ["planar_four_bar", "rcsr", "lecture_ex3_3_translation"]
+FEW = ["planar_four_bar", "rcsr", "walking_leg", "lecture_ex3_3_translation"]
 NAMES = [*([path.stem for path in SWEPT] if TIMES > 1 else FEW), "rcsr_response"]
 
 # values of a page's parameters, some steps of their sliders away, with which it computes all rows
@@ -56,16 +57,6 @@ def columns(text: str, without: list[str]) -> list[list[str]]:
     header, *rows = csv.reader(io.StringIO(text))
     kept = [k for k, label in enumerate(header) if label not in without]
     return [[row[k] for k in kept] for row in (header, *rows)]
-
-
-def with_values(model: mk.Model, values: dict[str, float]) -> Any:
-    """The mechanism with a page's values, which of a file without parameters are its numbers."""
-    lifted = with_numbers(model.design, MOST_PARAMETERS)
-    if lifted is None or not values:
-        return model.with_parameters(values) if values else model
-    names = {one.name: parameter for parameter, one in lifted.numbers.items()}
-    given = {names[name]: value for name, value in values.items()}
-    return model.of(lifted.design).with_parameters(given)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -116,7 +107,73 @@ def test_another_mode_follows_when_it_is_shown(browser: Browser, tmp_path: Path)
         state.branch.values.some((each, k) => each !== state.original.values[k]),
         document.querySelector('#dimensions .remark').textContent];
     }})()""")
-    assert shown == [["a", "b", "c", "d"], False, True, True, ""]
+    remark = (
+        "Assembly modes are called by their letters in the file; with the changed dimensions they "
+        "may have others."
+    )
+    assert shown == [["a", "b", "c", "d"], False, True, True, remark]
+
+
+def test_an_empty_column_says_why(browser: Browser, tmp_path: Path) -> None:
+    browser.open(mk.load(FILE_OF["planar_four_bar"]).view(tmp_path / "page.html", modes=False))
+    browser.click("#tab-tables")
+    tables = browser.evaluate("window.mechkin.state.tables.map(({ name }) => name)")
+    browser.evaluate(f"""(() => {{
+      const choice = document.querySelector('#tables select');
+      choice.selectedIndex = {tables.index("rows")};
+      choice.dispatchEvent(new Event('change'));
+    }})()""")
+    cells = """[...document.querySelectorAll('#tables th, #tables tr[data-at="0"] td')]
+      .filter((_, k, all) => k % (all.length / 2) === 2)
+      .map((cell) => [cell.textContent, cell.title])"""
+    eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
+    browser.evaluate("window.mechkin.dimensions.set('a', 41)")
+    why = (
+        "empty with changed dimensions: only a search of all assembly modes tells the letter of one"
+    )
+    eventually(lambda: browser.evaluate(cells), [["mode", why], ["", why]])
+    listed = "document.querySelector('#dimensions details:last-of-type').textContent"
+    assert "mode of rows" in browser.evaluate(listed)
+    assert "mechkin analyze planar_four_bar.yaml --set a=41" in browser.evaluate(listed)
+    browser.evaluate("window.mechkin.dimensions.reset('a')")
+    eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "rcsr_csr_loop_one",
+            "They cannot be changed in this page: the file leaves loops out, and which ones "
+            "depends on what is asked for. mechkin analyze rcsr_csr_loop_one.yaml --set NAME=VALUE "
+            "computes it with others.",
+        ),
+        (
+            "gear_play",
+            "They cannot be changed in this page: something in it rebounds, by a restitution. Name "
+            "the numbers under parameters: in the file, and set them by mechkin analyze "
+            "gear_play.yaml --set NAME=VALUE",
+        ),
+    ],
+)
+def test_a_page_that_computes_nothing_says_why(
+    browser: Browser, tmp_path: Path, name: str, words: str
+) -> None:
+    browser.open(mk.load(FILE_OF[name]).view(tmp_path / "page.html", modes=False))
+    shown = "document.querySelector('#dimensions:not([hidden]) .remark')?.textContent"
+    eventually(lambda: browser.evaluate(shown), words)
+
+
+def test_a_browser_that_refuses_the_solver_is_named(browser: Browser, tmp_path: Path) -> None:
+    page = mk.load(FILE_OF["planar_four_bar"]).view(tmp_path / "page.html", modes=False)
+    text = page.read_text(encoding="utf-8")
+    spoiled, count = re.subn(r'(<script[^>]*id="mechkin-kernel"[^>]*>)[^<]*', r"\1AAAA", text)
+    assert count == 1
+    page.write_text(spoiled, encoding="utf-8")
+    browser.open(page)
+    words = "They cannot be changed in this page: this browser cannot run the solver"
+    shown = "document.querySelector('#dimensions:not([hidden]) .remark')?.textContent"
+    eventually(lambda: (browser.evaluate(shown) or "")[: len(words)], words)
 
 
 LEVER = """

@@ -6,7 +6,7 @@ import { listenToKeys } from "./keyboard.js";
 import { Curves } from "./panels/curves.js";
 import { showLegend } from "./panels/legend.js";
 import { ParentWindow } from "./live/messages.js";
-import { SaveMenu, liveRun, showLive } from "./live/start.js";
+import { SaveMenu, liveRun, showLive, showWhyStill } from "./live/start.js";
 import { showHelp, showNotes } from "./panels/notes.js";
 import { Tables } from "./panels/tables.js";
 import { Tabs } from "./panels/tabs.js";
@@ -63,6 +63,7 @@ async function enliven(shown) {
   try {
     const run = await liveRun(shown.data);
     if (run) bring(run);
+    else showWhyStill(shown.data);
   } catch (error) {
     console.warn(`dimensions cannot be changed here: ${error.message}`);
   }

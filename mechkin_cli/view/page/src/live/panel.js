@@ -8,10 +8,12 @@ import { DimensionRow } from "./row.js";
 export class DimensionPanel {
   /**
    * @param left  columns of tables that do not follow: {table, label, why, command}
+   * @param still  runs that do not follow at all: {run, why}
    * @param folded  what the numbers of a file without parameters are called together; they are folded away at first
    */
-  constructor(host, state, dimensions, { fixed, left, folded }, acts) {
+  constructor(host, state, dimensions, { fixed, left, folded, still }, acts) {
     this.dimensions = dimensions;
+    this.still = new Map(still.map(({ run, why }) => [run, why]));
     const press = (text, title, click) => element("button", { type: "button", title, "aria-label": title, on: { click } }, text);
     this.back = press("↶", "Undo (Ctrl+Z)", () => dimensions.undo());
     this.on = press("↷", "Redo (Ctrl+Shift+Z)", () => dimensions.redo());
@@ -68,11 +70,23 @@ export class DimensionPanel {
     if (changed && !state.original) {
       const runs = state.branches()[0] === state.fileBranches()[0];
       text = runs
-        ? "This run is shown with the file's dimensions: it does not follow the changed ones."
+        ? `This run is shown with the file's dimensions: ${this.still.get(state.run.name) ?? "it does not follow the changed ones"}.`
         : "This assembly mode is shown with the file's dimensions: it cannot be followed to the changed ones.";
+    } else if (changed && state.branches().length > 1) {
+      text = "Assembly modes are called by their letters in the file; with the changed dimensions they may have others.";
     }
     this.modes.textContent = text;
   }
+}
+
+/** In place of the panel, where nothing of the page can be changed: why, and the command that does. */
+export function showStill(host, { why, named, command }) {
+  const names = named ? "" : "Name the numbers under parameters: in the file, and set them by ";
+  host.append(
+    element("summary", {}, element("h2", {}, "Dimensions")),
+    element("p.remark", {}, `They cannot be changed in this page: ${why}. ${names}`, element("code", {}, command), named ? " computes it with others." : ""),
+  );
+  host.hidden = false;
 }
 
 /** What this page does not do, why, and the command that does. */

@@ -93,7 +93,6 @@ export class LiveRun {
     const given = this.inSi(values);
     if (given.some((value) => !Number.isFinite(value))) return { end: "lost", words: "a value is no finite number" };
     kernel.doubles(at.parameters, given.length).set(given);
-    this.isOwn = given.every((value, k) => value === this.parameters[k].si);
     try {
       const { end, words, first, last } = this.run();
       if (last <= first) return { end, words };

@@ -7,7 +7,7 @@ import { Dimensions } from "./dimensions.js";
 import { drawnWith } from "./drawn.js";
 import { changedFile, parameterLines } from "./file_text.js";
 import { loadKernel } from "./kernel.js";
-import { DimensionPanel } from "./panel.js";
+import { DimensionPanel, showStill } from "./panel.js";
 import { Peaks } from "./peaks.js";
 import { LiveRuns } from "./runs.js";
 
@@ -16,6 +16,13 @@ export async function liveRun(data) {
   if (!data.live?.parameters?.length) return null;
   const kernel = await loadKernel();
   return kernel && new LiveRuns(kernel, data);
+}
+
+/** Says why nothing can be changed: what the page's writer said of its run, or that the browser has no WebAssembly. */
+export function showWhyStill({ file, still, live }) {
+  const command = `mechkin analyze ${file} --set NAME=VALUE`;
+  if (live) showStill(find("#dimensions"), { why: "this browser cannot run the solver, which is WebAssembly", named: !live.folded, command });
+  else if (still?.length) showStill(find("#dimensions"), still[0]);
 }
 
 /** Shows the panel of dimensions and lets everything follow; gives the dimensions. */
@@ -31,7 +38,7 @@ export function showLive(run, { data, state, tabs, menu }) {
   const acts = live.folded ? [] : [{ text: "Copy as parameters", short: "Copy", act: () => copy(parameterLines(dimensions)) }];
   if (file) acts.push({ text: "Download file", short: "Download", act: () => keep(`${stemOf(data)}.yaml`, changedFile(file, dimensions)) });
   document.body.classList.add("live");
-  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [], folded: live.folded }, acts);
+  new DimensionPanel(find("#dimensions"), state, dimensions, { fixed: run.fixed ?? [], left: run.left ?? [], folded: live.folded, still: data.still ?? [] }, acts);
   menu?.add(acts);
   new Peaks(find("#peaks"), state);
   tabs.add("peaks", "Peaks", "tables");

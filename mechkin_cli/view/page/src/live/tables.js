@@ -1,7 +1,6 @@
 // Tables and verdicts of a sweep with changed parameters: the cells that the command writes.
 
 const SIGNIFICANT = 6;
-const [AT_HOME, NEAR] = ["home", "near"];
 const [LEAST_PLAIN, MOST_PLAIN] = [-6, 9]; // exponents of a column without exponents, the last one not
 const MEASURES = { residual: 0, condition: 1, power_error: 2, energy_error: 5 };
 
@@ -55,12 +54,12 @@ export class LiveTables {
     const given = (k) => Float64Array.from(run.given(k).subarray(0, run.shownRows));
     const curves = new Map(); // values and rounding by table and label
     // of this run: texts are made when others were run
-    const [unitSizes, events, { isOwn }] = [run.unitSizes(first, last), run.events(), run];
+    const [unitSizes, events] = [run.unitSizes(first, last), run.events()];
     const tables = live.tables.map(({ name, columns, sizes: left }) => {
       const sizes = { ...unitSizes };
       for (const [unit, size] of Object.entries(left)) sizes[unit] = Math.max(sizes[unit] ?? 0, size);
       const made = columns.map((column) => {
-        if (column === null || column.words) return { column, events, isOwn };
+        if (column === null || column.words) return { column, events };
         const values = column.given === undefined ? keep(run.cell(column.cell)) : column.every_row ? given(column.given) : keep(run.given(column.given));
         if (column.first) run.withFirst(values, column.first);
         if (column.unit) sizes[column.unit] = Math.max(sizes[column.unit] ?? 0, largestOf(values));
@@ -83,7 +82,8 @@ export class LiveTables {
         return one;
       }
       if (inputs.has(label)) return { column, values: given(inputs.get(label)), rounding: 0 };
-      return { column: { words: column.words ?? label }, events, isOwn };
+      const isLeft = live.left.some((one) => one.table === rows && one.label === label);
+      return { column: isLeft ? null : { words: column.words ?? label }, events };
     });
     if (this.bases.has(rows)) tables.push(this.#table(this.bases.get(rows), codes, measured));
     const columns = (own) => own.flatMap((column) => {
@@ -101,17 +101,17 @@ export class LiveTables {
       if (column.words === "row.status") return Array.from(codes, (code) => this.live.verdict.words[code]);
       if (column.words === "row.event") return one.events;
       if (column.words === "row") return Array.from(codes, (_, row) => `${row + 1}`);
-      if (column.words) {
-        // the same word in all rows; what is continued from an assembly at home is near it
-        const word = base.rows[0]?.[k] ?? "";
-        return new Array(codes.length).fill(word === AT_HOME && !one.isOwn ? NEAR : word);
-      }
+      if (column.words) return new Array(codes.length).fill(base.rows[0]?.[k] ?? ""); // the same in all rows
       return this.#cellTexts(values, column.decimals, rounding);
     };
+    const whyLeft = (label) => this.live.left.find((one) => one.table === base.name && one.label === label)?.why;
     let rows = null;
     return {
       ...base,
-      columns: base.columns.map((head, k) => ({ ...head, exact: head.exact && made[k].values ? made[k].values : made[k].column === null ? null : head.exact })),
+      columns: base.columns.map((head, k) => {
+        if (made[k].column === null) return { ...head, exact: null, why: whyLeft(head.label) };
+        return { ...head, exact: head.exact && made[k].values ? made[k].values : head.exact };
+      }),
       status: Array.from(codes),
       get rows() {
         if (!rows) {

@@ -68,8 +68,8 @@ export class Tables {
     this.exact = exactColumns(table, this.own);
     this.places = new Map();
     if (run) for (let at = 0; at < this.count; at += 1) this.places.set(this.#runRow(at), at);
-    const cells = table.columns.map(({ label, unit }) =>
-      element("th", { scope: "col" }, element("span", {}, label), element("small", {}, unit ?? "")));
+    const cells = table.columns.map(({ label, unit, why }) =>
+      element("th", { scope: "col", ...leftOut(why) }, element("span", {}, label), element("small", {}, unit ?? "")));
     this.head.replaceChildren(element("tr", {}, ...cells, ...(table.status?.length ? [element("th", { scope: "col" }, element("span", {}, "verdict"))] : [])));
     this.now = null;
     this.#fill(true);
@@ -98,7 +98,10 @@ export class Tables {
   }
 
   #row(at) {
-    const cells = rowOf(this.table, at).map((text, k) => element("td", allDigits(this.exact[k]?.[at], text), text));
+    const cells = rowOf(this.table, at).map((text, k) => {
+      const { why } = this.table.columns[k];
+      return element("td", why ? leftOut(why) : allDigits(this.exact[k]?.[at], text), text);
+    });
     const row = element("tr", { data: { at } }, ...cells);
     const code = this.table.status?.[at];
     if (code !== undefined) {
@@ -165,4 +168,9 @@ export function exactColumns(table, own) {
 /** What a cell shows on hover: all digits of its number, where the text has fewer. */
 function allDigits(number, text) {
   return Number.isFinite(number) && Number(text) !== number ? { title: String(number) } : {};
+}
+
+/** Why a column is empty with changed dimensions. */
+function leftOut(why) {
+  return why ? { title: `empty with changed dimensions: ${why}` } : {};
 }

@@ -36,7 +36,9 @@ export function warmUp() {
     scene.add(new Mesh(new BoxGeometry(), new MeshStandardMaterial({ transparent })));
     scene.add(new LineSegments(new BoxGeometry(), new LineBasicMaterial({ transparent })));
   }
-  scene.add(new Mesh(new BoxGeometry(), new MeshBasicMaterial()));
+  const floor = new GridHelper(1, 1); // lines that have colours
+  floor.material.transparent = true;
+  scene.add(new Mesh(new BoxGeometry(), new MeshBasicMaterial()), floor);
   warm.setSize(8, 8);
   warm.render(scene, new PerspectiveCamera());
 }
