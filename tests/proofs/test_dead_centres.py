@@ -21,6 +21,7 @@ from oracle import (
     rotation_matrix,
     to_text,
 )
+from oracle.numerics import mpmath_context
 from proofs.test_boxes import COHERENT, DEGREE
 from random_families.dead_centres.case import linkage, plane_four_bar
 from references import FILE_OF, RCSR
@@ -142,10 +143,11 @@ def test_points_are_enclosed() -> None:
     low, high = found.enclosure("pin.position")
     assert low.shape == (3,)
     assert (high - low < 1e-11).all()
-    with mp.workdps(40):
+    with mpmath_context.workdps(40):
         turn = case.output_at(case.dead_centre(found.number.value))
-        x, y = mp.mpf("1.7") - 2, mp.mpf("1.1")
-        true = 2 + x * mp.cos(turn) - y * mp.sin(turn), x * mp.sin(turn) + y * mp.cos(turn), 0
+        x, y = mpmath_context.mpf("1.7") - 2, mpmath_context.mpf("1.1")
+        c, s = mpmath_context.cos_sin(turn)
+        true = 2 + x * c - y * s, x * s + y * c, 0
         assert all(a <= b <= c for a, b, c in zip(low, true, high, strict=True))
 
 
@@ -397,7 +399,7 @@ def test_loops_that_end_one_after_the_other(off: str) -> None:
     found = only(two_rockers(other))
     assert found.is_proven
     low, high = found.bounds
-    with mp.workdps(40):
+    with mpmath_context.workdps(40):
         near = found.number.value
         one = linkage(0).dead_centre(near)
         two = plane_four_bar(start, end, (other, "0", "0")).dead_centre(near)

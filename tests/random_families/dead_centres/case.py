@@ -14,7 +14,7 @@ import random
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 
 Point = tuple[str, ...]
 """Decimals."""
