@@ -8,7 +8,7 @@ no number (a root of -1, 1/0) is an exception.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -96,6 +96,27 @@ class Numbers:
 
     def norm(self, vector: Iterable[Any]) -> Number:
         return self.sqrt(self.fsum(self.mpf(value) ** 2 for value in vector))
+
+    def fmod(self, value: Any, by: Any) -> Number:
+        return self.mpf(value) % self.mpf(by)
+
+    def findroot(self, function: Callable[[Number], Number], near: Any) -> Number:
+        """A simple zero, by the secant method from a place and from a quarter more.
+
+        Raises:
+            UnsolvableError: it is not found, or only to half of the digits.
+        """
+        here, there = self.mpf(near), self.mpf(near) + self.one / 4
+        value, other = function(here), function(there)
+        for _ in range(100):
+            if other in (value, 0):
+                break
+            step = other * (there - here) / (other - value)
+            here, there, value = there, there - step, other
+            other = function(there)
+        if abs(other) > self.mpf(10) ** (-self.dps // 2):
+            raise UnsolvableError(f"no zero near {self.nstr(near, 10)}")
+        return there
 
     def nstr(self, value: Any, digits: int) -> str:
         return f"{self.mpf(value):.{digits}g}"

@@ -6,7 +6,7 @@ import threading
 from typing import Any
 
 import pytest
-from oracle.numerics import Numbers, mp, mpmath_context as other
+from oracle.numerics import Numbers, UnsolvableError, mp, mpmath_context as other
 
 UNIT = mp.mpf(2) ** -199
 """A sixteenth of a unit in the 60th digit."""
@@ -54,11 +54,21 @@ def test_functions_of_two(x: str, y: str) -> None:
     a, b, c, d = mp.mpf(x), mp.mpf(y), other.mpf(x), other.mpf(y)
     compare(mp.atan2(a, b), other.atan2(c, d))
     compare(mp.hypot(a, b), other.hypot(c, d))
+    compare(mp.fmod(a, b), other.fmod(c, d))
     compare(mp.fsum([a, b, 1]), other.fsum([c, d, 1]))
     compare(mp.fdot([a, b], [b, 3]), other.fdot([c, d], [d, 3]))
     compare(mp.norm([a, b, 2]), other.norm(other.matrix([c, d, 2])))
     for one, known in zip(mp.cos_sin(a), other.cos_sin(c), strict=True):
         compare(one, known)
+
+
+def test_zeros() -> None:
+    compare(
+        mp.findroot(lambda x: mp.cos(x) - x, 0.7), other.findroot(lambda x: other.cos(x) - x, 0.7)
+    )
+    compare(mp.findroot(lambda x: x * x - 2, 1.4), other.sqrt(2))
+    with pytest.raises(UnsolvableError):
+        mp.findroot(lambda x: x * x + 1, 0.3)
 
 
 def test_constants() -> None:

@@ -21,7 +21,6 @@ from oracle import (
     rotation_matrix,
     to_text,
 )
-from oracle.numerics import mpmath_context
 from proofs.test_boxes import COHERENT, DEGREE
 from random_families.dead_centres.case import linkage, plane_four_bar
 from references import FILE_OF, RCSR
@@ -143,10 +142,10 @@ def test_points_are_enclosed() -> None:
     low, high = found.enclosure("pin.position")
     assert low.shape == (3,)
     assert (high - low < 1e-11).all()
-    with mpmath_context.workdps(40):
+    with mp.workdps(40):
         turn = case.output_at(case.dead_centre(found.number.value))
-        x, y = mpmath_context.mpf("1.7") - 2, mpmath_context.mpf("1.1")
-        c, s = mpmath_context.cos_sin(turn)
+        x, y = mp.mpf("1.7") - 2, mp.mpf("1.1")
+        c, s = mp.cos_sin(turn)
         true = 2 + x * c - y * s, x * s + y * c, 0
         assert all(a <= b <= c for a, b, c in zip(low, true, high, strict=True))
 
@@ -399,7 +398,7 @@ def test_loops_that_end_one_after_the_other(off: str) -> None:
     found = only(two_rockers(other))
     assert found.is_proven
     low, high = found.bounds
-    with mpmath_context.workdps(40):
+    with mp.workdps(40):
         near = found.number.value
         one = linkage(0).dead_centre(near)
         two = plane_four_bar(start, end, (other, "0", "0")).dead_centre(near)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from oracle.numerics import mpmath_context as mp
+from oracle import mp
 from random_families.at_dead_centres.case import DIGITS, FAMILIES, sweep
 from random_families.at_dead_centres.judge import judge
 

@@ -12,7 +12,7 @@ from decimal import Decimal
 from functools import partial
 from typing import Any, NamedTuple
 
-from oracle.numerics import mpmath_context as mp
+from oracle import mp
 from random_families.dead_centres.case import (
     Linkage,
     Point,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from oracle.numerics import mpmath_context as mp
+from oracle import mp
 from random_families.at_dead_centres.case import DIGITS, Sweep
 
 import mechkin_cli as mk

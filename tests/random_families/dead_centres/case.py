@@ -14,7 +14,7 @@ import random
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from oracle.numerics import mpmath_context as mp
+from oracle import mp
 
 Point = tuple[str, ...]
 """Decimals."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from oracle.numerics import mpmath_context as mp
+from oracle import mp
 from random_families.dead_centres.case import Linkage
 
 import mechkin_cli as mk
