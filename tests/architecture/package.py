@@ -44,13 +44,18 @@ def is_import_call(node: ast.AST) -> bool:
     """`import_module("...")` with a plain text."""
     return (
         isinstance(node, ast.Call)
-        and ast.unparse(node.func).split(".")[-1] == "import_module"
+        and "import_module" in (getattr(node.func, "id", ""), getattr(node.func, "attr", ""))
         and isinstance(node.args[0], ast.Constant)
     )
 
 
 def imported_names(path: Path) -> list[tuple[str, str]]:
     """(dotted module, name) of all imports of names, of every kind."""
+    return list(_imported_names(path))
+
+
+@cache
+def _imported_names(path: Path) -> list[tuple[str, str]]:
     return [
         (node.module or "", alias.name)
         for node in ast.walk(tree(path))
@@ -78,9 +83,14 @@ def told_apart(module: ast.Module, kinds: Set[str]) -> Iterator[tuple[int, str]]
 
 def offered_names(path: Path) -> list[tuple[str, str]]:
     """(dotted module, name) of all that a door loads when it is first used."""
+    return list(_offered_names(path))
+
+
+@cache
+def _offered_names(path: Path) -> list[tuple[str, str]]:
     door = ".".join(path.relative_to(ROOT.parent).parent.parts)
     for node in ast.walk(tree(path)):
-        if isinstance(node, ast.Call) and ast.unparse(node.func) == "lazy_names":
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "lazy_names":
             chapters = ast.literal_eval(node.args[1])
             return [
                 (f"{door}.{chapter}", name)

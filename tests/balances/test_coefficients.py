@@ -9,6 +9,7 @@ import pytest
 from mpmath import mp, mpf
 from oracle import Mechanism, Solution, assemble, document, newton_euler, read, solve, to_text
 from oracle.bodies import Bodies, Placement
+from oracle.numerics import mp as oracle
 from oracle.vectors import add, apply
 from properties.answers import EPS, at_row, errors, kind, within
 from properties.case import Case
@@ -119,14 +120,14 @@ def test_reduced_inertia_of_files_is_twice_the_kinetic_energy_at_unit_rate(name)
     row = analysis.rows // 2
 
     def at(name: str) -> list:
-        return [mpf(x) for x in np.atleast_1d(analysis[name][row]).tolist()]
+        return [oracle.mpf(x) for x in np.atleast_1d(analysis[name][row]).tolist()]
 
     bodies, poses = Bodies(mechanism), {}
     for link, centre in bodies.centres.items():
         rotation = [list(r) for r in zip(*(at(f"{a}_{link}") for a in "xyz"), strict=True)]
         poses[link] = rotation, add(at(f"p_{link}.position"), apply(rotation, centre))
     angles = {
-        joint: {c: mp.radians(at(f"{joint}.{c}")[0]) for c in near} if near else near
+        joint: {c: oracle.radians(at(f"{joint}.{c}")[0]) for c in near} if near else near
         for joint, near in bodies.drawing().angles.items()
     }
     value = mechanism.row(row)[driven][0]

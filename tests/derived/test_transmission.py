@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 from mechanisms.runs import closings, edited, model, run
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 from references import FILE_OF, exact
 
 import mechkin_cli as mk

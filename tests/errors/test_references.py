@@ -11,6 +11,7 @@ from errors.test_errors import ROCKER
 from mechanisms.runs import run
 from mechanisms.test_oracle import NAMES, mechanism, reactions, solution
 from oracle import mp
+from oracle.numerics import mpmath_context
 from properties.answers import kind, scales
 from properties.cases import case
 from properties.expected import expected
@@ -90,13 +91,14 @@ def test_constants_as_doubles_are_seen(monkeypatch):
 
 def crank_of(rocker: Any) -> Any:
     """The crank's angle of a four-bar by its circles, from the rocker's; both zero as drawn."""
-    a, d, c = mp.mpf("20.3"), mp.mpf(70), (mp.mpf("60.1"), mp.mpf("50.7"))
+    of = mpmath_context
+    a, d, c = of.mpf("20.3"), of.mpf(70), (of.mpf("60.1"), of.mpf("50.7"))
     rod = (c[0] - a) ** 2 + c[1] ** 2
     x, y = c[0] - d, c[1]
-    x, y = d + mp.cos(rocker) * x - mp.sin(rocker) * y, mp.sin(rocker) * x + mp.cos(rocker) * y
-    size = mp.sqrt(x * x + y * y)
-    between = mp.acos((size * size + a * a - rod) / (2 * a * size))
-    return mp.atan2(y, x) - between
+    x, y = d + of.cos(rocker) * x - of.sin(rocker) * y, of.sin(rocker) * x + of.cos(rocker) * y
+    size = of.sqrt(x * x + y * y)
+    between = of.acos((size * size + a * a - rod) / (2 * a * size))
+    return of.atan2(y, x) - between
 
 
 def test_toward_a_dead_centre():
@@ -108,8 +110,12 @@ def test_toward_a_dead_centre():
     r = mk.loads(text).analyze()
     rows = Repeated(r.result, wide_run(r.result))
     for row, place in enumerate(places, 1):
-        rocker, condition = mp.mpf(place) * mp.pi / 180, condition_of(r.result, row)
-        exact = (crank_of(rocker), mp.diff(crank_of, rocker, h=mp.mpf(10) ** -30))
+        rocker, condition = (
+            mpmath_context.mpf(place) * mpmath_context.pi / 180,
+            condition_of(r.result, row),
+        )
+        slope = mpmath_context.diff(crank_of, rocker, h=mpmath_context.mpf(10) ** -30)
+        exact = mp.mpf(crank_of(rocker)), mp.mpf(slope)
         for name, value, power in zip(("A.theta", "A.theta_dot"), exact, (1, 2), strict=True):
             limit = max(CLOSE, BY_CONDITION * condition**power) * max(1.0, abs(float(value)))
             (found,) = numbers(rows, name, row)

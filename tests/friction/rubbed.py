@@ -85,7 +85,7 @@ def differences(name: str, data: dict[str, Any]) -> dict[str, float]:
     analysis = mk.loads(to_text(data)).analyze(list(columns), tables=[])
     if analysis.result.status[its.row] == Status.friction_undecided:
         return {}
-    scale = float(max(mp.norm(mp.matrix(v)) for v in wanted.reactions.force.values()))
+    scale = float(max(mp.norm(v) for v in wanted.reactions.force.values()))
     found: dict[str, float] = {}
     for column, value in columns.items():
         got = np.ravel(analysis[column][its.row]).astype(float)

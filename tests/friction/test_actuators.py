@@ -44,7 +44,7 @@ def test_a_slider_crank_driven_by_its_piston(row):
     for word, values in zip(WORDS, (*by_word, found.normal, found.power), strict=True):
         unit = {"moment": 40.0, "friction_moment": 40.0, "friction_power": 1000.0}.get(word, 1.0)
         pairs += [(pushed()[f"{j}.{word}"][row], values[j], unit) for j in JOINTS]
-    largest = max(float(mp.norm(mp.matrix(force))) for force in found.reactions.force.values())
+    largest = max(float(mp.norm(force)) for force in found.reactions.force.values())
     for value, wanted, unit in pairs:
         expected = np.ravel(np.array(wanted, dtype=object)).astype(float)
         assert np.abs(np.ravel(value) - expected).max() <= 4e-14 * unit * largest
@@ -71,7 +71,7 @@ def test_random_mechanisms(name):
         return
     if analysis.result.status[its.row] == Status.friction_undecided:
         return
-    scale = float(max(mp.norm(mp.matrix(v)) for v in wanted.force.values()))
+    scale = float(max(mp.norm(v) for v in wanted.force.values()))
     expected = [*wanted.force.values(), *([wanted.effort[a]] for a in actuators)]
     for column, value in zip(columns, expected, strict=True):
         error = np.ravel(analysis[column][its.row]) - np.array(value, dtype=object).astype(float)

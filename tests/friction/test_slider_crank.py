@@ -40,7 +40,7 @@ def test_every_force(row):
             (run()[f"{joint}.friction_moment"][row], found.moment[joint], 40.0),
             (run()[f"{joint}.friction_power"][row], found.power[joint], 1000.0),
         ]
-    largest = max(float(mp.norm(mp.matrix(force))) for force in reactions.force.values())
+    largest = max(float(mp.norm(force)) for force in reactions.force.values())
     for value, wanted, unit in pairs:
         expected = np.ravel(np.array(wanted, dtype=object)).astype(float)
         assert np.abs(np.ravel(value) - expected).max() <= 2e-14 * unit * largest

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracle import assemble, mp, newton_euler, read
+from oracle.numerics import mpmath_context
 
 from benchmarks.stress.block import drawn
 from benchmarks.stress.draws import scaled
@@ -108,13 +109,12 @@ def test_oscillators_are_exponentials_of_matrices() -> None:
     moment = 0.375
     truth = block.truth(np.array([[moment]]))
     masses, loads, starts = _written(as_doubles(block.texts[0]))
-    with mp.workdps(60):
-        for quantity, mass, (stiff, damp), start in zip(
-            truth.quantities, masses, loads, starts, strict=True
-        ):
-            matrix = mp.matrix([[0, 1], [-stiff / mass, -damp / mass]])
-            right = (mp.expm(matrix * moment) * mp.matrix([start, 0]))[0]
-            assert abs(value(quantity.value) - right) <= 1e-25
+    for quantity, mass, (stiff, damp), start in zip(
+        truth.quantities, masses, loads, starts, strict=True
+    ):
+        matrix = mpmath_context.matrix([[0, 1], [-stiff / mass, -damp / mass]])
+        right = (mpmath_context.expm(matrix * moment) * mpmath_context.matrix([start, 0]))[0]
+        assert abs(value(quantity.value) - mp.mpf(right)) <= 1e-25
 
 
 def _written(text: str) -> tuple[list[Any], list[tuple[Any, Any]], list[Any]]:
@@ -122,11 +122,12 @@ def _written(text: str) -> tuple[list[Any], list[tuple[Any, Any]], list[Any]]:
     import yaml
 
     data = yaml.load(text, Loader=yaml.BaseLoader)
-    masses = [mp.mpf(link["mass"]) for link in data["links"].values()]
+    number = mpmath_context.mpf
+    masses = [number(link["mass"]) for link in data["links"].values()]
     loads = data["loads"]
-    springs = [mp.mpf(load["stiffness"]) for load in loads if load["type"] == "spring"]
-    dampers = [mp.mpf(load["damping"]) for load in loads if load["type"] == "damper"]
-    starts = [mp.mpf(x) for x in data["responses"]["let_go"]["start"].values()]
+    springs = [number(load["stiffness"]) for load in loads if load["type"] == "spring"]
+    dampers = [number(load["damping"]) for load in loads if load["type"] == "damper"]
+    starts = [number(x) for x in data["responses"]["let_go"]["start"].values()]
     return masses, list(zip(springs, dampers, strict=True)), starts
 
 

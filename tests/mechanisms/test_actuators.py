@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanisms.actuated import ARM, FIVE_BAR, GEARED, LEGS, POSE, SLIDER_CRANK, platform
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 
 import mechkin_cli as mk
 from mechkin_cli.kernel import _kernel

@@ -6,21 +6,19 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from yaml.emitter import Emitter
+from yaml.cyaml import CEmitter
 from yaml.representer import SafeRepresenter
 from yaml.resolver import BaseResolver
-from yaml.serializer import Serializer
 
 Document = dict[str, Any]
 
 
-class _TextDumper(Emitter, Serializer, SafeRepresenter, BaseResolver):
+class _TextDumper(CEmitter, SafeRepresenter, BaseResolver):
     """Writes every scalar as it stands, quoted only where YAML needs quotes."""
 
     def __init__(self, stream: Any, **options: Any) -> None:
         emitter = {k: options.get(k) for k in ("width", "allow_unicode")}
-        Emitter.__init__(self, stream, **emitter)
-        Serializer.__init__(self)
+        CEmitter.__init__(self, stream, **emitter)
         SafeRepresenter.__init__(self, default_flow_style=None, sort_keys=False)
         BaseResolver.__init__(self)
 
@@ -35,7 +33,7 @@ def document(source: str | Path | Document) -> Document:
     elif isinstance(source, Path) or "\n" not in source:
         source = Path(source).read_text(encoding="utf-8")
     # the base loader keeps every scalar as text
-    data: Document = yaml.load(source, Loader=yaml.BaseLoader)
+    data: Document = yaml.load(source, Loader=yaml.CBaseLoader)
     return data
 
 

@@ -91,7 +91,7 @@ def newton_euler(
     }
     powers = powers_of(mechanism, solution, effort)
     holding = [found[columns[f"leg {k}"]] for k in range(len(lines))]
-    total, absolute = mp.fsum(powers), mp.fsum(powers, absolute=True)
+    total, absolute = mp.fsum(powers), mp.fsum(abs(power) for power in powers)
     return Reactions(force, moment, about_origin, effort, holding, total, absolute)
 
 

@@ -8,6 +8,7 @@ stands for the constant series everywhere, which saves most of the products.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from operator import add, neg
 from typing import Any
 
 from oracle.numerics import Number, mp
@@ -23,13 +24,13 @@ class Series:
 
     def __add__(self, other: Any) -> Series:
         if isinstance(other, Series):
-            return Series(a + b for a, b in zip(self.c, other.c, strict=True))
+            return Series(map(add, self.c, self._of_this_order(other)))
         return Series((self.c[0] + other, *self.c[1:]))
 
     __radd__ = __add__
 
     def __neg__(self) -> Series:
-        return Series(-a for a in self.c)
+        return Series(map(neg, self.c))
 
     def __sub__(self, other: Any) -> Series:
         return self + (-other)
@@ -39,11 +40,16 @@ class Series:
 
     def __mul__(self, other: Any) -> Series:
         if not isinstance(other, Series):
-            return Series(a * other for a in self.c)
-        a, b = self.c, other.c
-        return Series(_convolution(a, b, k) for k in range(len(a)))
+            return Series([a * other for a in self.c])
+        a, b = self.c, self._of_this_order(other)
+        return Series([_convolution(a, b, k) for k in range(len(a))])
 
     __rmul__ = __mul__
+
+    def _of_this_order(self, other: Series) -> tuple[Number, ...]:
+        if len(other.c) != len(self.c):
+            raise ValueError(f"series of {len(self.c)} and {len(other.c)} coefficients")
+        return other.c
 
 
 def coefficient(x: Any, k: int) -> Number:

@@ -49,7 +49,7 @@ def moved(
     _map_vectors(
         data,
         {
-            "point": lambda v: add(apply(rotation, v), shift),
+            "point": lambda v: add(apply(rotation, v), [mp.mpf(x) for x in shift]),
             "polar": lambda v: apply(rotation, v),
             "pseudo": lambda v: apply(rotation, v),
         },

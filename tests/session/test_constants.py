@@ -87,7 +87,7 @@ def as_read(one: Precise, stem: str) -> list[tuple[Any, Any]]:
                     pairs += zip(frame.z, axis, strict=True)
             if joint.lead is not None:
                 pairs.append((drawn.lead, joint.lead * length))
-        return [(number, mp.mpf(value)) for number, value in pairs]
+        return [(number, mp.mpf(oracle.in_mpmath(oracle.mpf(value)))) for number, value in pairs]
 
 
 @pytest.mark.parametrize("stem", STEMS)

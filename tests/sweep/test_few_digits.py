@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from errors.test_errors import ROCKER
 from errors.test_references import crank_of
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 
 import mechkin_cli as mk
 from mechkin_cli.sweep import dead_centre

@@ -1,14 +1,31 @@
 #!/usr/bin/env bash
-# Brings what the page's tests need (a browser, Node, the pinned packages) and compares the built page byte by byte.
+# Brings what the page's tests need (a browser, Node, the pinned packages) and compares the built page byte by byte;
+# `ci.sh kernel` builds the kernel in the page again and compares its bytes.
 # As root with apt it installs what is missing; elsewhere it says what is, and the browser's tests are skipped.
 set -euo pipefail
 cd "$(dirname "$0")"
+
+# where its compiler can be had
+kernel() {
+  local wasm=../../kernel/wasm
+  zig=$(mktemp -d)
+  trap 'rm -rf "$zig"' EXIT
+  if python3 -m pip install -q --target "$zig" "ziglang==$(sed -n 's/.*"ziglang": "\(.*\)".*/\1/p' "$wasm/lock.json")"; then
+    PYTHONPATH="$zig" python3 "$wasm/build.py" --check
+  else
+    echo "the kernel in the page is not built again: no ziglang here"
+  fi
+}
 
 missing() {
   local each
   for each in node npm chromium; do command -v "$each" > /dev/null || printf '%s ' "$each"; done
 }
 
+if [ "${1:-}" = kernel ]; then
+  kernel
+  exit
+fi
 if [ -n "$(missing)" ] && [ "$(id -u)" = 0 ] && command -v apt-get > /dev/null; then
   packages=$(missing)
   apt-get update -qq
@@ -22,13 +39,4 @@ fi
 npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 npm run --silent check
 
-# the kernel in the page, built again where its compiler can be had
-wasm=../../kernel/wasm
-python3 "$wasm/build.py" --check --quick
-zig=$(mktemp -d)
-trap 'rm -rf "$zig"' EXIT
-if python3 -m pip install -q --target "$zig" "ziglang==$(sed -n 's/.*"ziglang": "\(.*\)".*/\1/p' "$wasm/lock.json")"; then
-  PYTHONPATH="$zig" python3 "$wasm/build.py" --check
-else
-  echo "the kernel in the page is not built again: no ziglang here"
-fi
+python3 ../../kernel/wasm/build.py --check --quick

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import mpmath
 from errors.raised import chains, three_links
 from oracle import mp
 from references import FOLDER, exact
@@ -39,7 +40,9 @@ def raise_row(table: str, row: dict[str, str]) -> dict[str, str]:
     Raises:
         ValueError: a cell does not.
     """
-    found = TABLES[table](table, row)
+    computed = TABLES[table](table, row)
+    with mp.workdps(DIGITS + 10):
+        found = {label: mp.mpf(value) for label, value in computed.items()}
     for label, value in found.items():
         if abs(value - mp.mpf(row[label])) > ROUNDING * abs(value) + 1e-28:
             raise ValueError(f"{table}: {label} is {mp.nstr(value, 20)}, kept is {row[label]}")
@@ -48,5 +51,4 @@ def raise_row(table: str, row: dict[str, str]) -> dict[str, str]:
 
 
 def _text(value: Any) -> str:
-    with mp.workdps(DIGITS + 10):
-        return str(mp.nstr(mp.mpf(value), DIGITS, strip_zeros=False))
+    return str(mpmath.nstr(mp.in_mpmath(value), DIGITS, strip_zeros=False))

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 from numpy.typing import NDArray
+from oracle.numerics import Number, mp
 from random_families.no_wrong_row.bodies import Placed
 from random_families.no_wrong_row.field import EXACT, FAST
 from random_families.no_wrong_row.linkage import Linkage
@@ -38,7 +38,7 @@ ROUNDING = 2.0**-52
 """A rounding of a discriminant of a body before, in parts of its scale."""
 AGREED = 1e-3
 """Rad that float64 may be off 50 digits where an angle does not change suddenly."""
-RESOLVED = mpf(10) ** -40
+RESOLVED = mp.mpf(10) ** -40
 """Width of a place that 50 digits still resolve."""
 
 
@@ -149,17 +149,17 @@ def lowest(
         low, high = float(t[max(best - 1, 0)]), float(t[min(best + 1, 40)])
     place, least = float(t[best]), float(margin[best])
     if abs(least) < DECIDED:
-        placed = linkage.at(sign * mpf(place), EXACT, name)
+        placed = linkage.at(sign * mp.mpf(place), EXACT, name)
         least = float(placed.margin[name])
         unit = UNDECIDED * float(placed.blur.get(name, 1))
         if judging:
-            unit *= roundings(linkage, name, sign * mpf(place), placed)
+            unit *= roundings(linkage, name, sign * mp.mpf(place), placed)
         if abs(least) < unit:
             raise Undecided
     return place, least
 
 
-def roundings(linkage: Linkage, name: str, t: mpf, placed: Placed) -> float:
+def roundings(linkage: Linkage, name: str, t: Number, placed: Placed) -> float:
     """What roundings of the input change in a margin, in parts of its own: those too that a nearly
     singular body before it enlarges, by 1 over twice the root of its discriminant."""
     own, total = UNDECIDED * float(placed.blur.get(name, 1)), 1.0
@@ -198,13 +198,13 @@ def fine(place: float, end: float) -> Array:
 
 def unwrapped(linkage: Linkage, name: str, sign: int, t: Array, value: Array) -> Array:
     """A coordinate without jumps of whole turns; where it changes suddenly its values and the
-    sense are those of 50 digits. What stays sudden there is NaN from its place on."""
+    sense are those of 60 digits. What stays sudden there is NaN from its place on."""
     found = np.unwrap(value)
     if not linkage.turns(name):
         return found
 
     def at(place: Any) -> Any:
-        return linkage.at(sign * mpf(place), EXACT, name).value[name]
+        return linkage.at(sign * mp.mpf(place), EXACT, name).value[name]
 
     known = -1
     for k in np.flatnonzero(np.abs(np.diff(found)) > SUDDEN):
@@ -227,13 +227,13 @@ def turned(a: Any, b: Any) -> Any:
     return b - a - 2 * mp.pi * mp.nint((b - a) / (2 * mp.pi))
 
 
-def exact_change(at: Callable[[Any], Any], first: float, last: float) -> mpf:
+def exact_change(at: Callable[[Any], Any], first: float, last: float) -> Number:
     """The change of an angle between two places, by halving its sudden part."""
-    low, high, total = mpf(first), mpf(last), mpf(0)
+    low, high, total = mp.mpf(first), mp.mpf(last), mp.zero
     here, there = at(low), at(high)
     while abs(whole := turned(here, there)) > SUDDEN / 2:
         if high - low < RESOLVED:
-            return mp.nan
+            return np.nan
         middle = (low + high) / 2
         value = at(middle)
         before, after = turned(here, value), turned(value, there)

@@ -11,7 +11,7 @@ import random
 from dataclasses import dataclass
 
 import numpy as np
-from mpmath import diff, mpf
+from oracle.numerics import Number, mp
 from random_families.no_wrong_row.branch import TURN, Undecided, Way, way
 from random_families.no_wrong_row.case import random_gap, text_of
 from random_families.no_wrong_row.design import Impossible, random_unit
@@ -41,10 +41,12 @@ class Loop:
         """How far roundings of the discriminant's terms move an end, in degrees."""
         linkage, name = self.drawing.linkage(), one.folds
 
-        def margin(t: mpf) -> mpf:
+        def margin(t: Number) -> Number:
             return linkage.at(one.sign * t, EXACT, name).margin[name]
 
-        return math.degrees(5e-15 / abs(float(diff(margin, mpf(one.end)))))
+        end, step = mp.mpf(one.end), mp.mpf(10) ** -20
+        slope = (margin(end + step) - margin(end - step)) / (2 * step)
+        return math.degrees(5e-15 / abs(float(slope)))
 
 
 def looped(number: int) -> Loop:

@@ -1,4 +1,4 @@
-"""Two kinds of numbers for one formula: float64 over many places, and 50 digits at one."""
+"""Two kinds of numbers for one formula: float64 over many places, and 60 digits at one."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from mpmath import mp, mpf
-
-mp.dps = 50
+from oracle.numerics import mp
 
 Vector = tuple[Any, Any, Any]
 
@@ -24,7 +22,7 @@ class Field(NamedTuple):
 
 
 FAST = Field(float, np.cos, np.sin, lambda x: np.sqrt(np.maximum(x, 0.0)), np.arctan2)
-EXACT = Field(mpf, mp.cos, mp.sin, lambda x: mp.sqrt(x) if x > 0 else mpf(0), mp.atan2)
+EXACT = Field(mp.mpf, mp.cos, mp.sin, lambda x: mp.sqrt(x) if x > 0 else mp.zero, mp.atan2)
 
 
 def plus(a: Vector, b: Vector) -> Vector:

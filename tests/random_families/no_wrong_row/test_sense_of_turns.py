@@ -12,7 +12,7 @@ import math
 import random
 
 import numpy as np
-from mpmath import matrix, mp, mpf
+from oracle.numerics import mpmath_context as mp
 from random_families.no_wrong_row.bodies import Body, Level
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.design import Impossible, random_unit
@@ -24,23 +24,23 @@ NEAR = 1e-3
 """Rad that a place known to 1e-16 may be off where it is not within a half turn."""
 
 
-def exact(v: tuple[float, ...]) -> matrix:
-    return matrix([mpf(x) for x in v])
+def exact(v: tuple[float, ...]) -> mp.matrix:
+    return mp.matrix([mp.mpf(x) for x in v])
 
 
-def dot(a: matrix, b: matrix) -> mpf:
+def dot(a: mp.matrix, b: mp.matrix) -> mp.mpf:
     return mp.fsum(x * y for x, y in zip(a, b, strict=True))
 
 
-def cross(a: matrix, b: matrix) -> matrix:
-    return matrix([a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)])
+def cross(a: mp.matrix, b: mp.matrix) -> mp.matrix:
+    return mp.matrix([a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)])
 
 
-def unit(a: matrix) -> matrix:
+def unit(a: mp.matrix) -> mp.matrix:
     return a / mp.sqrt(dot(a, a))
 
 
-def shaft(driver: Body, body: Body, turned: mpf) -> mpf:
+def shaft(driver: Body, body: Body, turned: mp.mpf) -> mp.mpf:
     """The angle of a shaft since the drawing, without jumps, from that of its driver."""
     one, two = unit(exact(driver.axis)), unit(exact(body.axis))
     normal, cosine = unit(cross(one, two)), dot(one, two)
@@ -48,7 +48,7 @@ def shaft(driver: Body, body: Body, turned: mpf) -> mpf:
     arm = exact(body.rod.other.base)
     drawn = mp.atan2(dot(arm, cross(one, normal)), dot(arm, normal))
 
-    def angle(a: mpf) -> mpf:
+    def angle(a: mp.mpf) -> mp.mpf:
         half_turns = mp.nint(a / mp.pi)
         return mp.sign(cosine) * half_turns * mp.pi + mp.atan(cosine * mp.tan(a))
 
@@ -80,7 +80,7 @@ def test_half_turns_go_the_way_of_the_ratio() -> None:
             except Undecided:
                 continue
             for k in range(0, len(one.t), 7):
-                turned, driver = sign * mpf(float(one.t[k])), drawing.bodies[0]
+                turned, driver = sign * mp.mpf(float(one.t[k])), drawing.bodies[0]
                 for body in drawing.bodies[1:]:
                     turned, driver = shaft(driver, body, turned), body
                     off = float(one.value[body.name][k] - turned)

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from mpmath import mp, mpf
 from numpy.typing import ArrayLike, NDArray
+from oracle.numerics import mp
 from random_families.no_wrong_row.branch import TURN, Undecided, Way, way
 from random_families.no_wrong_row.case import Case
 from random_families.no_wrong_row.drawing import Column
@@ -183,9 +183,9 @@ class Truth:
         return np.minimum(ANGLE + 1e-14 / singular, 1e-3)
 
     def _exactly(self, k: int, found: dict[str, Array]) -> str:
-        """A row's differences at 50 digits, beyond what roundings of the input change."""
-        t = mpf(float(self.case.travel.rows[k])) * mp.pi / 180
-        unit = mpf(2) ** -52 * max(mpf(1), abs(t))
+        """A row's differences at 60 digits, beyond what roundings of the input change."""
+        t = mp.mpf(float(self.case.travel.rows[k])) * mp.pi / 180
+        unit = mp.mpf(2) ** -52 * max(mp.one, abs(t))
         placed, *beside = (self.linkage.at(t + d * unit, EXACT) for d in (0, -1, 1))
         margin = {name: np.array([float(m)]) for name, m in placed.margin.items()}
         allowed = float(self._allowed(margin, 1)[0])

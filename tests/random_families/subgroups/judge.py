@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 from random_families.subgroups.linkage import FAMILIES, TILTS, Linkage, Tilt
 
 import mechkin_cli as mk

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 
 Rational = tuple[Fraction, Fraction, Fraction]
 Near = Callable[[str], float]

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from oracle import mp
+from oracle.numerics import mpmath_context as mp
 from random_families.subgroups.judge import OFF, judged, run_one, written
 from random_families.subgroups.linkage import FAMILIES, TILTS, Joint, Linkage, Tilt, by_fractions
 
