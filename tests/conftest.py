@@ -36,9 +36,13 @@ FIRST = (
     "browser",
     "tests/kernel/test_changed_sources.py",
     "references",
-    "tests/hard_mechanisms/test_closed_forms.py",
+    "tests/hard_mechanisms/test_command.py",
     "tests/random_families/no_wrong_row/test_no_wrong_row.py",
-    "tests/random_families/test_random_units.py",
+    "tests/studies/test_cluster.py",
+    "tests/studies/test_command.py",
+    "tests/cli/test_progress.py",
+    "tests/response/test_true_errors.py",
+    "tests/response/test_kinks.py",
 )
 """What takes longest is begun first: nothing long is left for one process at the end."""
 

@@ -3,13 +3,33 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2] / "mechkin_cli"
 FILES = sorted(ROOT.rglob("*.py"))
-NAMES = [str(path.relative_to(ROOT)) for path in FILES]
+
+
+def of_every(files: Sequence[Path]) -> Callable[[Callable[[Path], None]], Callable[[], None]]:
+    """One test of many files, which names all that fail: thousands of tests would take longer to
+    be given out than to be done."""
+
+    def tested(check: Callable[[Path], None]) -> Callable[[], None]:
+        def test() -> None:
+            faults = []
+            for path in files:
+                try:
+                    check(path)
+                except AssertionError as fault:
+                    faults.append(f"{path.relative_to(ROOT)}: {fault}")
+            assert files
+            assert not faults, "\n\n".join(faults)
+
+        test.__name__, test.__doc__ = check.__name__, check.__doc__
+        return test
+
+    return tested
 
 
 @cache

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, NAMES, ROOT, told_apart, tree
+from architecture.package import FILES, ROOT, of_every, told_apart, tree
 
 HOME = "mechanism/constraint.py"
 KINDS = {"DistanceConstraint", "InputConstraint", "PairConstraint"}
@@ -24,7 +24,7 @@ OF_THE_FORMAT = {
 """Files that may speak of legs beside the one that knows them."""
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_no_module_asks_for_a_kind(path: Path) -> None:
     assert list(told_apart(tree(path), KINDS)) == []
 

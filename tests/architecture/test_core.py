@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from architecture.package import ROOT
+from architecture.package import ROOT, of_every
 
 KERNEL = ROOT / "kernel"
 CORE = sorted(path for path in (KERNEL / "core").rglob("*.?pp"))
@@ -23,11 +23,7 @@ def included(path: Path) -> list[tuple[str, str]]:
     return INCLUDE.findall(path.read_text(encoding="utf-8"))
 
 
-def name(path: Path) -> str:
-    return str(path.relative_to(KERNEL))
-
-
-@pytest.mark.parametrize("path", CORE, ids=map(name, CORE))
+@of_every(CORE)
 def test_the_core_includes_itself_and_the_language_alone(path: Path) -> None:
     for bracket, header in included(path):
         if bracket == '"':
@@ -37,14 +33,14 @@ def test_the_core_includes_itself_and_the_language_alone(path: Path) -> None:
     assert not re.search(r"nanobind|Py[A-Z]\w+|Python\.h", path.read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("path", CORE, ids=map(name, CORE))
+@of_every(CORE)
 def test_nothing_is_thrown_in_the_core(path: Path) -> None:
     code = re.sub(r'//[^\n]*|"(?:\\.|[^"\\\n])*"', "", path.read_text(encoding="utf-8"))
     found = re.findall(r"\b(?:throw|try|catch|rethrow_exception|invalid_argument)\b", code)
     assert not found or path == THREADS
 
 
-@pytest.mark.parametrize("path", SKINS, ids=map(name, SKINS))
+@of_every(SKINS)
 def test_a_skin_includes_itself_and_the_core(path: Path) -> None:
     for bracket, header in included(path):
         if bracket == '"':

@@ -55,3 +55,10 @@ def test_the_small_gate_takes_the_lowest_versions_of_all_dependencies() -> None:
     listed = subprocess.run(["bash", script, "list"], capture_output=True, text=True, check=True)
     lowest = [text.partition(",")[0].replace(">=", "==") for text in project()["dependencies"]]
     assert listed.stdout.splitlines() == lowest
+
+
+def test_what_is_tested_together_or_first_is_there() -> None:
+    text = (ROOT.parent / "tests" / "conftest.py").read_text(encoding="utf-8")
+    named = re.findall(r'"(tests/[a-z_/.]+)"', text)
+    assert len(named) > 5
+    assert [name for name in named if not list(ROOT.parent.glob(f"{name}*"))] == []

@@ -11,7 +11,7 @@ import ast
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, ROOT, room, tree
+from architecture.package import FILES, ROOT, of_every, room, tree
 
 ROOMS = {
     "kernel",
@@ -146,7 +146,7 @@ def findings(path: Path) -> list[tuple[str, str]]:
 CELL_FILES = [path for path in FILES if room(path) in ROOMS]  # `mobility/`: words and whole numbers
 
 
-@pytest.mark.parametrize("path", CELL_FILES, ids=[str(p.relative_to(ROOT)) for p in CELL_FILES])
+@of_every(CELL_FILES)
 def test_only_exact_arithmetic(path: Path) -> None:
     assert [found for found in findings(path) if found not in ACCEPTED] == []
 

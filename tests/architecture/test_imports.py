@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from architecture.package import (
     FILES,
-    NAMES,
     ROOT,
     defined_names,
     imported_names,
     imports,
+    of_every,
     offered_names,
     room,
 )
@@ -104,7 +104,7 @@ def is_known(own: str, other: str) -> bool:
     return ORDER.index(other) < ORDER.index(own)
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_no_arrow_points_up(path: Path) -> None:
     wrong = [
         f"line {line}: {room(path)} -> {module}"
@@ -114,7 +114,7 @@ def test_no_arrow_points_up(path: Path) -> None:
     assert wrong == []
 
 
-@pytest.mark.parametrize("path", PRODUCT, ids=[str(path.relative_to(ROOT)) for path in PRODUCT])
+@of_every(PRODUCT)
 def test_other_rooms_are_entered_by_the_door(path: Path) -> None:
     wrong = [
         f"line {line}: {module}"
@@ -127,7 +127,7 @@ def test_other_rooms_are_entered_by_the_door(path: Path) -> None:
     assert wrong == []
 
 
-@pytest.mark.parametrize("path", PRODUCT, ids=[str(path.relative_to(ROOT)) for path in PRODUCT])
+@of_every(PRODUCT)
 def test_a_room_does_not_enter_by_its_own_door(path: Path) -> None:
     door = f"mechkin_cli.{room(path)}"
     names = [name for module, name in imported_names(path) if module == door]
@@ -135,7 +135,7 @@ def test_a_room_does_not_enter_by_its_own_door(path: Path) -> None:
     assert wrong == [] or room(path) in DOORLESS
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_libraries_stay_in_their_rooms(path: Path) -> None:
     wrong = [
         f"line {line}: {module}"
@@ -177,7 +177,7 @@ def refused(path: Path, doors: dict[str, set[str]]) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_doors_offer_what_is_taken_from_them(path: Path) -> None:
     """For type checkers a door has all public names of its chapters."""
     assert refused(path, {d: {n for _, n in offered_names(p)} for d, p in DOORS.items()}) == []

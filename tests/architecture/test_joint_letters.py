@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, NAMES, ROOT, tree
+from architecture.package import FILES, ROOT, of_every, tree
 
 from mechkin_cli.mechanism.pair_type import ELEMENTARY
 from mechkin_cli.mechanism.pairs import FREE, JOINT_TYPES
@@ -63,7 +63,7 @@ def asked_letters(module: ast.Module) -> Iterator[tuple[int, str]]:
                 yield node.lineno, ast.unparse(node)
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_no_module_asks_for_a_letter(path: Path) -> None:
     if str(path.relative_to(ROOT)) in PERMITTED or "bench" in path.parts:
         return

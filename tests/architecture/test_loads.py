@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
-from architecture.package import FILES, NAMES, ROOT, told_apart, tree
+from architecture.package import FILES, ROOT, of_every, told_apart, tree
 
 from mechkin_cli.mechanism.model import Load
 
@@ -28,7 +28,7 @@ MAY_ASK = {
 }
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_no_other_module_asks_for_a_kind(path: Path) -> None:
     questions = list(told_apart(tree(path), KINDS))
     assert bool(questions) == (str(path.relative_to(ROOT)) in MAY_ASK), questions

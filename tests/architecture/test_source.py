@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, NAMES, ROOT, tree
+from architecture.package import FILES, ROOT, of_every, tree
 
 MOST_LINES = 640
 MORE_LINES = {"model/model.py": 900}
@@ -28,7 +28,7 @@ def public_definitions(body: list[ast.stmt], owner: str = "") -> list[tuple[str,
     return found
 
 
-@pytest.mark.parametrize("path", FILES, ids=NAMES)
+@of_every(FILES)
 def test_public_names_have_docstrings(path: Path) -> None:
     assert ast.get_docstring(tree(path)), "the module says nothing"
     bare = [
@@ -43,7 +43,7 @@ def is_overload(node: Definition) -> bool:
     return any(ast.unparse(each).endswith("overload") for each in node.decorator_list)
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=[str(path.relative_to(ROOT)) for path in SOURCES])
+@of_every(SOURCES)
 def test_files_are_short(path: Path) -> None:
     most = MORE_LINES.get(str(path.relative_to(ROOT)), MOST_LINES)
     assert len(path.read_text(encoding="utf-8").splitlines()) <= most

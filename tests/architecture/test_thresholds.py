@@ -7,7 +7,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from architecture.package import FILES, ROOT, room, tree
+from architecture.package import FILES, ROOT, of_every, room, tree
 
 from mechkin_cli import tolerances
 
@@ -37,7 +37,7 @@ def extreme_numbers(source: ast.AST) -> set[float]:
     }
 
 
-@pytest.mark.parametrize("path", FILES, ids=[str(path.relative_to(ROOT)) for path in FILES])
+@of_every(FILES)
 def test_no_threshold_stands_alone(path: Path) -> None:
     if path not in DEFINED:
         name = str(path.relative_to(ROOT))
@@ -56,7 +56,7 @@ def test_a_threshold_is_seen(source: str) -> None:
     assert extreme_numbers(ast.parse(source))
 
 
-@pytest.mark.parametrize("path", DEFINED, ids=[path.stem for path in DEFINED])
+@of_every(DEFINED)
 def test_every_limit_has_a_reason(path: Path) -> None:
     body = tree(path).body
     for node, after in zip(body, [*body[1:], None], strict=True):

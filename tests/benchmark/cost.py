@@ -24,7 +24,7 @@ sys.path.append(str(HERE.parents[1]))
 
 from benchmark.specimens import sevenr_specimen
 from change_points.four_bars import FourBar, file_of, joints_of
-from mpmath import mp, mpf
+from oracle.numerics import mp
 from random_families.no_wrong_row.branch import TURN, Undecided, way
 from random_families.no_wrong_row.case import drawn
 
@@ -109,7 +109,7 @@ def ratios(versions: dict[str, Version], rounds: int) -> ReportTable:
 
 def near_change_point(gap: str, pairs: str, copies: int) -> str:
     """A crank-rocker, drawn several times over, that passes its change point by a gap."""
-    rod = mpf("0.5") + mpf("2") - mpf("1.1") + mpf(gap)
+    rod = mp.mpf("0.5") + mp.mpf("2") - mp.mpf("1.1") + mp.mpf(gap)
     bar = FourBar("0.5", mp.nstr(rod, 20), "1.1", "2", 1)
     links, joints = ["crank"], ""
     for k in range(copies):

@@ -36,8 +36,28 @@ def twist_matrix(angular: Sequence[Any], linear: Sequence[Any]) -> Matrix:
 
 
 def exponential(angular: Sequence[Any], linear: Sequence[Any], by: Any = 1) -> Matrix:
-    """The displacement along a screw."""
-    return mp.expm(twist_matrix(angular, linear) * mp.mpf(by))
+    """The displacement along a screw: the exponential of its twist, summed (there (2.36))."""
+    w, v = ([mp.mpf(by) * c for c in part] for part in (angular, linear))
+    size = mp.sqrt(sum(c * c for c in w))
+    if not size:
+        return mp.matrix([[1, 0, 0, v[0]], [0, 1, 0, v[1]], [0, 0, 1, v[2]], [0, 0, 0, 1]])
+    half_cosine, half_sine = mp.cos_sin(size / 2)
+    sine, versed = 2 * half_sine * half_cosine, 2 * half_sine**2
+    x, y, z = u = [c / size for c in w]
+    across = [y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0]]
+    along, part = sum(a * b for a, b in zip(u, v, strict=True)), sine / size
+    skew = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
+    rows = [
+        [
+            *(
+                (1 - versed if i == j else 0) + versed * u[i] * u[j] + sine * skew[i][j]
+                for j in range(3)
+            ),
+            part * v[i] + versed / size * across[i] + (1 - part) * along * u[i],
+        ]
+        for i in range(3)
+    ]
+    return mp.matrix([*rows, [0, 0, 0, 1]])
 
 
 def vector(m: Matrix, column: int) -> list[Any]:

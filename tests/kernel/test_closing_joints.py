@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from kernel.pairs import PAIRS, O, X, Y, Z, derivative, exponential, mp
+from kernel.pairs import PAIRS, O, X, Y, Z, derivative, exponential, mp, twist_matrix
 from kernel.plans import LENGTH, TABLE
 from kernel.probe import MOVED, Probe, largest
 
@@ -24,6 +24,15 @@ LOAD_POINT = (0.4, 0.3, -0.2)
 @pytest.fixture(params=[(letter, seed) for letter in CLOSING for seed in range(2)], ids=str)
 def probe(request: pytest.FixtureRequest) -> Probe:
     return Probe(*request.param)
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-30, 1e-9, 0.7, 3.0, 20.0])
+def test_exponentials_are_the_series_of_their_twists(size: float) -> None:
+    twist = np.random.default_rng(7).standard_normal(6).tolist()
+    angular, linear = [size * x for x in twist[:3]], twist[3:]
+    with mp.workdps(60):
+        series = mp.expm(twist_matrix(angular, linear) * mp.mpf("0.3"))
+    assert largest(exponential(angular, linear, mp.mpf("0.3")) - series) < 1e-37
 
 
 def test_equations_vanish_on_the_own_motion(probe: Probe) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from jsonschema.validators import validator_for
+
 
 def _object(**properties: Any) -> dict[str, Any]:
     return {
@@ -195,3 +197,6 @@ DATA = _object(
         arrow_length=_or_null(NUMBER),
     ),
 )
+
+FORM = validator_for(DATA)(DATA)
+"""Validates data; that `DATA` itself is a schema is tested once, not every time."""

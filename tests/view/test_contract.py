@@ -10,7 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 from references import FILE_OF
-from view.contract import DATA
+from view.contract import DATA, FORM
 from view.seen import array, data
 
 import mechkin_cli as mk
@@ -29,7 +29,7 @@ LARGEST = 1_000_000
 def test_every_mechanism_has_a_page(path) -> None:
     model = mk.load(path)
     shown = data(model)
-    jsonschema.validate(shown, DATA)
+    FORM.validate(shown)
     assert len(script_json(shown)) <= LARGEST
     links = len(shown["links"])
     assert [run["name"] for run in shown["runs"]] == list(model.runs)
@@ -56,13 +56,14 @@ def test_every_mechanism_has_a_page(path) -> None:
 
 
 def test_the_form_is_told_from_another() -> None:
+    FORM.check_schema(DATA)
     shown = data(mk.load(FILE_OF["planar_four_bar"]))
     for key in DATA["required"]:
         with pytest.raises(jsonschema.ValidationError):
-            jsonschema.validate({k: v for k, v in shown.items() if k != key}, DATA)
+            FORM.validate({k: v for k, v in shown.items() if k != key})
     shown["joints"][0]["halves"].pop()
     with pytest.raises(jsonschema.ValidationError):
-        jsonschema.validate(shown, DATA)
+        FORM.validate(shown)
 
 
 def shown_cell(column: TableColumn, row: int) -> str:

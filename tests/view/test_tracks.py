@@ -3,10 +3,9 @@ or ball on them in every row."""
 
 from __future__ import annotations
 
-import jsonschema
 import numpy as np
 import pytest
-from view.contract import DATA
+from view.contract import FORM
 from view.seen import data
 
 import mechkin_cli as mk
@@ -136,7 +135,7 @@ def test_pictures_have_the_curve_between_two_walls(text: str) -> None:
 def test_pages_have_places_of_curves_and_surfaces() -> None:
     """On the joint's second link; straight grooves have none."""
     slot = data(mk.loads(SLOT.replace("CURVE", "{center: [90, 0]}")), modes=False)
-    jsonschema.validate(slot, DATA)
+    FORM.validate(slot)
     tracks = {joint["name"]: joint["track"] for joint in slot["joints"]}
     assert tracks["A"] is tracks["B"] is None
     (row,) = tracks["D"]["rows"]
@@ -146,6 +145,6 @@ def test_pages_have_places_of_curves_and_surfaces() -> None:
     assert [joint["track"] for joint in straight["joints"]] == [None] * 3
     text = BALL.replace("POINT", "[30, 0, 0]").replace("SURFACE", "{sphere: [0, 0, 0], radius: 30}")
     ball = data(mk.loads(text), modes=False)
-    jsonschema.validate(ball, DATA)
+    FORM.validate(ball)
     (track,) = (joint["track"] for joint in ball["joints"] if joint["name"] == "D")
     assert np.linalg.norm(np.array(track["rows"]), axis=2) == pytest.approx(30.0)

@@ -7,11 +7,10 @@ import re
 from math import acos, pi, sqrt
 from typing import Any
 
-import jsonschema
 import numpy as np
 import pytest
 from references import FILE_OF
-from view.contract import DATA
+from view.contract import FORM
 from view.seen import data
 
 import mechkin_cli as mk
@@ -311,7 +310,7 @@ def test_a_cable_keeps_its_length_and_touches_its_pulleys(side: str, other: str)
             ends = np.linalg.norm(line - centre, axis=1)
             assert np.sum(np.abs(ends - abs(beside)) < 1e-12) >= 3
     assert np.ptp(lengths) < 7e-4 * 2.0 * pi * 0.04
-    jsonschema.validate(data(model, modes=False), DATA)
+    FORM.validate(data(model, modes=False))
 
 
 @pytest.mark.parametrize("space", [False, True])
@@ -341,7 +340,7 @@ motion: {inputs: {A.theta: {from: 0, to: 40, step: 10}}}
         )
         assert ends.min() == pytest.approx(wheel.radius)
         assert chords.min() > 0.99 * wheel.radius
-    jsonschema.validate(data(model, modes=False), DATA)
+    FORM.validate(data(model, modes=False))
 
 
 ROBOT = """\
@@ -389,7 +388,7 @@ def test_a_pulley_that_swivels_is_drawn_in_the_plane_of_its_cable(backwards: boo
         touch = rim[0] if backwards else rim[-1]
         assert abs((touch - centre) @ (point - touch)) < 1e-15
     assert np.ptp(lengths) < 7e-4 * pi * 0.015
-    jsonschema.validate(data(model, modes=False), DATA)
+    FORM.validate(data(model, modes=False))
 
 
 def test_a_free_pulley_is_drawn_in_the_plane_of_its_cable() -> None:
@@ -426,7 +425,7 @@ motion: {inputs: {Y.s: {from: 0, to: 40, step: 10}}}
         for end, touch in ((row[0], line[1]), (row[2], line[-2])):
             assert abs((touch - row[1]) @ (end - touch)) < 1e-15
     assert np.ptp(lengths) < 7e-4 * pi * 0.015
-    jsonschema.validate(data(model, modes=False), DATA)
+    FORM.validate(data(model, modes=False))
 
 
 def test_a_tackle_passes_its_points_in_turn() -> None:
@@ -475,7 +474,7 @@ motion: {{inputs: {{A.theta: {{from: 0, to: 3600, step: 360}}}}}}
 """
     )
     shown = data(mk.loads(text), modes=False)
-    jsonschema.validate(shown, DATA)
+    FORM.validate(shown)
     names = [link["name"] for link in shown["links"]]
     (screw,) = shown["screws"]
     assert (names[screw["link"]], names[screw["nut"]["link"]]) == ("spindle", "nut")
@@ -502,7 +501,7 @@ limits: {A.theta: [-30, 120], S.s: {max: 5}}
 """
     )
     shown = data(mk.loads(text), modes=False)
-    jsonschema.validate(shown, DATA)
+    FORM.validate(shown)
     stops = [joint["stops"] for joint in shown["joints"]]
     assert stops[0]["turn"] == pytest.approx([-pi / 6.0, 2.0 * pi / 3.0])
     assert stops[1] == stops[2] == {"turn": None, "slide": None}
