@@ -107,6 +107,7 @@ class Recording:
         self.outputs: list[int] = []
         self.left: list[Plain] = []
         self.wanted: dict[str, Wanted] = {}
+        self.judges_forces = False
         self.beside = Demand.POSITION  # of columns that are left out, and of the power error
 
     # Numbers that hang on parameters alone, and columns that are given.
@@ -336,8 +337,9 @@ class Recording:
 
     def _verdict(self) -> Plain:
         slots = self.reading.slots
-        frictions = [q.name for q in friction_states(self.problem.mechanism)]
-        strands = [q.name for q in slack_quantities(self.problem)]
+        # forces are judged where the command computes some, not where arrows alone ask for them
+        judged = [friction_states(self.problem.mechanism), slack_quantities(self.problem)]
+        frictions, strands = ([q.name for q in one if self.judges_forces] for one in judged)
         limits = []
         length = self.variation.layout.length
         recorded = {limit.name: limit for limit in self.recorded.limits}
@@ -425,6 +427,7 @@ class Recording:
         # arrows ask for forces that the command does not compute: no power error is told by them
         asked = demand_of(problem.mechanism, self.wanted.values()) | self.beside
         has_power = bool(asked & Demand.FORCES and asked & Demand.VELOCITY)
+        self.judges_forces = bool(asked & Demand.FORCES)
         poses = pose_records(self, self.data)
         arrows = arrows_of(self, self.data)
         demand = demand_of(problem.mechanism, self.wanted.values()) | asked
