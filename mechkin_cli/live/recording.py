@@ -14,6 +14,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly import HOME, NEAR
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName
 from mechkin_cli.kernel.plan_text import record_lines, tape_text
+from mechkin_cli.live.cables import cable_coordinates, cable_verdicts
 from mechkin_cli.live.cells import MEASURES, CellRecorder, scalar_of
 from mechkin_cli.live.drawing import arrows_of, drawing_of, pose_records
 from mechkin_cli.mechanism import (
@@ -280,6 +281,8 @@ class Recording:
                 self._leave(table.name, layout, str(why))
         for wanted in limited(self.problem):
             self.need([wanted.name])
+        if self.analysis.run == SWEEP:
+            self.wanted |= {q.name: q for q in cable_coordinates(self.problem.mechanism)}
 
     def _table_records(self) -> list[Plain]:
         result = self.analysis.result
@@ -359,6 +362,7 @@ class Recording:
             "friction": [slots[name].start for name in frictions if name in slots],
             "undecided": int(Status.friction_undecided),
             "strands": [slots[name].start for name in strands if name in slots],
+            "cables": cable_verdicts(self) if self.analysis.run == SWEEP else [],
             "slack": [float(tolerances.UNIQUE_CELL), int(Status.slack)],
             "limits": limits,
             "beyond": int(Status.beyond_limit),
@@ -368,8 +372,6 @@ class Recording:
 
     def why_left(self) -> str | None:
         """Why the page leaves the whole run to the command; None where it does not."""
-        if self.problem.mechanism.has_arcs:
-            return "whether cables stay on their pulleys is judged beside the run"
         return None if self._is_base() else "its rows are not those of the file's own assembly"
 
     def _plan(self, demand: Demand) -> Plain:
