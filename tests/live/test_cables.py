@@ -72,3 +72,13 @@ def test_a_cable_is_drawn_over_the_pulley_as_large_as_it_is() -> None:
     wanted, _ = page_data([loads(ARC.replace("r: 0.3", "r: 0.2")).analyze()], modes=False)
     (found,) = computed(data, [{"r": 0.2}])
     assert found["drawn"]["cables"] == wanted["cables"] != data["cables"]
+
+
+def test_a_cable_over_points_alone_follows() -> None:
+    text = ARC.replace("{pulley: o, radius: r, side: left}", "o").replace(
+        "[1, 0]}\n  S", "[e, 0]}\n  S"
+    )
+    model = loads(text.replace("r: 0.3 m", "e: 1 m").replace("at: [2, 0]", "at: [2*e, 0]"))
+    data, _ = page_data([model.analyze()], modes=False)
+    assert data["cables"][0]["beside"] == [0.0, 0.0, 0.0]
+    assert checked_run("points", model, SWEEP, variants=3) > 1
