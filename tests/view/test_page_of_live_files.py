@@ -140,6 +140,25 @@ def test_an_empty_column_says_why(browser: Browser, tmp_path: Path) -> None:
     eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
 
 
+def test_curves_that_hardly_differ_are_drawn(browser: Browser, tmp_path: Path) -> None:
+    """The block's speed in the tackle changes by less than 1e-9 of it."""
+    text = (
+        FILE_OF["tackle"]
+        .read_text(encoding="utf-8")
+        .replace("[300, 20], axis", "[300, 20.5361], axis")
+    )
+    browser.open(mk.loads(text).view(tmp_path / "page.html", modes=False))
+    changed = browser.evaluate("""(async () => {
+      const { dimensions, curves } = window.mechkin;
+      dimensions.set('points.d.at.y', 0.00979684);
+      for (let k = 0; k < 5; k += 1) await new Promise((done) => requestAnimationFrame(done));
+      return [dimensions.changed, curves.plots.map(({ scales }) => scales.y.max > scales.y.min)];
+    })()""")
+    assert changed[0]
+    assert set(changed[1]) == {True}
+    assert browser.told()["said"] == []
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [
