@@ -132,6 +132,7 @@ def _drawn(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any],
     yield from _links(recording, data, own, drawn)
     yield from _ties(recording, data, own, drawn)
     yield from _radii(recording, data)
+    yield from _cables(recording, data)
 
 
 def _vector(path: list[Any], vector: Any, is_length: bool) -> Iterator[tuple[list[Any], Any, bool]]:
@@ -195,7 +196,8 @@ def _radii(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any],
     units, lengths = problem.units, Lengths(problem.units)
     links = data["links"]
     for section in model.built.file.couplings.values():
-        for name, text in zip(section.joints, getattr(section, "radii", None) or (), strict=False):
+        radii = getattr(section, "radii", None) or ()
+        for name, text in zip(section.joints if radii else (), radii, strict=False):
             joint = problem.mechanism.joints.get(name)
             radius = constant(text, LENGTH, units, lookup(recording.recorded.parameters))
             if joint is None or not isinstance(radius, Recorded):
@@ -205,6 +207,19 @@ def _radii(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any],
                 is_there = links[wheel["link"]]["name"] in (joint.first, joint.second)
                 if is_there and wheel["radius"] == own:
                     yield ["wheels", at, "radius"], radius, True
+
+
+def _cables(recording: Any, data: Mapping[str, Any]) -> Iterator[tuple[list[Any], Any, bool]]:
+    """How far cables run beside the centres of their pulleys and drums."""
+    problem, couplings = recording.problem, recording.analysis.model.built.file.couplings
+    cables = (one.path for one in couplings.values() if one.type == "cable")
+    for at, (path, cable) in enumerate(zip(cables, data["cables"], strict=True)):
+        for k, (place, beside) in enumerate(zip(path, cable["beside"], strict=True)):
+            text = getattr(place, "radius", None)
+            if text is not None and beside:
+                known = lookup(recording.recorded.parameters)
+                radius: Any = constant(text, LENGTH, problem.units, known)
+                yield ["cables", at, "beside", k], radius if beside > 0.0 else -radius, True
 
 
 def _points(mechanism: Mechanism, link: str) -> list[Any]:

@@ -20,7 +20,8 @@ from mechkin_cli.live.recording import LeftOut, Recording, factor_of
 from mechkin_cli.live.response import ResponseRecording
 from mechkin_cli.reading import value_spans
 from mechkin_cli.tape import TraceLost, Verdict
-from mechkin_cli.units import UnitSystem
+from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
+from mechkin_cli.units import LENGTH, UnitSystem
 from mechkin_cli.variants import VariedDesign, base_of
 from mechkin_cli.verdict import SWEEP
 
@@ -176,6 +177,8 @@ def _slider(quantity: Quantity, units: UnitSystem, told: Plain, ends: tuple[floa
         "low": ends[0],
         "high": ends[1],
         "si": float(quantity.value),  # type: ignore[arg-type]
+        "least": SMALLEST_SIZE if quantity.dimension == LENGTH else 0.0,
+        "most": LARGEST_NUMBER,
         "factor": factor_of(conversion),
     }
 

@@ -14,6 +14,7 @@ from mechkin_cli import tolerances
 from mechkin_cli.assembly import HOME, NEAR
 from mechkin_cli.expressions import ExpressionError, Quantity, UnknownName
 from mechkin_cli.kernel.plan_text import record_lines, tape_text
+from mechkin_cli.live.cables import cable_coordinates, cable_verdicts
 from mechkin_cli.live.cells import MEASURES, CellRecorder, scalar_of
 from mechkin_cli.live.drawing import arrows_of, drawing_of, pose_records
 from mechkin_cli.mechanism import (
@@ -107,6 +108,7 @@ class Recording:
         self.outputs: list[int] = []
         self.left: list[Plain] = []
         self.wanted: dict[str, Wanted] = {}
+        self.judges_forces = False
         self.beside = Demand.POSITION  # of columns that are left out, and of the power error
 
     # Numbers that hang on parameters alone, and columns that are given.
@@ -279,6 +281,8 @@ class Recording:
                 self._leave(table.name, layout, str(why))
         for wanted in limited(self.problem):
             self.need([wanted.name])
+        if self.analysis.run == SWEEP:
+            self.wanted |= {q.name: q for q in cable_coordinates(self.problem.mechanism)}
 
     def _table_records(self) -> list[Plain]:
         result = self.analysis.result
@@ -336,8 +340,9 @@ class Recording:
 
     def _verdict(self) -> Plain:
         slots = self.reading.slots
-        frictions = [q.name for q in friction_states(self.problem.mechanism)]
-        strands = [q.name for q in slack_quantities(self.problem)]
+        # forces are judged where the command computes some, not where arrows alone ask for them
+        judged = [friction_states(self.problem.mechanism), slack_quantities(self.problem)]
+        frictions, strands = ([q.name for q in one if self.judges_forces] for one in judged)
         limits = []
         length = self.variation.layout.length
         recorded = {limit.name: limit for limit in self.recorded.limits}
@@ -357,6 +362,7 @@ class Recording:
             "friction": [slots[name].start for name in frictions if name in slots],
             "undecided": int(Status.friction_undecided),
             "strands": [slots[name].start for name in strands if name in slots],
+            "cables": cable_verdicts(self) if self.analysis.run == SWEEP else [],
             "slack": [float(tolerances.UNIQUE_CELL), int(Status.slack)],
             "limits": limits,
             "beyond": int(Status.beyond_limit),
@@ -366,8 +372,6 @@ class Recording:
 
     def why_left(self) -> str | None:
         """Why the page leaves the whole run to the command; None where it does not."""
-        if self.problem.mechanism.has_arcs:
-            return "whether cables stay on their pulleys is judged beside the run"
         return None if self._is_base() else "its rows are not those of the file's own assembly"
 
     def _plan(self, demand: Demand) -> Plain:
@@ -425,6 +429,7 @@ class Recording:
         # arrows ask for forces that the command does not compute: no power error is told by them
         asked = demand_of(problem.mechanism, self.wanted.values()) | self.beside
         has_power = bool(asked & Demand.FORCES and asked & Demand.VELOCITY)
+        self.judges_forces = bool(asked & Demand.FORCES)
         poses = pose_records(self, self.data)
         arrows = arrows_of(self, self.data)
         demand = demand_of(problem.mechanism, self.wanted.values()) | asked

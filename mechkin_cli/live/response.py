@@ -23,7 +23,7 @@ from mechkin_cli.mechanism import (
     Varying,
     response_quantities,
 )
-from mechkin_cli.plan import Demand
+from mechkin_cli.plan import Demand, demand_of
 from mechkin_cli.record import replace
 from mechkin_cli.response import ENERGIES, free_session, watched_stop
 from mechkin_cli.session import RESIDUAL_TESTS, angle_slots
@@ -92,6 +92,8 @@ class ResponseRecording(Recording):
         computed = []
         for name in names:
             given = self._given_efforts(name)
+            if given:  # the command computes forces for it all the same
+                self.beside |= demand_of(self.problem.mechanism, [self.known[name]])
             for effort in given:
                 if isinstance(effort.amount, Varying):
                     self.need(self._law_reads(effort.amount))

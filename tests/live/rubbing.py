@@ -126,6 +126,32 @@ RCSR = (
     )
 )
 
+PUSHED = INCLINE.partition("tables:")[0]
+"""Its own tables are those that the command writes by itself, with the effort that is given."""
+
+WAYS = (
+    UNITS
+    + """
+parameters: {mu: 0.3, r: 0.3 m, w: 1.5 m/s, m: 2 kg, first: 0.5 rad}
+links:
+  a: {mass: m, center_of_mass: [-0.4, 0.3, 0]}
+  b: {mass: 1, center_of_mass: [0, 0, -5.5], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}
+joints:
+  A: {type: C, links: [ground, a], point: [0, 0, 0], axis: [3, 4, 0]}
+  T: {type: Sp, links: [a, ground], point: [-0.8, 0.6, 0], normal: [0, 0, 1]}
+  B: {type: R, links: [ground, b], point: [0, 0, -5], axis: [1, 0, 0]}
+loads:
+  - {type: gravity, g: [0, 0, -10]}
+  - {type: friction, joint: T, coefficient: mu}
+  - {type: friction, joint: A, coefficient: mu, radius: r}
+responses:
+  go:
+    start: {A.s: 0, A.s_dot: w, B.theta: first, B.theta_dot: 0}
+    time: {from: 0, to: 2, count: 21}
+"""
+)
+"""Of which no table asks for forces, so that nothing is said of what friction leaves undecided."""
+
 RESPONSES = {
     "incline": (INCLINE, "go"),
     "pendulum": (PENDULUM, "go"),
@@ -134,5 +160,7 @@ RESPONSES = {
     "arm": (ARM, "go"),
     "crank": (CRANK, "go"),
     "rcsr": (RCSR, "response"),
+    "pushed": (PUSHED, "go"),
+    "ways": (WAYS, "go"),
 }
 """The text of a file and its response, by name."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from live.test_cells import with_values
+from live.test_left import driven
 from references import FILE_OF, SWEPT
 from view.browser import Browser
 from view.test_live_page import eventually
@@ -139,6 +140,25 @@ def test_an_empty_column_says_why(browser: Browser, tmp_path: Path) -> None:
     eventually(lambda: browser.evaluate(cells), [["mode", ""], ["B", ""]])
 
 
+def test_curves_that_hardly_differ_are_drawn(browser: Browser, tmp_path: Path) -> None:
+    """The block's speed in the tackle changes by less than 1e-9 of it."""
+    text = (
+        FILE_OF["tackle"]
+        .read_text(encoding="utf-8")
+        .replace("[300, 20], axis", "[300, 20.5361], axis")
+    )
+    browser.open(mk.loads(text).view(tmp_path / "page.html", modes=False))
+    changed = browser.evaluate("""(async () => {
+      const { dimensions, curves } = window.mechkin;
+      dimensions.set('points.d.at.y', 0.00979684);
+      for (let k = 0; k < 5; k += 1) await new Promise((done) => requestAnimationFrame(done));
+      return [dimensions.changed, curves.plots.map(({ scales }) => scales.y.max > scales.y.min)];
+    })()""")
+    assert changed[0]
+    assert set(changed[1]) == {True}
+    assert browser.told()["said"] == []
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [
@@ -162,6 +182,21 @@ def test_a_page_that_computes_nothing_says_why(
     browser.open(mk.load(FILE_OF[name]).view(tmp_path / "page.html", modes=False))
     shown = "document.querySelector('#dimensions:not([hidden]) .remark')?.textContent"
     eventually(lambda: browser.evaluate(shown), words)
+
+
+def test_a_run_that_does_not_follow_says_why_where_it_is_shown(
+    browser: Browser, tmp_path: Path
+) -> None:
+    browser.open(driven().view(tmp_path / "page.html", modes=False))
+    remark = "document.querySelector('#dimensions .remark').textContent"
+    browser.evaluate("window.mechkin.dimensions.set('m', 0.8)")
+    eventually(lambda: browser.evaluate("window.mechkin.dimensions.changed"), True)
+    assert browser.evaluate(remark) == ""
+    browser.evaluate("window.mechkin.setRun('run')")
+    words = "This run is shown with the file's dimensions: laws of time drive coordinates in it."
+    eventually(lambda: browser.evaluate(remark), words)
+    browser.evaluate("window.mechkin.setRun('free')")
+    eventually(lambda: browser.evaluate(remark), "")
 
 
 def test_a_browser_that_refuses_the_solver_is_named(browser: Browser, tmp_path: Path) -> None:

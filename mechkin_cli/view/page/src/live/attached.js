@@ -21,7 +21,7 @@ export class Attached {
   }
 
   /** The parts of the data that hang on the joints and points of `drawn`. */
-  moved({ joints = this.data.joints, points = this.data.points, wheels = this.data.wheels }) {
+  moved({ joints = this.data.joints, points = this.data.points, wheels = this.data.wheels, cables = this.data.cables }) {
     const { data } = this;
     const shift = (place, at) => {
       if (!at) return place;
@@ -38,7 +38,7 @@ export class Attached {
       screws: data.screws.map((screw, k) => ({
         ...screw, centre: shift(screw.centre, this.screws[k][0]), nut: { ...screw.nut, centre: shift(screw.nut.centre, this.screws[k][1]) },
       })),
-      cables: data.cables.length === 0 ? data.cables : data.cables.map((cable, k) => ({
+      cables: cables.map((cable, k) => ({
         ...cable, places: cable.places.map((place, n) => shift(place, this.points[k][n] ?? this.cables[k][n])),
       })),
     };

@@ -25,7 +25,7 @@ export class DimensionPanel {
     this.original.title = "Draw the file's own dimensions pale, and their curves dashed";
     this.rows = dimensions.parameters.map((parameter) => new DimensionRow(parameter, dimensions));
     const takes = acts.map(({ text, short, act }) => press(short, text, () => this.#act(act)));
-    host.append(
+    host.replaceChildren(
       element("summary", {}, element("h2", {}, "Dimensions")),
       element("div.actions", { role: "toolbar", "aria-label": "Dimensions" }, this.back, this.on, this.reset, this.original, ...takes, this.copied),
       this.words,
@@ -82,7 +82,7 @@ export class DimensionPanel {
 /** In place of the panel, where nothing of the page can be changed: why, and the command that does. */
 export function showStill(host, { why, named, command }) {
   const names = named ? "" : "Name the numbers under parameters: in the file, and set them by ";
-  host.append(
+  host.replaceChildren(
     element("summary", {}, element("h2", {}, "Dimensions")),
     element("p.remark", {}, `They cannot be changed in this page: ${why}. ${names}`, element("code", {}, command), named ? " computes it with others." : ""),
   );

@@ -91,7 +91,7 @@ export class LiveRun {
     const kernel = this.kernel;
     const at = this.places;
     const given = this.inSi(values);
-    if (given.some((value) => !Number.isFinite(value))) return { end: "lost", words: "a value is no finite number" };
+    if (given.some((value, k) => !isUsable(value, this.parameters[k]))) return { end: "lost", words: "a value is too large or too small to compute with" };
     kernel.doubles(at.parameters, given.length).set(given);
     try {
       const { end, words, first, last } = this.run();
@@ -244,4 +244,10 @@ export class LiveRun {
     });
     return `stops at ${STOPS[told[3 + side]]}, ${places.join(", ")}`;
   }
+}
+
+/** Whether a value in SI is a number that the command takes, too. */
+function isUsable(value, { least = 0, most = Number.MAX_VALUE }) {
+  const size = Math.abs(value);
+  return value === 0 || (size >= least && size <= most);
 }

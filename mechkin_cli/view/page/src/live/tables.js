@@ -29,6 +29,13 @@ export class LiveTables {
         doubtful ||= !(condition[row] <= verdict.clear);
       });
     }
+    for (const { cell, limit, both, status } of verdict.cables) {
+      const most = run.numbers[limit];
+      each(run.cell(cell), (row, values) => {
+        const beyond = values[row] < -most || (both && values[row] > most);
+        if (beyond && codes[row] === 0) codes[row] = status;
+      });
+    }
     for (const slot of verdict.friction) each(run.slot(slot), (row, state) => state[row] !== 0 && (codes[row] = verdict.undecided));
     const [level, ...strands] = verdict.strands.map((slot) => run.slot(slot));
     const [share, slack] = verdict.slack;

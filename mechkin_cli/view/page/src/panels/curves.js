@@ -4,7 +4,7 @@ import uPlot from "uplot";
 import { MARKS, curveColour } from "../colours.js";
 import { numbers } from "../data.js";
 import { element } from "../dom.js";
-import { told } from "../numbers.js";
+import { levelled, told } from "../numbers.js";
 import { ColumnChoice } from "./column_choice.js";
 
 const FIRST_COLUMNS = 3;
@@ -123,7 +123,7 @@ export class Curves {
       height: this.#height(count),
       cursor: { sync: { key: this.sync.key }, drag: { x: true, y: false }, focus: { prox: 24 } },
       legend: { show: false }, // the chips above the plots are the legend
-      scales: { x: { time: false } },
+      scales: { x: { time: false }, y: { range: (_, low, high) => (low === null ? [null, null] : uPlot.rangeNum(...levelled(low, high), 0.1, true)) } },
       axes: [
         { ...axis, label: last ? (this.axis.byRow ? "row" : withUnit(label, xUnit)) : undefined, labelSize: last ? 20 : 0, size: last ? 36 : 28 },
         { ...axis, label: withUnit(columns.length === 1 ? columns[0].label : "", unit), size: 62, values: (_, ticks) => ticks.map((tick) => told(tick, 4)) },
