@@ -210,7 +210,7 @@ inline void span_frame(const Plan& p, const ReducedMotion& m, const Slips& s, in
     return dot(span.direction[0], a) * span.direction[0] +
            select(two, dot(span.direction[1], a) * span.direction[1], zero3());
   };
-  const Mask is_told = select(two, found.span[k], Pack(2.0)) > Pack(1.0) & span.found[0];
+  const Mask is_told = (select(two, found.span[k], Pack(2.0)) > Pack(1.0)) & span.found[0];
   Vec3 now[2];
   now[0] = normalised_or(project(before[0]), span.direction[0]);
   const Vec3 second = project(before[1]);
