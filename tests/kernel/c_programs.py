@@ -54,7 +54,10 @@ class Built(NamedTuple):
 def of_core(core: Path, folder: Path) -> Path:
     """The library in C of a core that was built for Python."""
     whole = ["-Wl,--whole-archive", str(core), "-Wl,--no-whole-archive"]
-    options = ["-O1", "-shared", "-pthread", "-fno-exceptions", "-fno-rtti", *whole]
+    by_text = [
+        str(SOURCES / name) for name in ("response/varied_response.cpp", "text/plan_text.cpp")
+    ]
+    options = ["-O1", "-shared", "-pthread", "-fno-exceptions", "-fno-rtti", *by_text, *whole]
     return compile_with(SOURCES.parent / "c" / "mechkin.cpp", folder / "libmechkin.so", *options)
 
 

@@ -79,7 +79,7 @@ nb::tuple prove_tubes(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const Plan& p = plan.view();
   refuse_charts(p);
   Arguments given(keywords);
-  Way way = {};
+  WayOfRows way = {};
   way.place = given.read_required("place", Arguments::ONE_PER_ROW);
   way.inputs = given.read_required("inputs", p.inputs);
   way.off = given.read_required("off", p.inputs);

@@ -6,6 +6,7 @@
 
 #include <tuple>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "new_array.hpp"
 #include "refusals.hpp"
@@ -17,12 +18,7 @@ using namespace nb::literals;
 
 namespace {
 
-using Row = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using PieceRecord = std::tuple<long, long, double, double, double, double>;
-
-std::vector<double> copy_of(const Row& a) { return {a.data(), a.data() + a.shape(0)}; }
-std::vector<double> copy_of(const Rows& a) { return {a.data(), a.data() + a.shape(0) * a.shape(1)}; }
 
 void need_piece(const Course& course, long piece) {
   if (piece < 0 || piece >= (long)course.pieces().size()) throw nb::value_error("no such piece");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "integrator/tape_motion.hpp"
 #include "new_array.hpp"
@@ -16,11 +17,6 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
-
-using Row = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-std::vector<double> copy_of(const Rows& a) { return {a.data(), a.data() + a.shape(0) * a.shape(1)}; }
 
 nb::dict lane_report(const LaneReport& r) {
   nb::dict d;

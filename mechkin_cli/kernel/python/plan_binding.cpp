@@ -73,7 +73,7 @@ double measured_size(const FrozenPlan& plan, const nb::kwargs& keywords) {
   return assembly_size(p, unit, inputs, guess, {tests[0], tests[1], tests[2], iterations}, memory);
 }
 
-void run(const FrozenPlan& plan, const nb::kwargs& keywords) {
+void run_plan(const FrozenPlan& plan, const nb::kwargs& keywords) {
   const Plan& p = plan.view();
   Arguments given(keywords);
   Request r = {};
@@ -212,7 +212,7 @@ void bind_plan(nb::module_& m) {
       .def("with_constants", &with_constants<FrozenPlan>, "constants"_a)
       .def("with_size", &with_size, "size"_a)
       .def("assembly_size", &measured_size, "arguments"_a)
-      .def("run", &run, "arguments"_a)
+      .def("run", &run_plan, "arguments"_a)
       .def("run_precise", &run_precise, "arguments"_a)
       .def("search", &search, "arguments"_a);
   bind_outputs(m);

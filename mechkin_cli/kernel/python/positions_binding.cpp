@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "refusals.hpp"
 #include "rows/units.hpp"
@@ -18,13 +19,6 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace {
-
-using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-std::vector<double> copy_of(const Table& a, long rows, const char* name) {
-  if ((long)a.shape(1) != rows) throw nb::value_error((std::string(name) + ": wrong number of rows").c_str());
-  return {a.data(), a.data() + a.shape(0) * a.shape(1)};
-}
 
 // The outputs at some inputs in kernel units and the condition there, 0 where it is not demanded; None where there is no
 // position.
@@ -46,9 +40,9 @@ nb::object solve(Positions& positions, const std::vector<double>& inputs, const 
 void bind_positions(nb::module_& m) {
   nb::class_<Positions>(m, "Positions")
       .def("__init__",
-           [](Positions* at, const FrozenPlan& plan, const OutputList& outputs, const Table& inputs,
-              const Table& whole, const Table& rates, const Table& accelerations, const Table& jerks, const Table& states,
-              const Table& turns, unsigned demand, int iterations, const StepLimits& limits,
+           [](Positions* at, const FrozenPlan& plan, const OutputList& outputs, const Rows& inputs,
+              const Rows& whole, const Rows& rates, const Rows& accelerations, const Rows& jerks, const Rows& states,
+              const Rows& turns, unsigned demand, int iterations, const StepLimits& limits,
               const std::vector<std::tuple<int, int, bool>>& angles) {
              const long n = (long)inputs.shape(1);
              KnownRows rows = {n,

@@ -3,10 +3,14 @@
 
 #include <nanobind/nanobind.h>
 
+#include <string>
 #include <utility>
 
 #include "result.hpp"
 
+inline void need(bool holds, const std::string& message) {
+  if (!holds) throw nanobind::value_error(message.c_str());
+}
 inline void value_of(const Refusal& refusal) {
   if (refusal) throw nanobind::value_error(refusal->c_str());
 }

@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <tuple>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "new_array.hpp"
 #include "plan/frozen_plan.hpp"
 #include "refusals.hpp"
 #include "response/response.hpp"
+#include "rows/run.hpp"
 #include "rows/units.hpp"
 
 namespace nb = nanobind;
@@ -19,10 +21,7 @@ using namespace nb::literals;
 
 namespace {
 
-using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-const double* checked(const Table& a, std::size_t variants, long width, const char* name) {
+const double* checked(const Rows& a, std::size_t variants, long width, const char* name) {
   if (a.shape(0) != variants || (long)a.shape(1) != width)
     throw nb::value_error((std::string(name) + ": not of the shape (variants, " + std::to_string(width) + ")").c_str());
   if (!all_finite(a.data(), a.shape(0) * a.shape(1)))
@@ -55,11 +54,6 @@ nb::dict report_of(const ResponseReport& report) {
 
 using Stops = std::vector<std::tuple<int, int, int, double, int, int>>;
 constexpr int MOST_POWER = 64;
-constexpr int MOST_ITERATIONS = 10000;
-
-void need(bool holds, const char* message) {
-  if (!holds) throw nb::value_error(message);
-}
 
 // The plans of some objects, which must outlive them.
 std::vector<const FrozenPlan*> plans_of(const std::vector<nb::object>& objects) {
@@ -94,8 +88,8 @@ std::vector<MotionStop> stops_of(const Stops& stops) {
 }
 
 // `held` are plans; references, for another thread may change the list meanwhile.
-nb::tuple run(const std::vector<nb::object>& held, const Table& state, const Table& first, const Table& tangent,
-              double begin, const Numbers& times, const Stops& stops, const DrivenLaws* driven, double tolerance,
+nb::tuple run_response(const std::vector<nb::object>& held, const Rows& state, const Rows& first, const Rows& tangent,
+              double begin, const Row& times, const Stops& stops, const DrivenLaws* driven, double tolerance,
               double fixed_step, long most_steps, int dense_rows, int method, const std::vector<double>& tests,
               int iterations, double jump, double radius, bool straight, int lanes, int threads) {
   const std::vector<const FrozenPlan*> plans = plans_of(held);
@@ -174,7 +168,7 @@ void bind_response(nb::module_& m) {
   // Reports, then arrays (variants, columns, rows): states, chart directions, rates and accelerations of the chart,
   // turns, friction told to rows, work put in and lost; flags (variants, rows). One row more is for the place of a stop. Rows that were not
   // reached hold nan.
-  m.def("respond", &run, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
+  m.def("respond", &run_response, nb::kw_only(), "plans"_a, "state"_a, "first"_a, "tangent"_a, "begin"_a, "times"_a, "stops"_a, "driven"_a.none(),
         "tolerance"_a, "fixed_step"_a, "most_steps"_a, "dense_rows"_a, "method"_a, "tests"_a, "iterations"_a, "jump"_a, "radius"_a, "straight"_a,
         "lanes"_a, "threads"_a);
 }

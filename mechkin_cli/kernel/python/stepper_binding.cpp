@@ -19,6 +19,8 @@
 #include "bindings.hpp"
 #include "plan/frozen_plan.hpp"
 #include "plan/same_layout.hpp"
+#include "refusals.hpp"
+#include "rows/run.hpp"
 #include "rows/units.hpp"
 #include "stepping/dimension_path.hpp"
 #include "stepping/tracker.hpp"
@@ -28,16 +30,12 @@ using namespace nb::literals;
 
 namespace {
 
-using Table = nb::ndarray<nb::numpy, double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using Column = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Numbers = std::vector<double>;
+using WrittenTable = nb::ndarray<nb::numpy, double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using WrittenColumn = nb::ndarray<nb::numpy, double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Vector = std::vector<double>;
 
-constexpr int MOST_ITERATIONS = 10000;
 constexpr int MOST_STEPS = 1000000;
 
-void need(bool good, const std::string& message) {
-  if (!good) throw nb::value_error(message.c_str());
-}
 // An array that is written overlaps no other one.
 template <class Written, class Other>
 void need_apart(const Written& a, const Other& b, const char* message) {
@@ -45,17 +43,17 @@ void need_apart(const Written& a, const Other& b, const char* message) {
   const char* const other = reinterpret_cast<const char*>(b.data());
   need(!(one < other + b.nbytes() && other < one + a.nbytes()), message);
 }
-void need_length(const Numbers& a, long length, const char* name) {
+void need_length(const Vector& a, long length, const char* name) {
   need((long)a.size() == length, std::string(name) + ": wrong length");
 }
-double* table(const Table& a, long columns, long rows, const char* name) {
+double* table(const WrittenTable& a, long columns, long rows, const char* name) {
   need((long)a.shape(0) == columns && (long)a.shape(1) == rows, std::string(name) + ": wrong shape");
   return a.data();
 }
 // Single positions run on the narrowest unit, whose latency is the least.
 const KernelUnit& narrow_unit() { return *kernel_unit(2); }
 
-nb::object copied(const Numbers& values) {
+nb::object copied(const Vector& values) {
   double* data = new double[values.empty() ? 1 : values.size()];
   std::copy(values.begin(), values.end(), data);
   nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<double*>(p); });
@@ -108,7 +106,7 @@ class GivenPath : public Path {
  private:
   void ask(double sigma, long inputs, PathPoint* point) const {
     const nb::object found = at_(sigma);
-    std::tuple<Numbers, Numbers, Numbers> numbers;
+    std::tuple<Vector, Vector, Vector> numbers;
     if (!nb::try_cast(found, numbers)) throw nb::type_error("at: does not give three lists of numbers");
     std::tie(point->inputs, point->first, point->second) = std::move(numbers);
     need_length(point->inputs, inputs, "the path's inputs");
@@ -139,7 +137,7 @@ class GivenPath : public Path {
 
 // A stepper that owns its path and limits. A straight path keeps its numbers here.
 struct OwnedStepper {
-  Numbers x0, u;
+  Vector x0, u;
   std::unique_ptr<Path> path;
   StepLimits limits;
   std::unique_ptr<Stepper> stepper;
@@ -180,7 +178,7 @@ int clear_stepper(PyObject* self) {
 const PyType_Slot STEPPER_SLOTS[] = {
     {Py_tp_traverse, (void*)traverse_stepper}, {Py_tp_clear, (void*)clear_stepper}, {0, nullptr}};
 
-std::unique_ptr<OwnedStepper> straight(const FrozenPlan& store, Numbers inputs, Numbers direction, StepLimits limits) {
+std::unique_ptr<OwnedStepper> straight(const FrozenPlan& store, Vector inputs, Vector direction, StepLimits limits) {
   const Plan& plan = store.view();
   need_length(inputs, plan.inputs, "inputs");
   need_length(direction, plan.inputs, "direction");
@@ -206,7 +204,7 @@ std::unique_ptr<OwnedStepper> along(nb::object plan, nb::object at, bool varies,
   return s;
 }
 
-std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess) {
+std::optional<Node> close_at(OwnedStepper& s, double sigma, const Vector& guess) {
   need_length(guess, s.stepper->plan().states, "guess");
   const Turn turn(s);
   FloatingPointState state;
@@ -219,7 +217,7 @@ std::optional<Node> close_at(OwnedStepper& s, double sigma, const Numbers& guess
 void need_node(const OwnedStepper& s, const Node& node) {
   const Stepper& stepper = *s.stepper;
   const Plan& p = stepper.plan();
-  const auto has = [](const Numbers& values, long count) { return (long)values.size() == count; };
+  const auto has = [](const Vector& values, long count) { return (long)values.size() == count; };
   need(has(node.state, p.states) && has(node.state_first, p.states) && has(node.state_second, p.states) &&
            has(node.first, p.columns) && has(node.second, p.columns) && has(node.side, p.blocks) &&
            has(node.pivot, p.blocks) && has(node.jacobian, stepper.jacobian_entries()) &&
@@ -239,7 +237,7 @@ std::optional<Node> step_from(OwnedStepper& s, const Node& node, double h) {
   return next;
 }
 
-std::optional<Node> to_target(OwnedStepper& s, const Numbers& start) {
+std::optional<Node> to_target(OwnedStepper& s, const Vector& start) {
   need_length(start, s.stepper->plan().states, "start");
   const Turn turn(s);
   FloatingPointState state;
@@ -269,9 +267,9 @@ void forget(const RowGuesses& out, long states, long slots, long begin) {
   std::fill_n(out.limit + begin, rows, nothing);
 }
 
-nb::tuple follow_table(const FrozenPlan& store, Table inputs, std::optional<Table> whole, const Numbers& start,
-                       const Numbers& turn, bool every_row, const StepLimits& limits, Table guess, Column limit,
-                       std::optional<Table> turns, const Course* course) {
+nb::tuple follow_table(const FrozenPlan& store, WrittenTable inputs, std::optional<WrittenTable> whole, const Vector& start,
+                       const Vector& turn, bool every_row, const StepLimits& limits, WrittenTable guess, WrittenColumn limit,
+                       std::optional<WrittenTable> turns, const Course* course) {
   const Plan& plan = store.view();
   const long rows = (long)inputs.shape(1);
   need(rows > 0, "inputs: no rows");
@@ -377,7 +375,7 @@ void bind_stepper(nb::module_& m) {
       .def("close", &close_at, "sigma"_a, "guess"_a)
       .def("predict", [](const OwnedStepper& s, const Node& node, double h) {
              need_node(s, node);
-             Numbers guess;
+             Vector guess;
              s.stepper->predict(node, h, &guess);
              return copied(guess);
            }, "node"_a, "h"_a)

@@ -18,25 +18,25 @@ using namespace nb::literals;
 namespace {
 
 template <class Number>
-using Row = nb::ndarray<const Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using List = nb::ndarray<const Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 template <class Number>
-using Rows = nb::ndarray<const Number, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Lists = nb::ndarray<const Number, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 template <class Number>
 using Blocks = nb::ndarray<const Number, nb::ndim<3>, nb::c_contig, nb::device::cpu>;
 
 template <class Number>
-std::vector<Number> copy_of(const Row<Number>& a) {
+std::vector<Number> entries_of(const List<Number>& a) {
   return {a.data(), a.data() + a.shape(0)};
 }
 template <class Number>
-std::vector<Number> copy_of(const Rows<Number>& a) {
+std::vector<Number> entries_of(const Lists<Number>& a) {
   if (a.shape(1) != 3) throw nb::value_error("three numbers an entry");
   return {a.data(), a.data() + 3 * a.shape(0)};
 }
 
 // inputs x count to (outputs (count, outputs), verdicts (count,) of TapeVerdict).
-nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
+nb::tuple replay(const TapeStore& store, Lists<double> inputs, int lanes) {
   const Tape& t = store.view();
   const KernelUnit* const unit = kernel_unit(lanes);
   if (!unit) throw nb::value_error("this width is not available on this machine; 0 asks for the widest");
@@ -57,7 +57,7 @@ nb::tuple replay(const TapeStore& store, Rows<double> inputs, int lanes) {
 
 // The same in double-double: inputs x 2 x count, high and low, to (outputs (count, outputs, 2), verdicts (count,)).
 // `second` (constants,): low parts of the tape's constants.
-nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::optional<Row<double>> second, int lanes) {
+nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::optional<List<double>> second, int lanes) {
   const Tape& t = store.view();
   const DoubleDoubleUnit& unit = double_double_unit(lanes);
   if (inputs.shape(0) != (std::size_t)t.inputs || inputs.shape(1) != 2)
@@ -80,7 +80,7 @@ nb::tuple replay_precise(const TapeStore& store, Blocks<double> inputs, std::opt
 
 // inputs x count and the ways of the switches to outputs with first and second derivatives by the first input
 // (count, outputs, 3).
-nb::object jets(const TapeStore& store, Rows<double> inputs, Row<double> ways) {
+nb::object jets(const TapeStore& store, Lists<double> inputs, List<double> ways) {
   const Tape& t = store.view();
   if (inputs.shape(0) != (std::size_t)t.inputs) throw nb::value_error("one row of numbers per input of the tape");
   if (ways.shape(0) != (std::size_t)store.switches()) throw nb::value_error("one way for each switch of the tape");
@@ -106,12 +106,12 @@ nb::object jets(const TapeStore& store, Rows<double> inputs, Row<double> ways) {
 void bind_tape(nb::module_& m) {
   nb::class_<TapeStore>(m, "Tape")
       .def("__init__",
-           [](TapeStore* self, int inputs, Row<double> constants, Row<std::uint8_t> operations,
-              Rows<std::int32_t> operands, Row<std::int32_t> outputs, Rows<std::int32_t> guards,
-              Row<std::uint8_t> expected, Row<std::uint8_t> advice) {
-             new (self) TapeStore(value_of(TapeStore::make(inputs, copy_of(constants), copy_of(operations),
-                                                           copy_of(operands), copy_of(outputs), copy_of(guards),
-                                                           copy_of(expected), copy_of(advice))));
+           [](TapeStore* self, int inputs, List<double> constants, List<std::uint8_t> operations,
+              Lists<std::int32_t> operands, List<std::int32_t> outputs, Lists<std::int32_t> guards,
+              List<std::uint8_t> expected, List<std::uint8_t> advice) {
+             new (self) TapeStore(value_of(TapeStore::make(inputs, entries_of(constants), entries_of(operations),
+                                                           entries_of(operands), entries_of(outputs), entries_of(guards),
+                                                           entries_of(expected), entries_of(advice))));
            },
            "inputs"_a, "constants"_a, "operations"_a, "operands"_a, "outputs"_a, "guards"_a, "expected"_a, "advice"_a)
       .def("replay", &replay, "inputs"_a, "lanes"_a = 0)

@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "text/table_text.hpp"
 
@@ -15,7 +16,6 @@ using namespace nb::literals;
 
 namespace {
 
-using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Codes = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Missing = nb::ndarray<const bool, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
@@ -51,21 +51,21 @@ Value read(nb::handle given, const char* what) {
 }
 
 // The columns and what keeps their memory alive. Codes are copied: they were checked, and must not change after.
-struct Table {
+struct TextTable {
   std::vector<TextColumn> columns;
-  std::vector<Numbers> numbers;
+  std::vector<Row> numbers;
   std::vector<std::vector<std::int32_t>> codes;
   std::size_t rows = 0;
 };
 
-void add(Table& table, TextColumn column, std::size_t rows) {
+void add(TextTable& table, TextColumn column, std::size_t rows) {
   if (!table.columns.empty() && rows != table.rows) throw nb::value_error("columns of different length");
   table.rows = rows;
   table.columns.push_back(std::move(column));
 }
 
-void add_numbers(Table& table, nb::handle array, const NumberStyle& style) {
-  const auto numbers = read<Numbers>(array, "a column of numbers is a C-contiguous array of float64, one per row");
+void add_numbers(TextTable& table, nb::handle array, const NumberStyle& style) {
+  const auto numbers = read<Row>(array, "a column of numbers is a C-contiguous array of float64, one per row");
   TextColumn column;
   column.numbers = numbers.data();
   column.style = style;
@@ -77,7 +77,7 @@ using Field = std::string (*)(std::string_view);
 
 std::string as_it_is(std::string_view text) { return std::string(text); }
 
-void add_words(Table& table, const nb::tuple& pair, Field field) {
+void add_words(TextTable& table, const nb::tuple& pair, Field field) {
   if (pair.size() != 2) throw nb::value_error("a text column is a pair of codes and texts");
   const auto given = read<Codes>(pair[0], "the codes of a text column are a C-contiguous array of int32");
   std::vector<std::int32_t> codes(given.data(), given.data() + given.shape(0));
@@ -93,7 +93,7 @@ void add_words(Table& table, const nb::tuple& pair, Field field) {
 }
 
 // `style` holds for the numbers that have none of their own.
-void add_column(Table& table, nb::handle given, const NumberStyle& style, Field field) {
+void add_column(TextTable& table, nb::handle given, const NumberStyle& style, Field field) {
   if (!nb::isinstance<nb::tuple>(given)) return add_numbers(table, given, style);
   const auto parts = nb::borrow<nb::tuple>(given);
   if (parts.size() != 4) return add_words(table, parts, field);
@@ -106,10 +106,10 @@ void add_column(Table& table, nb::handle given, const NumberStyle& style, Field 
   add_numbers(table, parts[0], own);
 }
 
-Table table_of(const std::vector<std::string>& labels, const nb::list& columns, const NumberStyle& style,
+TextTable table_of(const std::vector<std::string>& labels, const nb::list& columns, const NumberStyle& style,
                Field field) {
   if (labels.size() != columns.size()) throw nb::value_error("one label per column");
-  Table table;
+  TextTable table;
   for (const nb::handle column : columns) add_column(table, column, style, field);
   return table;
 }
@@ -137,7 +137,7 @@ nb::bytes written(const Write& write) {
 nb::bytes csv(const std::vector<std::string>& labels, const nb::list& columns, const std::optional<Missing>& missing,
               int significant_digits, bool quoted_empty, int threads) {
   checked_threads(threads);
-  const Table table = table_of(labels, columns, significant(significant_digits), csv_field);
+  const TextTable table = table_of(labels, columns, significant(significant_digits), csv_field);
   if (missing && (missing->shape(0) != table.rows || missing->shape(1) != labels.size()))
     throw nb::value_error("missing must have the shape (rows, columns)");
   std::string header;
@@ -153,13 +153,13 @@ nb::bytes csv(const std::vector<std::string>& labels, const nb::list& columns, c
 
 nb::bytes markdown(const std::vector<std::string>& headers, const nb::list& columns, int threads) {
   checked_threads(threads);
-  const Table table = table_of(headers, columns, {}, as_it_is);
+  const TextTable table = table_of(headers, columns, {}, as_it_is);
   return written([&](const Room& room) { markdown_text(headers, table.columns, table.rows, threads, room); });
 }
 
 nb::bytes json_list(nb::handle column, int threads) {
   checked_threads(threads);
-  Table table;
+  TextTable table;
   add_column(table, column, {Notation::json, 0, false}, as_it_is);
   return written([&](const Room& room) { json_list_text(table.columns.front(), table.rows, threads, room); });
 }
@@ -170,7 +170,7 @@ std::string one_number(double x, int significant_digits) {
 }
 
 std::vector<std::string> decimal_texts(const nb::tuple& column) {
-  Table table;
+  TextTable table;
   add_column(table, column, {}, as_it_is);
   return column_texts(table.columns.front(), table.rows);
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "new_array.hpp"
 #include "refusals.hpp"
@@ -20,20 +21,11 @@ using namespace nb::literals;
 
 namespace {
 
-using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Table = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-using WayRecord = std::tuple<long, std::vector<long>, Table, std::shared_ptr<Course>>;
-
-std::vector<double> copy_of(const Numbers& a) { return {a.data(), a.data() + a.shape(0)}; }
-std::vector<double> copy_of(const Table& a, long rows, const char* name) {
-  if ((long)a.shape(1) != rows) throw nb::value_error((std::string(name) + ": wrong number of rows").c_str());
-  return {a.data(), a.data() + a.shape(0) * a.shape(1)};
-}
+using WayRecord = std::tuple<long, std::vector<long>, Rows, std::shared_ptr<Course>>;
 
 // Outputs (count, slots, rows), residual and condition (count, rows), and how each variant ended (count,). Rows of
 // variants that are not complete hold nan.
-nb::tuple run(const Variants& variants, const Table& parameters, int lanes, int threads) {
+nb::tuple run_variants(const Variants& variants, const Rows& parameters, int lanes, int threads) {
   if (parameters.shape(0) != (std::size_t)variants.parameters())
     throw nb::value_error("parameters: one row for each");
   if (threads < 1 || threads > 1024) throw nb::value_error("threads: 1 to 1024");
@@ -53,7 +45,7 @@ nb::tuple run(const Variants& variants, const Table& parameters, int lanes, int 
 }
 
 // How the continuation ended, the size (m) and the states of the first assembly.
-nb::tuple start(const Variants& variants, const Numbers& parameters) {
+nb::tuple start(const Variants& variants, const Row& parameters) {
   if (parameters.shape(0) != (std::size_t)variants.parameters()) throw nb::value_error("parameters: one for each");
   VariantStart found;
   {
@@ -78,8 +70,8 @@ void bind_variants(nb::module_& m) {
   nb::class_<Variants>(m, "Variants")
       .def("__init__",
            [](Variants* at, const TapeStore& tape, const FrozenPlan& plan, const OutputList& outputs,
-              const Numbers& parameters, const Table& inputs, const Table& whole, const Table& full, const Numbers& time, const Table& rates, const Table& accelerations,
-              const Table& jerks, const Numbers& state, double size, long start_row, unsigned demand, int iterations,
+              const Row& parameters, const Rows& inputs, const Rows& whole, const Rows& full, const Row& time, const Rows& rates, const Rows& accelerations,
+              const Rows& jerks, const Row& state, double size, long start_row, unsigned demand, int iterations,
               const StepLimits& continuation, const StepLimits& following,
               const std::vector<std::tuple<int, int, bool>>& angles, double half_turn_side,
               const std::vector<WayRecord>& ways) {
@@ -98,6 +90,6 @@ void bind_variants(nb::module_& m) {
            "jerks"_a, "state"_a, "size"_a, "start_row"_a, "demand"_a, "iterations"_a, "continuation"_a, "following"_a,
            "angles"_a, "half_turn_side"_a, "ways"_a = nb::list(), nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(),
            nb::keep_alive<1, 4>())
-      .def("run", &run, "parameters"_a, "lanes"_a = 0, "threads"_a = 1)
+      .def("run", &run_variants, "parameters"_a, "lanes"_a = 0, "threads"_a = 1)
       .def("start", &start, "parameters"_a);
 }

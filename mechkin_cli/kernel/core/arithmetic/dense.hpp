@@ -91,3 +91,10 @@ Matrix with_column(const Matrix& a, const std::vector<double>& column, double fa
 // Minus the identity, in place.
 void subtract_identity(Matrix* a);
 double determinant(Matrix a);
+
+// Scalar product.
+inline double product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}

@@ -9,9 +9,9 @@ namespace {
 constexpr int SCAN = 8;                         // parts in which a step is looked into
 constexpr int DEEPER = 8;                       // more places where values are least
 constexpr double EDGE = 0.999;                  // of an interval in which the least value is looked for
-constexpr double NEAR = 0.25;                   // of the range of three values: a least value that may be below zero
+constexpr double NEAR_ZERO = 0.25;              // of the range of three values: a least value that may be below zero
 constexpr double EARLY[] = {1e-3, 1e-6, 1e-9};  // of the step: where a switch is asked that begins at a zero
-constexpr double ZERO = 1e-12;                  // in parts of the value at the other end
+constexpr double ZERO_PART = 1e-12;             // in parts of the value at the other end
 constexpr double MUCH = 4.0;                    // times as bad as where a kink was found to make a difference
 constexpr int MOST_TRIES = 80;
 constexpr double FOUND = 1e-10;                 // of the step; what is left is done by steps
@@ -44,7 +44,7 @@ bool CrossingSearch::Samples::deepest(double* at) const {
       const double slope = fall + bend * left, low = -EDGE * left, high = EDGE * right;
       const double shift = std::max(low, std::min(high, -0.5 * slope / bend)), found = b + shift * (slope + bend * shift);
       const double range = std::max({a, b, c}) - std::min({a, b, c});
-      if (!(found < least) || found > NEAR * range) continue;
+      if (!(found < least) || found > NEAR_ZERO * range) continue;
       least = found;
       *at = part[k] + shift;
     }
@@ -226,7 +226,7 @@ void CrossingSearch::look_early() {
     const Bracket& b = bracket_[i];
     bool begins = false;
     for (std::size_t s = 0; s < b.at_high.size(); ++s)
-      begins = begins || (b.at_high[s] < 0.0 && b.at_low[s] <= -ZERO * b.at_high[s]);
+      begins = begins || (b.at_high[s] < 0.0 && b.at_low[s] <= -ZERO_PART * b.at_high[s]);
     if (begins && b.low == 0.0) continue;
     waiting[i] = 1;
     open_[i] = 0;

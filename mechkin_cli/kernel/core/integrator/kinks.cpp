@@ -9,9 +9,9 @@ namespace {
 
 // What the other side of a kink may do to a step, in parts of the error that a step may have; at least so many roundings.
 constexpr double NOTHING = 1e-2, ROUNDINGS = 1e3 * 2.220446049250313e-16;
-constexpr double ROUNDING = 2.220446049250313e-16;  // of a rate
+constexpr double SLOPE_ROUNDING = 2.220446049250313e-16;  // of a rate
 constexpr double SHIFT = 1e-9;  // of a kink's largest value so far: what another kink does to it
-constexpr double NOISE = 16.0;  // times the rounding of a kink's value: what may be a sign of rounding alone
+constexpr double KINK_NOISE = 16.0;  // times the rounding of a kink's value: what may be a sign of rounding alone
 
 }  // namespace
 
@@ -31,7 +31,7 @@ bool March::bends_nothing(int lane, const double* y, const double* a, const doub
     if (c >= 2 * n && c < 2 * n + works) continue;
     const std::size_t k = (std::size_t)c * lanes + lane;
     // a difference that is lost in the rates' rounding may be as large
-    const double jump = step * (std::fabs(a[k] - b[k]) + ROUNDING * std::fabs(a[k]));
+    const double jump = step * (std::fabs(a[k] - b[k]) + SLOPE_ROUNDING * std::fabs(a[k]));
     if (jump > 0.0 && !(jump <= most * scale_[k])) return false;
   }
   return true;
@@ -99,7 +99,7 @@ void March::compare_sides(int which, const double* time, const double* place, co
     // one place may show none by chance
     double& noise = control_[i].noise[which];
     noise = std::max(noise, rounding[(std::size_t)which * lanes + i]);
-    (*mask)[i] = depth[i] <= NOISE * noise;
+    (*mask)[i] = depth[i] <= KINK_NOISE * noise;
   }
 }
 

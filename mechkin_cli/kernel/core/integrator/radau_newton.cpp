@@ -11,14 +11,14 @@ using namespace radau;
 namespace {
 
 constexpr double PROBE = 0x1p-26;  // of a difference, in parts of 1 or of the largest rate
-constexpr double SHORTER = 0x1p-10, LEAST_PROBE = 0x1p-46;  // of it, where the derivative changes within it
+constexpr double SHORTER_PROBE = 0x1p-10, LEAST_PROBE = 0x1p-46;  // of it, where the derivative changes within it
 constexpr double ROUGH = 1e-3, NOISE = 1e-10;  // changes that are none, in parts of a derivative; of the rates it comes from
 constexpr double STALLED = 0.03;   // tolerances: changes below it that do not shrink do a step no harm
-constexpr double ROUNDING = 2.220446049250313e-16;
+constexpr double EPSILON = 2.220446049250313e-16;
 
 // How far the stages are solved for, in tolerances of the step.
 double newton_limit(double tolerance) {
-  return std::max(10.0 * ROUNDING / tolerance, std::min(0.03, std::sqrt(tolerance)));
+  return std::max(10.0 * EPSILON / tolerance, std::min(0.03, std::sqrt(tolerance)));
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ void Radau::differentiate(LaneStates& s, Flags* mask) {
   for (Lane& l : lane_) l.differs = false;
   for (int column = 0; column < 2 * n_; ++column) {
     Flags open = lacking;
-    for (double probe = PROBE; any(open) && probe >= LEAST_PROBE; probe *= SHORTER) {
+    for (double probe = PROBE; any(open) && probe >= LEAST_PROBE; probe *= SHORTER_PROBE) {
       const Flags waiting = differentiate_column(s, column, probe, &open);
       for (int i = 0; i < lanes_; ++i) {
         if (!waiting[i] || probe < PROBE) continue;

@@ -5,7 +5,7 @@
 
 namespace {
 
-constexpr std::size_t LONGEST = 1 << 24;  // of each list: registers are counted by int
+constexpr std::size_t LONGEST_FUNCTION = 1 << 24;  // of each list: registers are counted by int
 
 // Whether counts up to each order rise to the whole.
 bool are_ends(const std::vector<int>& ends, std::size_t whole) {
@@ -17,7 +17,7 @@ bool are_ends(const std::vector<int>& ends, std::size_t whole) {
 
 Refusal check_curve(const FunctionCurveRecord& c, int arguments) {
   REQUIRE(c.over >= 0 && c.over < arguments, "a curve runs over an argument");
-  REQUIRE(!c.knots.empty() && c.knots.size() < LONGEST, "a curve has points, and not too many");
+  REQUIRE(!c.knots.empty() && c.knots.size() < LONGEST_FUNCTION, "a curve has points, and not too many");
   REQUIRE(!c.repeats || c.knots.size() > 1, "a curve that repeats itself has a span");
   for (std::size_t k = 0; k < c.knots.size(); ++k) {
     const Knot& at = c.knots[k];
@@ -35,7 +35,7 @@ Refusal FunctionStore::check(const FunctionRecord& r) const {
   for (const std::vector<std::size_t>& sizes :
        {std::vector<std::size_t>{r.constants.size(), constant_.size()}, {r.operations.size(), operation_.size()},
         {r.outputs.size(), output_.size()}, {r.curves.size(), curve_.size()}})
-    REQUIRE(sizes[0] + sizes[1] < LONGEST, "the functions are too long");
+    REQUIRE(sizes[0] + sizes[1] < LONGEST_FUNCTION, "the functions are too long");
   for (const FunctionCurveRecord& c : r.curves) CHECK(check_curve(c, r.arguments));
   REQUIRE(all_finite(r.constants.data(), r.constants.size()), "a function's numbers must be finite");
   REQUIRE(r.operands.size() == 3 * r.operations.size(), "three operands an instruction");

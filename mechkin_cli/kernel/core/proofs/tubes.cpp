@@ -5,7 +5,7 @@
 
 namespace {
 
-constexpr double FULL_TURN = 2.0 * 3.14159265358979323846;
+constexpr double WHOLE_TURN = 2.0 * 3.14159265358979323846;
 // Roundings of a cubic's value and of a difference of angles by whole turns, in parts of their size.
 constexpr double SLACK = 0x1p-46;
 // A longer tube is tried after one that was proven, a shorter one after one that was not.
@@ -45,7 +45,7 @@ TubeProver::TubeProver(const Plan& plan, const Plan* radii, const ProvingUnit& u
 }
 
 // The curve's coefficients, and how far the inputs of rows on the way are off it.
-void TubeProver::lay_curve(const Way& way, long from, long to) {
+void TubeProver::lay_curve(const WayOfRows& way, long from, long to) {
   const double half = 0.5 * (way.place[to] - way.place[from]);
   const auto at = [&](const double* base, long number, long row) { return base[number * way.rows + row]; };
   std::fill(curve_.begin(), curve_.end(), 0.0);
@@ -55,7 +55,7 @@ void TubeProver::lay_curve(const Way& way, long from, long to) {
     const double a = at(way.states, s, from), slope_a = half * at(way.after, c, from);
     double b = at(way.states, s, to);
     const double slope_b = half * at(way.before, c, to);
-    if (turns_[s]) b += FULL_TURN * std::nearbyint((a + slope_a + slope_b - b) / FULL_TURN);
+    if (turns_[s]) b += WHOLE_TURN * std::nearbyint((a + slope_a + slope_b - b) / WHOLE_TURN);
     cubic(a, slope_a, b, slope_b, coefficient(s));
   }
   for (int c = 0; c < plan_.columns; ++c) {
@@ -83,7 +83,7 @@ void TubeProver::lay_curve(const Way& way, long from, long to) {
 }
 
 // Whether a row's box lies in the tube; before the tube is known, makes it wide enough for that.
-bool TubeProver::holds_row(const Way& way, long row, double t, bool is_box_known) {
+bool TubeProver::holds_row(const WayOfRows& way, long row, double t, bool is_box_known) {
   bool holds = true;
   const auto meet = [&](int column, double reach) {
     if (is_box_known)
@@ -97,8 +97,8 @@ bool TubeProver::holds_row(const Way& way, long row, double t, bool is_box_known
     if (s >= 0 && plan_.column_block[c] >= 0) {
       const double* const f = coefficient(s);
       double off = way.states[s * way.rows + row] - value(f, t);
-      if (turns_[s]) off -= FULL_TURN * std::nearbyint(off / FULL_TURN);
-      meet(c, std::fabs(off) + radius(c) + SLACK * (FULL_TURN + 2 * size(f)));
+      if (turns_[s]) off -= WHOLE_TURN * std::nearbyint(off / WHOLE_TURN);
+      meet(c, std::fabs(off) + radius(c) + SLACK * (WHOLE_TURN + 2 * size(f)));
     }
     if (ball_[c] < 0 || plan_.column_block[c] < 0) continue;
     // increments x of the turn q p* from the curve's orientation p to the row's q, and then those of its box
@@ -119,7 +119,7 @@ bool TubeProver::holds_row(const Way& way, long row, double t, bool is_box_known
   return holds;
 }
 
-bool TubeProver::prove(const Way& way, long from, long to, double* width) {
+bool TubeProver::prove(const WayOfRows& way, long from, long to, double* width) {
   lay_curve(way, from, to);
   const double half = 0.5 * (way.place[to] - way.place[from]);
   const auto parameter = [&](long row) {
@@ -139,11 +139,11 @@ bool TubeProver::prove(const Way& way, long from, long to, double* width) {
   return true;
 }
 
-bool TubeProver::are_proven(const Way& way, long from, long to) const {
+bool TubeProver::are_proven(const WayOfRows& way, long from, long to) const {
   return std::all_of(way.proven + from, way.proven + to + 1, [](unsigned char proven) { return proven != 0; });
 }
 
-void TubeProver::prove(const Way& way, Tubes* tubes) {
+void TubeProver::prove(const WayOfRows& way, Tubes* tubes) {
   tubes->count = tubes->tried = 0;
   for (long row = 0; row < way.rows; ++row) tubes->joined[row] = 0, tubes->width[row] = 0.0;
   double length = FIRST_LENGTH;

@@ -11,7 +11,7 @@
 #include "plan/plan.hpp"
 #include "proofs/proving_unit.hpp"
 
-struct Way {
+struct WayOfRows {
   long rows;
   const double* place;         // rows: the way's parameter, that does not fall
   const double* inputs;        // inputs x rows, angles with their whole turns
@@ -35,13 +35,13 @@ struct Tubes {
 class TubeProver {
  public:
   TubeProver(const Plan& plan, const Plan* radii, const ProvingUnit& unit);
-  void prove(const Way& way, Tubes* tubes);
+  void prove(const WayOfRows& way, Tubes* tubes);
 
  private:
-  bool are_proven(const Way& way, long from, long to) const;
-  bool prove(const Way& way, long from, long to, double* width);
-  void lay_curve(const Way& way, long from, long to);
-  bool holds_row(const Way& way, long row, double t, bool is_box_known);
+  bool are_proven(const WayOfRows& way, long from, long to) const;
+  bool prove(const WayOfRows& way, long from, long to, double* width);
+  void lay_curve(const WayOfRows& way, long from, long to);
+  bool holds_row(const WayOfRows& way, long row, double t, bool is_box_known);
   double* coefficient(int state) { return curve_.data() + (long)parts_ * state; }
 
   const Plan& plan_;

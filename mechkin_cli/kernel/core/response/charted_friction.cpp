@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arithmetic/dense.hpp"
 #include "response/charted_motion.hpp"
 #include "response/slip_components.hpp"
 
@@ -9,8 +10,8 @@ namespace {
 
 // Slips in several directions, in parts of what the fastest motion so far would give, up to which they are at their end:
 // what that leaves out is of second order.
-constexpr double AT_END = 1e-9;
-// A slip in several directions is watched from so many times AT_END on.
+constexpr double SLIP_AT_END = 1e-9;
+// A slip in several directions is watched from so many times SLIP_AT_END on.
 constexpr double ARMED = 10.0;
 // Rows of slips, in parts of the largest, and parts of a row that those before have left, which are rounding.
 constexpr double NO_ROW = 1e-8, DEPENDENT = 1e-12;
@@ -25,12 +26,6 @@ constexpr double NO_START = 1e-9, GOES = 10.0;
 constexpr double NEAR_START[] = {1e-4, 1e-2};
 constexpr int PLACES_NEAR = 2;
 constexpr double GOLDEN = 0.6180339887498949;
-
-double product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
 
 // What friction can hold, in parts of the largest wrench without it, from which on it feeds itself.
 constexpr double JAMS = 1e3;
@@ -249,7 +244,7 @@ void ChartedMotion::arm(const Stage& found, int lane) {
     }
     if (has_sign(lane, k) || slips_.sense[(std::size_t)k * lanes_ + lane] == 0.0) continue;
     const double size = slip_size(found.slip.rate, lane, k), least = slips_.armed[e] != 0.0 ? 1.0 : ARMED;
-    if (size > least * AT_END * slips_.fastest[lane] * lever(found, lane, k)) aim_along(found, lane, k);
+    if (size > least * SLIP_AT_END * slips_.fastest[lane] * lever(found, lane, k)) aim_along(found, lane, k);
   }
 }
 

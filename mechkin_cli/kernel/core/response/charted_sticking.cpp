@@ -7,7 +7,7 @@
 namespace {
 
 // Slips, in parts of what the fastest motion so far would give, up to which a joint is at rest beside one that is.
-constexpr double AT_REST = 1e-9;
+constexpr double SLIP_AT_REST = 1e-9;
 // Forces of what sticks, in parts of what it can hold and of the largest wrench, that are rounding; accelerations, in parts
 // of those by the largest wrench, likewise.
 constexpr double JUST_HELD = 1e-9, NO_FORCE = 1e-12;
@@ -122,7 +122,7 @@ std::vector<int> ChartedMotion::resting(int lane, int event) {
   std::vector<int> joints;
   for (int k = 0; k < plan_.frictions; ++k) {
     if (!rubs(lane, k)) continue;
-    const double none = AT_REST * slips_.fastest[lane] * lever(trial_, lane, k);
+    const double none = SLIP_AT_REST * slips_.fastest[lane] * lever(trial_, lane, k);
     if (sense(lane, k) == 0.0 || k == event || slip_size(trial_.slip.rate, lane, k) <= none) joints.push_back(k);
   }
   return joints;
@@ -191,7 +191,7 @@ void ChartedMotion::list_ways(int lane, const std::vector<double>& v) {
 // Whether a slip in several directions that has no speed left along its last direction has some beside it, in trial_.
 bool ChartedMotion::turns_aside(int lane, int event) const {
   if (event < 0 || event >= plan_.frictions || has_sign(lane, event)) return false;
-  const double none = AT_REST * slips_.fastest[lane] * lever(trial_, lane, event);
+  const double none = SLIP_AT_REST * slips_.fastest[lane] * lever(trial_, lane, event);
   return slips_.sense[(std::size_t)event * lanes_ + lane] != 0.0 && slip_size(trial_.slip.rate, lane, event) > none;
 }
 
@@ -252,7 +252,7 @@ bool ChartedMotion::give_rates(int lane, std::vector<double>* v) {
     if (has_sign(lane, k) || sense(lane, k) == 0.0 || !rubs(lane, k)) continue;
     const double by_friction = at(trial_.slip.limit, k, lane) * at(trial_.slip.answer, k, lane);
     const double unit = lever(trial_, lane, k) * slips_.fastest[lane];
-    if (slip_size(trial_.slip.rate, lane, k) > AT_REST * unit || along_sense(trial_, lane, k) > NO_START * by_friction) continue;
+    if (slip_size(trial_.slip.rate, lane, k) > SLIP_AT_REST * unit || along_sense(trial_, lane, k) > NO_START * by_friction) continue;
     std::vector<double> row(n, 0.0);
     for (int c = slips_.first[k]; c < slips_.first[k + 1]; ++c)
       for (int i = 0; i < n; ++i)

@@ -16,7 +16,7 @@ constexpr double BETWEEN[6] = {-0.92, -0.7, -0.2, 0.2, 0.7, 0.92};
 
 // A branch point is looked at from this far (rad, parts of the size), and from the least distance at which the closed
 // places before it are known to a hundredth of theirs.
-constexpr double FARTHEST = 0.25, NEAREST = 1e-6;
+constexpr double FARTHEST_PLACE = 0.25, NEAREST_PLACE = 1e-6;
 // Half of the way that is interpolated: wide enough that rounding, which grows as the inverse of the distance, leaves the
 // nodes exact, narrow enough that the polynomial is.
 constexpr double WIDTHS[5] = {0.25, 0.1, 0.03, 0.01, 0.003};
@@ -25,10 +25,10 @@ constexpr double WIDTHS[5] = {0.25, 0.1, 0.03, 0.01, 0.003};
 // theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them.
 constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3, FEW_UNKNOWNS = 5.0;
 // Of the way to the branch point: how far a place may lie from its guess. Another branch lies off by about all of it.
-constexpr double MISS = 0.1;
+constexpr double MISSED_GUESS = 0.1;
 // Least slope of what goes to zero, at the nodes next to it, in parts of that at the others: a tenth where the pole is of
 // second order.
-constexpr double STEEP = 0.5;
+constexpr double LEAST_SLOPE = 0.5;
 constexpr double CLEAR = 0.5;  // of the width
 constexpr int DEGREE = 5;      // of guesses: places that they are made of
 
@@ -118,8 +118,8 @@ double CrossingCurve::distance_ahead(const LookAt& look, double probe) {
     subtract_identity(&e);
     const double radius = spectral_radius_bound(e);
     const double seen = s * (1.0 + radius) / radius;
-    if (!(seen >= NEAREST && seen <= FARTHEST)) return HUGE_VAL;
-    if (step == 4) return std::fabs(seen - distance) <= MISS * seen ? seen : HUGE_VAL;
+    if (!(seen >= NEAREST_PLACE && seen <= FARTHEST_PLACE)) return HUGE_VAL;
+    if (step == 4) return std::fabs(seen - distance) <= MISSED_GUESS * seen ? seen : HUGE_VAL;
     distance = seen, s = PARTS[step] * seen;
     known.push_back(found);
   }
@@ -141,7 +141,7 @@ bool CrossingCurve::interpolate(const LookAt& look, double ahead, double width) 
     const double s = middle_ + width_ * node_at(k);
     const std::vector<double> from = known.size() > 1 ? guess(s, known) : std::vector<double>();
     if (!look(s, from, &nodes_[k])) return false;
-    if (!from.empty() && !(largest_difference(from, nodes_[k].state) <= MISS * std::fabs(s - ahead))) return false;
+    if (!from.empty() && !(largest_difference(from, nodes_[k].state) <= MISSED_GUESS * std::fabs(s - ahead))) return false;
     known.push_back(&nodes_[k]);
   }
   return true;
@@ -166,7 +166,7 @@ bool CrossingCurve::locate() {
     if (k == HALF - 1 || k == HALF) inner = std::fmin(inner, slope);
     outer = std::fmax(outer, slope);
   }
-  return inner >= STEEP * outer;
+  return inner >= LEAST_SLOPE * outer;
 }
 
 bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
@@ -195,7 +195,7 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
 bool CrossingCurve::find(const LookAt& look, double probe, double pace) {
   if (!look(0.0, {}, &origin_)) return false;
   const double distance = distance_ahead(look, probe);
-  if (!(distance <= FARTHEST)) return false;
+  if (!(distance <= FARTHEST_PLACE)) return false;
   double tried = 0.0;
   for (double least : WIDTHS) {
     const double width = std::fmax(least, distance);

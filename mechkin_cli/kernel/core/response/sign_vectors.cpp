@@ -8,12 +8,6 @@ namespace {
 
 constexpr double ZERO = 1e-9;  // of a product of unit vectors
 
-double product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
-
 // Takes what lies along unit vectors out of one, twice; the size of the rest, which becomes a unit vector.
 double orthonormalise(const std::vector<std::vector<double>>& basis, std::vector<double>* a) {
   for (int pass = 0; pass < 2; ++pass)

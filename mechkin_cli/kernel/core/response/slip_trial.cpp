@@ -10,7 +10,7 @@ namespace {
 constexpr double NO_SLIP = 1e-9, SAME = 1e-7;
 // Boxes of friction forces that are looked at; what of a load is rounding.
 constexpr int MOST_BOXES = 1000;
-constexpr double ROUNDING = 1e-12;
+constexpr double LOAD_ROUNDING = 1e-12;
 
 // Friction forces: from low to high.
 struct Box {
@@ -70,9 +70,9 @@ bool cut_by_loads(const SlipSystem& s, Box* box) {
       most += steepest[j] * radius[j], least -= std::fabs(slope[j]) * radius[j];
       above -= std::fabs(mu * slope[j] - (j == k)) * radius[j];
     }
-    if (above > ROUNDING * scale) return false;
-    box->low[k] = std::max(box->low[k], mu * least - ROUNDING * scale);
-    box->high[k] = std::min(box->high[k], mu * most + ROUNDING * scale);
+    if (above > LOAD_ROUNDING * scale) return false;
+    box->low[k] = std::max(box->low[k], mu * least - LOAD_ROUNDING * scale);
+    box->high[k] = std::min(box->high[k], mu * most + LOAD_ROUNDING * scale);
     if (box->low[k] > box->high[k]) return false;
   }
   return true;
@@ -141,7 +141,7 @@ bool has_no_slip(const SlipSystem& s) {
       const double whole = all.high[j] - all.low[j], own = whole > 0.0 ? (box.high[j] - box.low[j]) / whole : 0.0;
       if (own > part) part = own, widest = j;
     }
-    if (!(part > ROUNDING)) return false;
+    if (!(part > LOAD_ROUNDING)) return false;
     Box half = box;
     box.high[widest] = half.low[widest] = 0.5 * (box.low[widest] + box.high[widest]);
     boxes.push_back(box), boxes.push_back(half);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arithmetic/dense.hpp"
+
 namespace {
 
 // Ways before the last node over which the matrix is read, at parts of them: at the place itself numbers are lost in
@@ -109,12 +111,6 @@ bool branch_point_ahead(Arc& arc, const std::vector<Node>& nodes, BranchPointAhe
 namespace {
 
 using Vector = std::vector<double>;
-
-double product(const Vector& a, const Vector& b) {
-  double s = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) s += a[i] * b[i];
-  return s;
-}
 
 std::vector<Vector> null_vectors(const Matrix& a) {
   const Singular s = singular_vectors(a);

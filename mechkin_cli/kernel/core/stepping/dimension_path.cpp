@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "arithmetic/dense.hpp"
 #include "rows/unit.hpp"
 
 DimensionPath::DimensionPath(const Tape& tape, const KernelUnit& unit, const double* base, FrozenPlan* plan,
@@ -68,12 +69,6 @@ constexpr double SAME_WAY = 0.95;
 constexpr int COMING_DOWN = 4;
 // Least singular value of a block from which on derivatives of the base are well known: 1e-4 from a fold it is far smaller.
 constexpr double NARROW = 1e-2;
-
-double product(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
-  return sum;
-}
 
 // Closes a place next to a fold from another: on a parabola Newton's method stays on the side where it begins.
 bool newton_beside_fold(Stepper& stepper, double sigma, const std::vector<double>& from, Node* to) {

@@ -37,7 +37,7 @@ constexpr double SINGULAR_PIVOTS = 100.0;
 // grows without bound. A screw of a thousandth of the size's lead moves it by some tenths.
 constexpr double FARTHEST = 1000.0, STANDING = 1e-6;
 // Half a unit in the last place of an equation, and how many of them its unknowns round by.
-constexpr double ROUNDING = 1e-16, LOOSE = 10.0;
+constexpr double EQUATION_ROUNDING = 1e-16, UNKNOWN_ROUNDINGS = 10.0;
 // Attempts behind a dead centre; through a gap of 1e-12 it takes some sixty.
 constexpr int MOST_BEHIND = 300;
 // Arclength before a branch point from which its place is told, and steps that are tried to come there.
@@ -115,7 +115,7 @@ class Walker {
   // equations by more than is accepted: each look closes them anew. What is walked together has one rounding.
   int loosest_before(const Arc& arc, const Node& a) const {
     int loosest = -1;
-    double least = LOOSE * ROUNDING / limits_.accept;
+    double least = UNKNOWN_ROUNDINGS * EQUATION_ROUNDING / limits_.accept;
     for (std::size_t k = 0; k < a.singular.size(); ++k)
       if (arc.before()[k] && a.singular[k] < least) loosest = (int)k, least = a.singular[k];
     return loosest;

@@ -4,7 +4,7 @@
 
 namespace {
 
-constexpr std::size_t LONGEST = 1 << 30;  // registers, outputs and guards are counted by int
+constexpr std::size_t LONGEST_TAPE = 1 << 30;  // registers, outputs and guards are counted by int
 
 }  // namespace
 
@@ -34,11 +34,11 @@ Result<TapeStore> TapeStore::make(int inputs, std::vector<double> constants, std
 Refusal TapeStore::check(int inputs) const {
   REQUIRE(inputs > 0, "a tape has inputs");
   for (std::size_t size : {constants_.size(), operations_.size(), outputs_.size(), expected_.size()})
-    REQUIRE(size < LONGEST, "the tape is too long");
+    REQUIRE(size < LONGEST_TAPE, "the tape is too long");
   REQUIRE(operands_.size() == 3 * operations_.size(), "three operands an instruction");
   REQUIRE(guards_.size() == 3 * expected_.size() && advice_.size() == expected_.size(), "three numbers a guard");
   const long first = inputs + (long)constants_.size(), last = first + (long)operations_.size();
-  REQUIRE(last < (long)LONGEST, "the tape is too long");
+  REQUIRE(last < (long)LONGEST_TAPE, "the tape is too long");
   for (std::size_t i = 0; i < operations_.size(); ++i) {
     REQUIRE(operations_[i] < TAPE_OPERATIONS, "unknown operation");
     for (int k = 0; k < 3; ++k) {
