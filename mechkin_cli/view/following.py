@@ -111,6 +111,7 @@ class Seen(NamedTuple):
         picture = self.picture
         shown: Plain | None = None
         if picture is not None:
+            # what a page may set: in one where no parameter varies these are numbers of the file
             numbers = file_numbers(picture.model.built.document)
             parameters = dict(picture.model.parameters) | {one.name: one.value for one in numbers}
             shown = {"number": picture.number, "hash": picture.hash, "parameters": parameters}

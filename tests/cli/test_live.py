@@ -21,6 +21,12 @@ from cli.conftest import Mechkin
 from mechkin_cli.cli.messages import ExitCode
 
 COMMAND = [sys.executable, "-P", "-m", "mechkin_cli", "view", "--live", "--no-open", "crank.yaml"]
+NUMBERS = {
+    **{f"joints.O.point.{axis}": 0 for axis in "xyz"},
+    **{f"points.tip.at.{axis}": 0 for axis in "yz"},
+    "links.arm.mass": 1,
+}
+"""Of the file, beside its parameter."""
 
 
 @contextmanager
@@ -47,7 +53,7 @@ def test_it_serves_until_it_is_ended_and_is_quiet_in_a_pipe(tmp_path: Path, numb
         address = process.stdout.readline().strip()
         assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{24}/", address)
         if number == signal.SIGINT:
-            assert first_news(address)["picture"]["parameters"] == {"r": 2}
+            assert first_news(address)["picture"]["parameters"] == {"r": 2, **NUMBERS}
         process.send_signal(number)
         out, err = process.communicate(timeout=60)
         assert (process.returncode, out, err) == (ExitCode.OK, "", "")
