@@ -46,7 +46,7 @@ def text(seed: int) -> tuple[str, list[str], float]:
     return "\n".join(lines), names, 1.0
 
 
-@pytest.mark.parametrize("seed", range(5 * TIMES))
+@pytest.mark.parametrize("seed", range(12 * TIMES))
 def test_rows_are_right_or_have_a_status(seed: int) -> None:
     file, names, length = text(seed)
     try:

@@ -12,7 +12,7 @@ from random_families.dyad_chains.drawn import sweep
 from random_families.dyad_chains.judge import judge
 from random_families.dyad_chains.varied import judge_variants, varied
 
-CHAINS = 24 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+CHAINS = 60 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 
 pytestmark = pytest.mark.skipif(
     np.finfo(Long).eps > 1e-18, reason="the closed form needs long doubles of 64 bits"

@@ -42,7 +42,7 @@ def test_bounds_hold_down_to_a_dead_centre():
     """Or there is none: where doubles do not tell which of two positions is meant, and where
     rounding is as large as their distance."""
     rows = []
-    for number in range(24 * TIMES):
+    for number in range(60 * TIMES):
         loop = closed.drawn(number)
         places = closed.toward_dead_centre(loop)
         rows += closed.rows_of(loop, places) if places else []

@@ -23,7 +23,7 @@ from random_families.overconstrained_chains import (
 
 import mechkin_cli as mk
 
-COUNT = 20 * int(os.environ.get("MECHKIN_RANDOM", "1"))
+COUNT = 40 * int(os.environ.get("MECHKIN_RANDOM", "1"))
 REGULAR = 0.02
 """Least sine of the angle between two assemblies of a row that is asked for."""
 

@@ -190,7 +190,7 @@ def test_far_variants_stay_on_their_branch_or_are_lost(seed: int, kind: str) -> 
     check(seed, kind, 1, moving=False)
 
 
-@pytest.mark.parametrize("seed", range(2 * TIMES))
+@pytest.mark.parametrize("seed", range(4 * TIMES))
 def test_two_loops_on_one_crank_are_judged_each(seed: int) -> None:
     """Two independent loops, one of which may fold, or both at once."""
     check(seed, "RCSR", 2, moving=False)
@@ -200,7 +200,7 @@ def test_two_loops_on_one_crank_are_judged_each(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(100, 100 + 2 * TIMES))
 def test_a_sweep_that_moves_too_is_continued_all_the_same(seed: int, kind: str) -> None:
     """The first row's input is a parameter as the lengths are."""
-    check(seed, kind, 1, moving=True, variants=15 if TIMES > 1 else 2)
+    check(seed, kind, 1, moving=True, variants=15 if TIMES > 1 else 5)
 
 
 def test_naming_the_start_of_the_sweep_changes_nothing() -> None:

@@ -265,7 +265,7 @@ CLOSED_AT = [("B", "R"), ("D", "R"), ("C", "D"), None]
 CLOSED_AT += [("C", "R"), ("B", "D")] if TIMES > 1 else []
 
 
-@pytest.mark.parametrize("lead", [5, 0.05, *([0.01] if TIMES > 1 else [])])
+@pytest.mark.parametrize("lead", [5, 0.05, 0.01])
 @pytest.mark.parametrize("closed_at", CLOSED_AT)
 def test_turns_of_a_fast_screw_and_its_spring(
     lead: float, closed_at: tuple[str, ...] | None

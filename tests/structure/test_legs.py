@@ -121,7 +121,7 @@ def test_dead_centre_of_a_leg() -> None:
     (note,) = [d for d in result.diagnostics if d.code == "dead-centre"]
     assert note.measured is not None
     limit = float(note.measured.split("=")[1].split()[0])
-    grid = [float(rocker_angle(t / 10)[k]) for t in range(3600) for k in (0, 1)]
+    grid = [float(rocker_angle(t / 50)[k]) for t in range(18000) for k in (0, 1)]
     nearest = min(grid, key=lambda angle: abs(angle - limit))
     assert abs(nearest - limit) < 1e-4
     # beyond the limit no crank angle reaches that rocker angle
