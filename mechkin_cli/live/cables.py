@@ -7,15 +7,15 @@ beside what columns read.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from mechkin_cli import tolerances
 from mechkin_cli.mechanism import Swing, Wanted, dimension_of
-from mechkin_cli.tape import cos, sin, square_root
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Arm, Extent, Mechanism, Relation, Term
+    from mechkin_cli.mechanism import Mechanism, Relation, Term
 
     Plain = dict[str, Any]
 
@@ -47,10 +47,10 @@ def cable_verdicts(recording: Any) -> list[Plain]:
     found = []
     for relation in recording.recorded.mechanism.couplings.values():
         for extent in relation.extents:
-            of = _swing if isinstance(extent, Swing) else _extent
+            value = extent.value(partial(_value, recording))
             size = extent.drawn if extent.most is None else extent.most
             limit, status = tolerances.PARALLEL * size, Status.slack
-            found.append(_verdict(recording, of(recording, extent), limit, status, False))
+            found.append(_verdict(recording, value, limit, status, False))
         for fleet in relation.fleets:
             value = _value(recording, fleet.term)
             value = value if fleet.length is None else value / fleet.length
@@ -68,24 +68,3 @@ def _value(recording: Any, term: Term) -> Any:
     """A factor times a coordinate, in rad or m."""
     slot = recording.reading.slots[_coordinate(term).name]
     return term.factor * recording.recorder.of("slot", slot.start)
-
-
-def _extent(recording: Any, extent: Extent) -> Any:
-    """As `Extent.value`."""
-    together: Any = 0.0
-    for term in extent.terms:
-        together = together + _value(recording, term)
-    return extent.drawn + together
-
-
-def _swing(recording: Any, swing: Swing) -> Any:
-    """As `Swing.value`."""
-    turn = _value(recording, swing.turn)
-    (x, y), (out, beside) = _arm(recording, swing.base), _arm(recording, swing.end)
-    across = out * cos(turn) - beside * sin(turn), out * sin(turn) + beside * cos(turn)
-    return swing.offset + (x * across[1] - y * across[0]) / square_root(x * x + y * y)
-
-
-def _arm(recording: Any, arm: Arm) -> list[Any]:
-    by: Any = 0.0 if arm.slide is None else _value(recording, arm.slide)
-    return [a + by * b for a, b in zip(arm.drawn, arm.along, strict=True)]

@@ -6,15 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from mechkin_cli.kernel.functions import total
 from mechkin_cli.mechanism.curve import CoordinateLaw
 from mechkin_cli.mechanism.joint import Joint
 from mechkin_cli.mechanism.pair_type import Attached, Rubbing
 from mechkin_cli.mechanism.vectors import Vector
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.tape import cos, sin
+from mechkin_cli.tape import cos, plain, sin, square_root
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -75,8 +73,8 @@ class Extent(NamedTuple):
 
     def value(self, read: Callable[[Term], Floats]) -> Floats | float:
         """At the states at which `read` finds the terms (states,)."""
-        together: Floats | float = total(read(term) for term in self.terms)
-        return float(self.drawn) + together
+        value: Floats | float = plain(self.drawn) + total(read(term) for term in self.terms)
+        return value
 
 
 class Arm(NamedTuple):
@@ -90,7 +88,7 @@ class Arm(NamedTuple):
     def value(self, read: Callable[[Term], Floats]) -> list[Floats | float]:
         """Its components at the states at which `read` finds the terms (states,)."""
         by = 0.0 if self.slide is None else read(self.slide)
-        return [float(a) + by * float(b) for a, b in zip(self.drawn, self.along, strict=True)]
+        return [plain(a) + by * plain(b) for a, b in zip(self.drawn, self.along, strict=True)]
 
 
 class Swing(NamedTuple):
@@ -112,8 +110,9 @@ class Swing(NamedTuple):
         turn = read(self.turn)
         (x, y), (out, beside) = self.base.value(read), self.end.value(read)
         across = out * cos(turn) - beside * sin(turn), out * sin(turn) + beside * cos(turn)
-        aside: Floats = (x * across[1] - y * across[0]) / np.sqrt(x * x + y * y)
-        return float(self.offset) + aside
+        aside = (x * across[1] - y * across[0]) / square_root(x * x + y * y)
+        value: Floats = plain(self.offset) + aside
+        return value
 
 
 class Fleet(NamedTuple):

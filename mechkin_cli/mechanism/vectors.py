@@ -48,7 +48,8 @@ def norm(a: Vector) -> float:
     """Length of a; scaled first, so that neither tiny nor huge vectors lose it."""
     longest = largest(abs(a[0]), abs(a[1]), abs(a[2]))
     b = scale(1.0 / nonzero(longest), a)
-    return longest * square_root(dot(b, b))
+    length: float = longest * square_root(dot(b, b))
+    return length
 
 
 def unit(a: Vector) -> Vector:

@@ -159,11 +159,11 @@ def is_finite(value: float) -> bool:
     return math.isfinite(value)
 
 
-def square_root(value: float) -> float:
-    """The square root of a number that is not negative."""
+def square_root(value: Any) -> Any:
+    """The square root of a number that is not negative, or of rows of such."""
     if isinstance(value, Recorded):
         return value.apply("SQUARE_ROOT")
-    return math.sqrt(value)
+    return np.sqrt(value) if isinstance(value, np.ndarray) else math.sqrt(value)
 
 
 def sign(value: float) -> float:
