@@ -162,7 +162,8 @@ class AssemblyStart:
     where it is known (else `near` or `home`); `how` it was found, in words. Without states `status`
     is the reason why there are none, and `stuck` whether the inputs did not move from the drawing
     at all. `off` is the distance from what `near` names and `condition` that of the assembly, as
-    far as the choice has needed them."""
+    far as the choice has needed them. Where rows go on from others `turn` (turn slots,) are the
+    turns of angles at the row, and `signs` those of quaternions in the first row."""
 
     state: Floats | None
     mode: str
@@ -173,6 +174,8 @@ class AssemblyStart:
     stuck: bool = False
     off: float = inf
     condition: float | None = None
+    turn: Floats | None = None
+    signs: Mapping[str, float] = field(default_factory=dict)
 
 
 Named = tuple["Floats", frozenset[int], bool]

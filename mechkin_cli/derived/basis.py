@@ -77,6 +77,16 @@ class RowStates(Protocol):
         """Turns of cut joints (turn slots, rows)."""
         ...
 
+    @property
+    def signs(self) -> dict[str, Floats]:
+        """Those of the quaternions of spherical joints (rows,), as far as they were read."""
+        ...
+
+    @property
+    def signs_before(self) -> Mapping[str, float]:
+        """Those of the first row, where it goes on from others."""
+        ...
+
 
 class Evaluated(Protocol):
     """A finished run on whose states quantities are evaluated (`sweep.Result`)."""
@@ -342,9 +352,11 @@ def continuous_quaternion(run: BasisQuantities, joint: str) -> Quaternion:
         # a joint of a hung body turns with its line, less than half a turn from row to row
         back = inner(_part(part, slice(1, None)), _part(part, slice(None, -1))) < 0.0
         signs = np.cumprod(np.concatenate((np.ones(1), np.where(back, -1.0, 1.0))))
+    rows = run.result.row_states
     first = -1.0 if part[0][0] < 0.0 else 1.0
-    every = np.ones(run.result.row_states.reached.size)
-    every[reached] = signs * first
+    every = np.ones(rows.reached.size)
+    every[reached] = signs * rows.signs_before.get(joint, first)
+    rows.signs[joint] = every
     return times(every, q)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mechkin_cli.mechanism.pairs import is_angle
-from mechkin_cli.record import NamedTuple, dataclass, field
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tape import differ
 from mechkin_cli.tolerances import AT_LIMIT
 
@@ -61,6 +61,16 @@ class DrivenInput(NamedTuple):
         names = (self.name + suffix for suffix in ORDERS)
         return dict(zip(names, zip(in_si, self.written_orders, strict=True), strict=True))
 
+    def part(self, rows: slice) -> DrivenInput:
+        """Some of the rows."""
+        return self._replace(
+            values=self.values[rows],
+            rates=self.rates[rows],
+            accelerations=self.accelerations[rows],
+            jerks=self.jerks[rows],
+            written_orders=self.written_orders[:, rows],
+        )
+
 
 class Moments(NamedTuple):
     """The moments of the rows in s, and as written in the file's units."""
@@ -95,13 +105,23 @@ class Limit(NamedTuple):
         return np.where(above > slack, above, np.where(below < -slack, below, 0.0 * values))
 
 
+class Span(NamedTuple):
+    """Which of the rows of a run are meant: the number of the first one, how many they are, and how
+    many the run has."""
+
+    first: int
+    rows: int
+    run_rows: int
+
+
 class MotionInputs(NamedTuple):
     """All inputs; a mechanism without inputs has one row. `time` is there where the file has it,
     `course` where inputs move by laws or follow others; `paths` are all inputs as functions of each
     one that others follow (`building.course`). Of `constraints` between inputs `constraint_rates`
     (constraints, rows) are the rates of the input by its leader. `unrated` are the inputs that rest
     only since the file gives them no rate. `grid`: how many values each of the two inputs has whose
-    pairs are the rows, the slow one first."""
+    pairs are the rows, the slow one first. Of a part of a longer run `span` says which it is, and
+    `leader` the number of the run's leading input."""
 
     inputs: tuple[DrivenInput, ...]
     rows: int
@@ -112,6 +132,23 @@ class MotionInputs(NamedTuple):
     constraint_rates: Floats | None = None
     unrated: tuple[str, ...] = ()
     grid: tuple[int, int] | None = None
+    span: Span | None = None
+    leader: int | None = None
+
+    def part(self, first: int, last: int) -> MotionInputs:
+        """The rows from `first` to `last`, both included, of a motion that is no grid."""
+        assert self.grid is None
+        rows = slice(first, last + 1)
+        time, course, rates = self.time, self.course, self.constraint_rates
+        return self._replace(
+            inputs=tuple(item.part(rows) for item in self.inputs),
+            rows=last + 1 - first,
+            time=None if time is None else Moments(time.values[rows], time.written[rows]),
+            course=None if course is None else course.part(first, last),
+            constraint_rates=None if rates is None else rates[:, rows],
+            span=Span(first, last + 1 - first, self.rows),
+            leader=self.leading_number,
+        )
 
     @property
     def driven(self) -> list[tuple[str, str]]:
@@ -120,9 +157,16 @@ class MotionInputs(NamedTuple):
 
     @property
     def leading(self) -> DrivenInput | None:
-        """The first input that moves over the rows; the first of all if none does."""
-        moving = (i for i in self.inputs if differ(i.values))
-        return next(moving, self.inputs[0] if self.inputs else None)
+        """The first input that moves over the rows of the run; the first of all if none does."""
+        return self.inputs[self.leading_number] if self.inputs else None
+
+    @property
+    def leading_number(self) -> int:
+        """The number of that input; 0 where there is none."""
+        if self.leader is not None:
+            return self.leader
+        moving = (number for number, item in enumerate(self.inputs) if differ(item.values))
+        return next(moving, 0)
 
 
 @dataclass(frozen=True)
@@ -188,6 +232,20 @@ class Course:
     at: Floats
     values: Floats
     cells: NDArray[np.int64]
+
+    def part(self, first: int, last: int) -> Course:
+        """The places from the row `first` to the row `last`, whose numbers begin with 0."""
+        # rows stand in order, with the ends of cells between them
+        begin, end = np.flatnonzero((self.rows == first) | (self.rows == last))[[0, -1]].tolist()
+        places = slice(begin, end + 1)
+        rows = self.rows[places]
+        return replace(
+            self,
+            rows=np.where(rows < 0, -1, rows - first),
+            at=self.at[places],
+            values=self.values[:, places],
+            cells=self.cells[begin:end],
+        )
 
 
 # The motion of the inputs as the text says it: numbers over the rows, on a recording.

@@ -81,7 +81,12 @@ class Problem:
     responses: Mapping[str, ResponseProblem] = field(default_factory=dict)
     response: ResponseProblem | None = None
     limits: tuple[Limit, ...] = ()
-    _known: Mapping[str, Wanted] | None = field(default=None, init=False, repr=False, compare=False)
+    _alike: Problem | None = field(default=None, init=False, repr=False, compare=False)
+
+    def part(self, first: int, last: int) -> Problem:
+        """The problem of the rows from `first` to `last`, both included; it has the same
+        quantities."""
+        return replace(self, motion=self.motion.part(first, last)).with_quantities_of(self)
 
     @property
     def driven(self) -> list[tuple[str, str]]:
@@ -144,7 +149,7 @@ class Problem:
     def with_quantities_of(self, other: Problem) -> Problem:
         """This problem, which has the quantities of another: links, joints and inputs of the same
         names and kinds."""
-        object.__setattr__(self, "_known", other.quantities())
+        object.__setattr__(self, "_alike", other)
         return self
 
     def quantities(self) -> Mapping[str, Wanted]:
@@ -200,8 +205,8 @@ class Problem:
 
     @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
-        if self._known is not None:
-            return self._known
+        if self._alike is not None:
+            return self._alike.quantities()
         tied, found = self.tied, self._all_quantities()
         if not tied:
             return found

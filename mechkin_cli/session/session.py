@@ -302,6 +302,10 @@ class Session:
         alone."""
         return replace(self, problem=problem, own_inputs=None)
 
+    def part(self, first: int, last: int) -> Session:
+        """The session of the rows from `first` to `last`, both included."""
+        return self.moved(self.problem.part(first, last))
+
     def readout(self, wanted: Iterable[Wanted], points: Iterable[Attached] = ()) -> Readout:
         """The outputs that give some quantities, and the places of some points."""
         return self.structure.readout(tuple(wanted), tuple(points))

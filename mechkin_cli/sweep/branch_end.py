@@ -111,7 +111,9 @@ _TURNED_BACK = {
 """What the inputs may come to where they turn back: code, words, hint."""
 
 
-def retraced_notes(session: Session, touched: Sequence[SingularPlace]) -> list[Diagnostic]:
+def retraced_notes(
+    session: Session, rows: SweepRows, touched: Sequence[SingularPlace]
+) -> list[Diagnostic]:
     """The places at which the inputs come to a dead centre or a branch point and turn back."""
     notes = []
     for kind, (code, name, hint) in _TURNED_BACK.items():
@@ -123,7 +125,7 @@ def retraced_notes(session: Session, touched: Sequence[SingularPlace]) -> list[D
             for place in there[:MOST_SHOWN]
         ]
         shown = ", ".join(
-            f"{'at' if place.is_row else 'behind'} row {place.row + 1}"
+            f"{'at' if place.is_row else 'behind'} row {rows.span.first + place.row + 1}"
             for place in there[:MOST_SHOWN]
         )
         more = f" and {len(there) - MOST_SHOWN} more" if len(there) > MOST_SHOWN else ""
@@ -206,10 +208,14 @@ def _words(places: Iterable[Number]) -> str:
 
 def _stay_empty(rows: SweepRows, where: str = "") -> str:
     """The missing rows in words, and `where` they lie."""
-    missing = np.sort(rows.numbers[~rows.reached]) + 1
-    lie, stay, span = "lie", "stay", f"rows {missing[0]} to {missing[-1]}"
-    if missing.size == 1:
-        lie, stay, span = "lies", "stays", f"row {missing[0]}"
+    missing = np.sort(rows.numbers[~rows.reached])
+    first, last = (rows.span.first + int(missing[end]) + 1 for end in (0, -1))
+    # of a part of a run those before it, or behind it, are missing, too
+    first = 1 if missing[0] == 0 else first
+    last = rows.span.run_rows if missing[-1] == rows.span.rows - 1 else last
+    lie, stay, span = "lie", "stay", f"rows {first} to {last}"
+    if first == last:
+        lie, stay, span = "lies", "stays", f"row {first}"
     return f"{span} {lie} {where} and {stay} empty" if where else f"{span} {stay} empty"
 
 

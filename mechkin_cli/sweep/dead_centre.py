@@ -36,7 +36,7 @@ from mechkin_cli.session import (
     RowInputs,
     precise_inputs,
 )
-from mechkin_cli.sweep.messages import condition_text, named_rows
+from mechkin_cli.sweep.messages import condition_text
 from mechkin_cli.tape import TraceLost
 from mechkin_cli.tolerances import (
     BEFORE_DEAD_CENTRE,
@@ -275,7 +275,7 @@ def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) 
     try:
         wide = _in_double_double(session, rows, ask, numbers)
     except (TraceLost, LookupError, ValueError) as lost:
-        return [_not_measured_note(numbers, batch.condition, lost)]
+        return [_not_measured_note(rows, numbers, batch.condition, lost)]
     off = _parts_apart(wide.states, batch.states[:, numbers], largest=1.0)
     digits = {"positions": _digits(off, wide.good)}
     for name, slots in _kinds(session, ask).items():
@@ -289,7 +289,7 @@ def few_digits_notes(session: Session, rows: SweepRows, batch: Batch, ask: Ask) 
         few |= found < (DIGITS_OF_PLACES if name == "positions" else FEW_DIGITS)
     if not few.any():
         return []
-    return [_few_digits_note(numbers, few, digits, batch.condition)]
+    return [_few_digits_note(rows, numbers, few, digits, batch.condition)]
 
 
 def _in_double_double(
@@ -345,12 +345,14 @@ def _digits(parts: Floats, known: Bools) -> NDArray[np.int64]:
     return np.where(known, np.count_nonzero(parts <= limits, axis=0), 0)
 
 
-def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Exception) -> Diagnostic:
+def _not_measured_note(
+    rows: SweepRows, numbers: NDArray[np.intp], condition: Floats, lost: Exception
+) -> Diagnostic:
     """Of rows whose numbers are not in a text, or in it in a way that no tape holds."""
     return Diagnostic(
         "few-digits",
         "note",
-        f"{named_rows(numbers)} may have few digits of rates, accelerations and forces; how many "
+        f"{rows.named(numbers)} may have few digits of rates, accelerations and forces; how many "
         f"could not be measured: {lost}",
         measured=condition_text(float(condition[numbers].max())),
         limit=f"{CONDITION_FEW_DIGITS:g}",
@@ -359,24 +361,25 @@ def _not_measured_note(numbers: NDArray[np.intp], condition: Floats, lost: Excep
 
 
 def _few_digits_note(
+    rows: SweepRows,
     numbers: NDArray[np.intp],
     few: Bools,
     digits: Mapping[str, NDArray[np.int64]],
     condition: Floats,
 ) -> Diagnostic:
-    rows = np.flatnonzero(few)
-    worst = rows[np.argmin(np.min([found[rows] for found in digits.values()], axis=0))]
-    row = numbers[worst] + 1
-    where = f"{named_rows(numbers[rows])} {'has' if rows.size == 1 else 'have'} few digits"
-    if rows.size > 1:
-        where += f"; fewest has row {row}"
+    poor = np.flatnonzero(few)
+    worst = poor[np.argmin(np.min([found[poor] for found in digits.values()], axis=0))]
+    row = numbers[worst]
+    where = f"{rows.named(numbers[poor])} {'has' if poor.size == 1 else 'have'} few digits"
+    if poor.size > 1:
+        where += f"; fewest has {rows.named([row])}"
     told = ", ".join(f"{name} {found[worst]}" for name, found in digits.items())
     return Diagnostic(
         "few-digits",
         "warning",
         f"{where}: {told}, as measured in double-double, in parts of the largest of each kind in "
         "the row",
-        measured=condition_text(float(condition[row - 1])),
+        measured=condition_text(float(condition[row])),
         hint="mechkin analyze --errors measures every cell; drive another coordinate there, or end "
         "the sweep before",
         numbers=tuple(Number(f"digits of {n}", float(f[worst])) for n, f in digits.items()),
@@ -386,12 +389,12 @@ def _few_digits_note(
 def _note(rows: SweepRows) -> Diagnostic:
     standing = [before.row for before in rows.dead_centres]
     numbers = list(dict.fromkeys(standing))
-    where = f"{named_rows(sorted(numbers))} {'stands' if len(numbers) == 1 else 'stand'}"
+    where = f"{rows.named(sorted(numbers))} {'stands' if len(numbers) == 1 else 'stand'}"
     double = [number for number in numbers if standing.count(number) > 1]
     both = ""
     if double:
         both = (
-            f"; it is undecided on which of two branches row {double[0] + 1} is, so what is "
+            f"; it is undecided on which of two branches {rows.named(double[:1])} is, so what is "
             "infinite with another sign on each is empty, too"
         )
     return Diagnostic(

@@ -43,28 +43,35 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
 
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
-    count, grid = session.inputs.values.shape[1], session.problem.motion.grid
+    motion = session.problem.motion
+    count, grid, span = session.inputs.values.shape[1], motion.grid, motion.span
+    sizes = (session.layout.states, turn_count(session.plan), count)
     if start.state is None:
-        rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
+        rows = SweepRows.without_guesses(*sizes, span)
         rows.status[:] = start.status
         return rows
     first = None if grid is not None else _first_row(session, start, every_row)
+    turn = start.turn
     if grid is not None:
         rows = _Lines(session, grid[1], every_row).follow(start)
     elif first is not None:
-        followed = session.follow_rows(first, every_row=every_row)
-        rows = SweepRows.followed(followed)
+        followed = session.follow_rows(first, every_row=every_row, turn=turn)
+        rows = SweepRows.followed(followed, span)
         explain_way(session, followed, rows, every_row)
     else:
-        rows = SweepRows.without_guesses(session.layout.states, turn_count(session.plan), count)
+        rows = SweepRows.without_guesses(*sizes, span)
         for step in (-1, 1):
-            followed = session.follow_rows(start.state, start.row, step, every_row=every_row)
+            followed = session.follow_rows(
+                start.state, start.row, step, every_row=every_row, turn=turn
+            )
             part = rows.part(slice(start.row, None, step))
             part.take(followed, 0)
             part.section *= step
             explain_way(session, followed, part, every_row)
             rows.nodes += part.nodes + followed.steps
-    count_from_first(session, rows)
+    if turn is None:
+        count_from_first(session, rows)
+    rows.signs_before = start.signs
     return rows
 
 
@@ -197,7 +204,7 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
         first = behind
     if first < rows.numbers.size:
         passed += [inputs for _, inputs in way.crossings]
-    rows.diagnostics += branch_end.retraced_notes(session, touched)
+    rows.diagnostics += branch_end.retraced_notes(session, rows, touched)
     if passed:
         rows.diagnostics.append(branch_end.crossing_note(session, passed))
     rest = rows.part(slice(first, None))
@@ -221,7 +228,9 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
     where a way of whole turns leads back to it, so that one turn serves them all."""
     if start.row == 0 or start.state is None:
         return start.state
-    if session.route is not None or not np.ptp(session.inputs.whole, axis=1).any():
+    if start.turn is not None or session.route is not None:
+        return None
+    if not np.ptp(session.inputs.whole, axis=1).any():
         return None
     back = session.follow_rows(start.state, start.row, -1, every_row=every_row)
     return back.guess[:, -1] if back.end == TrackEnd.FINISHED else None
@@ -229,21 +238,23 @@ def _first_row(session: Session, start: AssemblyStart, every_row: bool) -> Float
 
 def count_from_first(session: Session, rows: SweepRows) -> None:
     """Turns count from the first row, whose angles lie in (-180, 180] degrees."""
-    if not rows.reached.any():
-        return
-    first = int(np.argmax(rows.reached))
+    if rows.reached.any():
+        rows.turns -= turns_before(session, rows, int(np.argmax(rows.reached)))[:, None]
+
+
+def turns_before(session: Session, rows: SweepRows, first: int) -> Floats:
+    """What counts too much of turns (turn slots,), if they are to count from the row `first`, whose
+    angles lie in (-180, 180] degrees."""
+    off = np.zeros(rows.turns.shape[0])
     # half a turn is +180, whichever side of it rounding has
     for state, slot in session.structure.tree_slots.items():
         below = rows.states[state, first] <= tolerances.HALF_TURN_SIDE - pi
-        turns = rows.turns[slot, first] - (1.0 if below else 0.0)
-        if turns:
-            rows.turns[slot] -= turns
+        off[slot] = rows.turns[slot, first] - (1.0 if below else 0.0)
     for (_, freedom), slot in session.structure.closing_slots.items():
         if freedom != ORIENTATION:
             beyond = rows.turns[slot, first] - pi - tolerances.HALF_TURN_SIDE
-            turns = float(np.ceil(beyond / (2.0 * pi)))
-            if turns:
-                rows.turns[slot] -= turns * (2.0 * pi)
+            off[slot] = float(np.ceil(beyond / (2.0 * pi))) * (2.0 * pi)
+    return off
 
 
 # `follow:` - the loops that a run follows, where the file does not want all of them.

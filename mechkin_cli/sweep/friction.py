@@ -28,6 +28,7 @@ from mechkin_cli.verdict import Status, has_rates
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, Rubbing, Wanted
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep.rows import SweepRows
 
 
 CODE = "friction-undecided"
@@ -106,8 +107,8 @@ def friction_verdict(result: RunRows) -> FrictionVerdict:
     locking = judged & (result.columns[SELF_LOCKING.name][0] > 0.0) & ~lost
     if locking.any():
         text = (
-            f"in {_rows(locking)} a drive would brake without friction and has to push with it: "
-            "the loads alone do not move the mechanism there"
+            f"in {_rows(rows, locking)} a drive would brake without friction and has to push with "
+            "it: the loads alone do not move the mechanism there"
         )
         diagnostics.append(Diagnostic("self-locking", "note", text))
     return lost, unfounded, diagnostics
@@ -131,8 +132,8 @@ def unsupported(result: RunRows) -> FrictionVerdict:
                 Diagnostic(
                     Status.unsupported.label,
                     "warning",
-                    f"{one.words}, and the loads push it in {_rows(where)}: no finite reactions "
-                    "hold it; forces stay empty",
+                    f"{one.words}, and the loads push it in {_rows(rows, where)}: no finite "
+                    "reactions hold it; forces stay empty",
                     measured=f"{most:.6g} {problem.units.label(dimension)}",
                     limit=f"{tolerances.UNIQUE_CELL:g} of the largest reaction",
                     hint="add a constraint along that motion, or remove that component of the load",
@@ -161,8 +162,8 @@ def _slack(result: RunRows, lost: Bools) -> Findings:
                 Diagnostic(
                     Status.slack.label,
                     "warning",
-                    f"a strand of {strand.owner} goes slack in {_rows(where)}: its forces are as "
-                    "if it pushed",
+                    f"a strand of {strand.owner} goes slack in {_rows(rows, where)}: its forces "
+                    "are as if it pushed",
                     measured=f"{strand.name} = {least:.6g} {problem.units.label(FORCE)}",
                     limit="0",
                     hint="give more pretension, or hold the load so that it always pulls",
@@ -180,7 +181,7 @@ def lifted(result: RunRows) -> list[Diagnostic]:
         if where.any():
             rows.status[where & (rows.status == int(Status.ok))] = Status.slack
             least = float(units.from_si(float(np.min(value[where])), LENGTH))
-            text = f"{name} {extent.words} {extent.place} in {_rows(where)}"
+            text = f"{name} {extent.words} {extent.place} in {_rows(rows, where)}"
             text += ": it is led as if it stuck there"
             measured = f"{least:.6g} {units.label(LENGTH)}"
             hint = "end the sweep before it, or leave that place out of the cable's path"
@@ -191,7 +192,7 @@ def lifted(result: RunRows) -> list[Diagnostic]:
         if where.any():
             rows.status[where & (rows.status == int(Status.ok))] = Status.fleet_angle
             most = float(of_two("ATAN2", float(np.max(np.abs(value[where]))), 1.0))
-            text = f"{name} {fleet.words} in {_rows(where)}: it is led as if it did not"
+            text = f"{name} {fleet.words} in {_rows(rows, where)}: it is led as if it did not"
             hint = (
                 "guide it in that plane, or lead it over a pulley that swivels: swivel: [0, 0, 1]"
             )
@@ -207,7 +208,7 @@ def is_slack(tension: Floats, level: Floats) -> Bools:
 
 
 def _undecided(result: RunRows, judged: Bools) -> Findings:
-    frictions = result.problem.mechanism.frictions
+    rows, frictions = result.row_states, result.problem.mechanism.frictions
     states = [result.columns[q.name][0] for q in friction_states(result.problem.mechanism)]
     for code, (why, cure) in _WHY.items():
         masks = [judged & (state == int(code)) for state in states]
@@ -216,7 +217,7 @@ def _undecided(result: RunRows, judged: Bools) -> Findings:
             where = np.any(masks, axis=0)
             if code is FrictionState.AT_REST and not result.problem.motion.inputs:
                 cure = "while all rests, each friction takes what holds it: positions are known"
-            text = f"{why.format(rubbing_words(named))}; forces stay empty in {_rows(where)}"
+            text = f"{why.format(rubbing_words(named))}; forces stay empty in {_rows(rows, where)}"
             yield where, Diagnostic(CODE, "warning", text, named[0].place, hint=cure)
 
 
@@ -260,7 +261,7 @@ def arbitrary_friction(named: Sequence[Rubbing]) -> Diagnostic:
 
 def _spinning(result: RunRows, judged: Bools) -> Findings:
     """Friction that would drive an idle freedom."""
-    problem = result.problem
+    problem, rows = result.problem, result.row_states
     level, length = result.columns[REACTION_LEVEL.name][0], result.session.layout.length
     for freedom in idle.idle_freedoms(problem) if _holding(problem) else ():
         unit = 1.0 if freedom.slides else length
@@ -275,8 +276,8 @@ def _spinning(result: RunRows, judged: Bools) -> Findings:
                 Diagnostic(
                     "loaded-spin",
                     "error",
-                    f"{freedom.words}, and friction drives it in {_rows(where)}: the {motion} is a "
-                    "dynamic freedom, forces depend on it",
+                    f"{freedom.words}, and friction drives it in {_rows(rows, where)}: the "
+                    f"{motion} is a dynamic freedom, forces depend on it",
                     measured=f"{most:.6g} {problem.units.label(dimension)}",
                     hint=f"{freedom.cure}, or accept {what} that holds it with idle: hold",
                 ),
@@ -359,11 +360,11 @@ def _uncounted_note(rubbing: Rubbing, key: str, load: str, measured: str) -> Dia
     )
 
 
-def _rows(where: Bools) -> str:
-    numbers = np.flatnonzero(where) + 1
+def _rows(rows: SweepRows, where: Bools) -> str:
+    numbers = np.flatnonzero(where) + rows.span.first + 1
     if numbers.size == 1:
         return f"row {numbers[0]}"
-    if numbers.size == where.size:
+    if numbers.size == rows.span.run_rows:
         return "all rows"
     return f"{numbers.size} rows, first in row {numbers[0]}"
 
@@ -408,6 +409,15 @@ class FrictionRows:
     def is_lost(self) -> bool:
         """Whether a row has no forces."""
         return self.verdict is not None and bool(self.verdict[0].any())
+
+    def join(self, verdicts: Sequence[FrictionVerdict | None], own: Sequence[slice]) -> None:
+        """Takes the verdicts on parts of the rows, of which some are their own."""
+        known = [verdict for verdict in verdicts if verdict is not None]
+        if len(known) == len(own):
+            both = zip(known, own, strict=True)
+            lost, unfounded = zip(*((v[0][rows], v[1][rows]) for v, rows in both), strict=True)
+            said = [note for verdict in known for note in verdict[2]]
+            self.verdict = np.concatenate(lost), np.concatenate(unfounded), said
 
     def beside(self, problem: Problem, wanted: Iterable[Wanted], demand: Demand) -> list[Wanted]:
         """What `judged_by` names, until the rows are judged."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from mechkin_cli.mechanism import Limit, Problem, Wanted
     from mechkin_cli.show import Bools, Floats
-    from mechkin_cli.sweep.rows import RunRows
+    from mechkin_cli.sweep.rows import RunRows, SweepRows
 
 
 def limited(problem: Problem) -> dict[Wanted, Limit]:
@@ -38,10 +38,12 @@ def judge_limits(result: RunRows) -> None:
         for side, end in ((-1.0, limit.low), (1.0, limit.high)):
             there = out & (side * off > 0.0)
             if there.any():
-                rows.diagnostics.append(_note(problem, limit, end, values, there))
+                rows.diagnostics.append(_note(rows, problem, limit, end, values, there))
 
 
-def _note(problem: Problem, limit: Limit, end: float, values: Floats, there: Bools) -> Diagnostic:
+def _note(
+    rows: SweepRows, problem: Problem, limit: Limit, end: float, values: Floats, there: Bools
+) -> Diagnostic:
     numbers = np.flatnonzero(there)
     farthest = float(values[numbers[np.argmax(np.abs(values[numbers] - end))]])
     units, dimension = problem.units, dimension_of(limit.coordinate)
@@ -50,8 +52,9 @@ def _note(problem: Problem, limit: Limit, end: float, values: Floats, there: Boo
     return Diagnostic(
         Status.beyond_limit.label,
         "warning",
-        f"{_rows(numbers)} beyond the {'least' if end == limit.low else 'largest'} value of "
-        f"{limit.name}: the mechanism does not come there",
+        f"{_rows(numbers + rows.span.first)} beyond the "
+        f"{'least' if end == limit.low else 'largest'} value of {limit.name}: the mechanism does "
+        "not come there",
         limit.place,
         measured=units.text(farthest, dimension),
         limit=units.text(end, dimension),

@@ -26,6 +26,7 @@ from mechkin_cli.mechanism import (
 )
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search import pose_keys, same_poses
 from mechkin_cli.structure import listed
 from mechkin_cli.sweep.rows import RunRows
@@ -35,8 +36,6 @@ from mechkin_cli.verdict import CONDITION_LIMITS, Status
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
-
-    from numpy.typing import NDArray
 
     from mechkin_cli.mechanism import Joint, Mechanism, Problem, Wanted
     from mechkin_cli.session import Session
@@ -48,43 +47,56 @@ LOADS_NAMED = 4
 """Unique bearing loads that are named one by one."""
 
 
-def open_turn_note(session: Session, states: Floats, reached: Bools) -> Diagnostic | None:
-    """Rows a full turn of the one moving input apart at which the mechanism is not the same.
+class FirstRow(NamedTuple):
+    """The first row of a run: the one input that moves over the run, and its value without whole
+    turns, and these, there; the states (states,), None where it is not reached."""
 
-    A thread that advances with the turn, and what moves with it, is not meant to be. `states`
-    (states, rows) in kernel units.
+    number: int
+    reduced: float
+    whole: float
+    state: Floats | None
+
+    @classmethod
+    def of(cls, session: Session, rows: SweepRows) -> FirstRow | None:
+        """Of a run by its session, and the rows from the first on; None where it is not one input
+        alone that turns."""
+        inputs = session.inputs
+        moving = np.flatnonzero(np.ptp(inputs.values, axis=1) > 0.0)
+        if moving.size != 1:
+            return None
+        number = int(moving[0])
+        item = session.problem.motion.inputs[number]
+        if not is_cyclic(session.problem.mechanism, item.name):
+            return None
+        state = np.array(rows.states[:, 0]) if rows.reached[0] else None
+        return cls(number, inputs.reduced[number, 0], inputs.whole[number, 0], state)
+
+
+def open_turn_note(session: Session, rows: SweepRows, first: FirstRow | None) -> Diagnostic | None:
+    """Rows a full turn of the one moving input from the first at which the mechanism is not the
+    same.
+
+    A thread that advances with the turn, and what moves with it, is not meant to be.
     """
-    row, turns, name = next(
-        (turn for turn in _whole_turns(session) if reached[turn[0]]), (0, 0, "")
-    )
-    if not name or not reached[0] or not stands_elsewhere(session, states[:, [0, row]]):
+    if first is None or first.state is None:
         return None
+    turns = session.inputs.whole[first.number] - first.whole
+    rest = (session.inputs.reduced[first.number] - first.reduced) / (2.0 * np.pi)
+    whole = rows.reached & (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
+    if not whole.any():
+        return None
+    row = int(np.argmax(whole))
+    if not stands_elsewhere(session, np.stack([first.state, rows.states[:, row]], axis=1)):
+        return None
+    count = round(abs(float(turns[row])))
+    name = session.problem.motion.inputs[first.number].name
     return Diagnostic(
         "turn-not-closed",
         "note",
-        f"after {turns} full turn{'s' * (turns > 1)} of {name}, in row {row + 1}, the "
+        f"after {count} full turn{'s' * (count > 1)} of {name}, in {rows.named([row])}, the "
         "mechanism is not back at its first row's position: it has gone on to another assembly",
         hint="mechkin ranges shows the circuit",
     )
-
-
-@remembered
-def _whole_turns(session: Session) -> list[tuple[int, int, str]]:
-    """The rows that are whole turns of the one moving input away from the first, in order, how many
-    turns, and of which input."""
-    inputs = session.inputs.values
-    moving = np.flatnonzero(np.ptp(inputs, axis=1) > 0.0)
-    if moving.size != 1:
-        return []
-    number = int(moving[0])
-    item = session.problem.motion.inputs[number]
-    if not is_cyclic(session.problem.mechanism, item.name):
-        return []
-    turns = session.inputs.whole[number] - session.inputs.whole[number, 0]
-    rest = (session.inputs.reduced[number] - session.inputs.reduced[number, 0]) / (2.0 * np.pi)
-    whole = (turns != 0.0) & (np.abs(rest) <= tolerances.SAME_TURN)
-    rows = np.flatnonzero(whole).tolist()
-    return [(row, round(abs(float(turns[row]))), item.name) for row in rows]
 
 
 def stands_elsewhere(session: Session, both: Floats) -> bool:
@@ -197,7 +209,7 @@ def condition_notes(rows: SweepRows, condition: Floats) -> list[Diagnostic]:
             Diagnostic(
                 status.label,
                 "warning",
-                f"{named_rows(numbers)} {verb} {status.label}: {cost}",
+                f"{rows.named(numbers)} {verb} {status.label}: {cost}",
                 measured=condition_text(worst),
                 limit=f"{limit:g}",
                 hint="move the sweep by a fraction of its step, or keep away from the singular "
@@ -221,7 +233,7 @@ def not_converged_note(rows: SweepRows, residual: Floats) -> Diagnostic:
     return Diagnostic(
         "not-converged",
         "error",
-        f"{named_rows(failed)} did not close",
+        f"{rows.named(failed)} did not close",
         measured=f"residual {worst:.2g}",
         limit=f"{tolerances.RESIDUAL_ACCEPT:g}",
         hint="this may be a special position; move the sweep by a fraction of its step",
@@ -323,10 +335,6 @@ def locked_pose_notes(result: RunRows) -> list[Diagnostic]:
     return found
 
 
-SHOWN = 6
-"""Ranges of rows that a message names."""
-
-
 def watched(problem: Problem, asked: Sequence[Wanted]) -> list[Wanted]:
     """The quantity that shows whether the actuators hold the mechanism, where forces are asked
     for."""
@@ -360,14 +368,14 @@ def actuation_notes(result: RunRows) -> list[Diagnostic]:
     names = ", ".join(".".join(pair) for pair in drives.actuators)
     notes = []
     if lost.any():
-        where = named_rows(np.flatnonzero(lost))
+        where = result.row_states.named(lost)
         text = (
             f"the actuators {names} are a singular set in {where}: the mechanism can move "
             f"there while all of them rest; their efforts and the reactions stay empty"
         )
         notes.append(_note("singular-actuators", result, lost, text, tolerances.ACTUATORS_AT_REST))
     if near.any():
-        where = named_rows(np.flatnonzero(near))
+        where = result.row_states.named(near)
         text = (
             f"the actuators {names} are next to a singular set in {where}: their efforts "
             "are large and keep fewer than nine digits"
@@ -394,23 +402,6 @@ def _note(code: str, result: RunRows, rows: Bools, text: str, limit: float) -> D
         hint=hint,
         numbers=(Number("actuation", least, limit=limit),),
     )
-
-
-def named_rows(rows: Sequence[int] | NDArray[np.intp]) -> str:
-    """Rows, by numbers from 0 that rise, as the numbers from 1 of their ranges.
-
-    Example:
-        >>> named_rows([3, 4, 5, 8])
-        'rows 4 to 6 and 9'
-    """
-    numbers = np.asarray(rows) + 1
-    ranges = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
-    words = [f"{each[0]} to {each[-1]}" if each.size > 1 else f"{each[0]}" for each in ranges]
-    if len(words) > SHOWN:
-        left = sum(each.size for each in ranges[SHOWN:])
-        words[SHOWN:] = [f"{left} more up to row {numbers[-1]}"]
-    first = "row" if numbers.size == 1 else "rows"
-    return f"{first} {' and '.join(filter(None, (', '.join(words[:-1]), words[-1])))}"
 
 
 def undefined_loads(result: RunRows, lost: Bools) -> list[Diagnostic]:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from copy import copy
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
@@ -71,6 +71,19 @@ ROW_NUMBERS = {f"row.{n}": n for n in ("residual", "condition", "power_error", "
 """Verdicts that are numbers, by the names of their quantities."""
 
 
+def _join(
+    columns: Columns,
+    parts: Sequence[Columns],
+    joined: Callable[[Sequence[Floats | None]], Floats | None],
+) -> None:
+    """Joins the columns that all parts have."""
+    for name in parts[0]:
+        if all(name in part for part in parts):
+            column = joined([part[name] for part in parts])
+            assert column is not None
+            columns[name] = column
+
+
 class Result:
     """The rows of a sweep with a position and a verdict each.
 
@@ -92,6 +105,7 @@ class Result:
         self.session = session
         self.start = start
         self.row_states = rows
+        self.run_start = session, start
         self.events: tuple[str, ...] = ()
         self.demand = Demand.POSITION
         self.residual = np.full(rows.reached.size, np.nan)
@@ -121,12 +135,12 @@ class Result:
     def mode(self) -> str:
         """The letter of the rows' assembly mode where a short search proves that it knows all
         modes; else `near` or `home`."""
-        return assembly.mode_letter(self.session, self.start, thorough=False)
+        return assembly.mode_letter(*self.run_start, thorough=False)
 
     @cached_property
     def letter(self) -> str:
         """The letter of the assembly mode, searched for if it is not known yet."""
-        return assembly.mode_letter(self.session, self.start)
+        return assembly.mode_letter(*self.run_start)
 
     @property
     def how(self) -> str:
@@ -390,6 +404,35 @@ class Result:
         reactions = [quantity for quantity in wanted if quantity.kind in REACTION_KINDS]
         for shift, others in zip(self.shifts if reactions else (), self._shifted, strict=False):
             others |= self.evaluated(reactions, shift=shift)
+
+    def join(self, results: Sequence[Result], own: Sequence[slice]) -> None:
+        """Takes what was found of the rows in parts, of which this result has all: in each `own`
+        rows are in no part before it."""
+
+        def joined(arrays: Sequence[Floats | None]) -> Floats | None:
+            if all(each is None for each in arrays):
+                return None
+            parts = [
+                (each._nothing if array is None else array)[..., rows]
+                for array, each, rows in zip(arrays, results, own, strict=True)
+            ]
+            return np.ascontiguousarray(np.concatenate(parts, axis=-1))
+
+        self.residual = cast("Floats", joined([each.residual for each in results]))
+        self._condition = joined([each._condition for each in results])
+        self._power_error = joined([each._power_error for each in results])
+        lost = [each._unloaded for each in results if each._unloaded is not None]
+        self._unloaded = any(lost) if lost else None
+        for each in results:
+            self.demand |= each.demand
+        _join(self._columns, [each._columns for each in results], joined)
+        for number, others in enumerate(self._shifted):
+            _join(others, [each._shifted[number] for each in results], joined)
+        for name in dict.fromkeys(name for each in results for name in each._rests):
+            rest = joined([each._rests.get(name, each._columns[name][0]) for each in results])
+            assert rest is not None
+            self._rests[name] = rest
+        self.friction.join([each.friction.verdict for each in results], own)
 
     def evaluated(
         self,

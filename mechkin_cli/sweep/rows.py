@@ -14,7 +14,13 @@ import numpy as np
 
 from mechkin_cli import proofs, tolerances
 from mechkin_cli.expressions import Quantity
-from mechkin_cli.mechanism import REACTION_LEVEL, Problem, coordinate_quantities, is_angle
+from mechkin_cli.mechanism import (
+    REACTION_LEVEL,
+    Problem,
+    Span,
+    coordinate_quantities,
+    is_angle,
+)
 from mechkin_cli.memo import remembered
 from mechkin_cli.record import dataclass, field
 from mechkin_cli.session import Ask, Batch, KernelInputs, continuous_angle
@@ -53,7 +59,10 @@ class SweepRows:
             them along.
         section: (rows,) differs between rows between which a branch point was passed.
         ends: the dead centres beyond which rows are missing, each behind the last row before it.
+        span: where the rows lie in the run that they are a part of.
         dead_centres: rows that stand at one, twice where either of two branches may be meant.
+        signs: (rows,) of the quaternion of each spherical joint, as far as it was read.
+        signs_before: those of the first row where it goes on from others.
     """
 
     states: Floats
@@ -66,10 +75,15 @@ class SweepRows:
     turns: Floats
     section: NDArray[np.int64]
     ends: list[tuple[int, Ending]]
+    span: Span
     dead_centres: list[PlacesBefore] = field(default_factory=list)
+    signs: dict[str, Floats] = field(default_factory=dict)
+    signs_before: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
-    def without_guesses(cls, states: int, turns: int, rows: int) -> SweepRows:
+    def without_guesses(
+        cls, states: int, turns: int, rows: int, span: Span | None = None
+    ) -> SweepRows:
         """Rows of which nothing is known yet; none is reached."""
         return cls(
             states=np.zeros((states, rows)),
@@ -82,10 +96,11 @@ class SweepRows:
             turns=np.full((turns, rows), np.nan),
             section=np.zeros(rows, dtype=np.int64),
             ends=[],
+            span=span or Span(0, rows, rows),
         )
 
     @classmethod
-    def followed(cls, found: Followed) -> SweepRows:
+    def followed(cls, found: Followed, span: Span | None = None) -> SweepRows:
         """The rows of one way from the first, whose arrays become theirs."""
         count = found.limit.size
         turns = np.empty((0, count)) if found.turns is None else found.turns
@@ -100,6 +115,7 @@ class SweepRows:
             turns=turns,
             section=sections(found, count),
             ends=[],
+            span=span or Span(0, count, count),
         )
 
     def take(self, found: Followed, first: int) -> None:
@@ -116,12 +132,40 @@ class SweepRows:
         """Some of the rows, in the slice's order: views of the same arrays."""
         arrays = (self.states[:, rows], self.limit[rows], self.reached[rows], self.status[rows])
         more = (self.nodes, self.diagnostics, self.numbers[rows], self.turns[:, rows])
-        return SweepRows(*arrays, *more, self.section[rows], self.ends)
+        return SweepRows(*arrays, *more, self.section[rows], self.ends, self.span)
+
+    def named(self, rows: Sequence[int] | NDArray[np.intp] | Bools) -> str:
+        """Some of the rows, by their numbers or by which of them, as messages name them."""
+        found = np.asarray(rows)
+        if found.dtype == np.bool_:
+            found = np.flatnonzero(found)
+        return named_rows(found + self.span.first)
 
     @property
     def has_failed(self) -> bool:
         """Whether some row did not close."""
         return bool((self.status == Status.not_converged).any())
+
+
+SHOWN = 6
+"""Ranges of rows that a message names."""
+
+
+def named_rows(rows: Sequence[int] | NDArray[np.intp]) -> str:
+    """Rows, by numbers from 0 that rise, as the numbers from 1 of their ranges.
+
+    Example:
+        >>> named_rows([3, 4, 5, 8])
+        'rows 4 to 6 and 9'
+    """
+    numbers = np.asarray(rows) + 1
+    ranges = np.split(numbers, np.flatnonzero(np.diff(numbers) != 1) + 1)
+    words = [f"{each[0]} to {each[-1]}" if each.size > 1 else f"{each[0]}" for each in ranges]
+    if len(words) > SHOWN:
+        left = sum(each.size for each in ranges[SHOWN:])
+        words[SHOWN:] = [f"{left} more up to row {numbers[-1]}"]
+    first = "row" if numbers.size == 1 else "rows"
+    return f"{first} {' and '.join(filter(None, (', '.join(words[:-1]), words[-1])))}"
 
 
 class RunRows(Protocol):

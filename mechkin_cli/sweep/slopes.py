@@ -17,7 +17,6 @@ from mechkin_cli.mechanism import ExpressionOf, dimension_of
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
-from mechkin_cli.sweep.messages import named_rows
 from mechkin_cli.tape import JetNumber, Operation, RowRecorder, orders_of
 from mechkin_cli.tolerances import AT_LIMIT, COURSE_SAME, SLOPE_JUMP
 from mechkin_cli.units import LENGTH
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import CoordinateLaw, Problem, Track, Wanted
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
-    from mechkin_cli.sweep.rows import RunRows
+    from mechkin_cli.sweep.rows import RunRows, SweepRows
     from mechkin_cli.units import Dimension
 
 _CHOICES = {
@@ -165,7 +164,7 @@ def slope_notes(result: RunRows) -> list[Diagnostic]:
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
         jumps = jumps_between(bend, *_around(low, high))
         if jumps:
-            notes.append(_note(problem, bend, jumps, values))
+            notes.append(_note(result.row_states, problem, bend, jumps, values))
     return notes
 
 
@@ -192,7 +191,9 @@ ROUNDED = "round it off, as by sqrt(x^2 + e^2) for abs(x) with a small e"
 """The cure."""
 
 
-def _note(problem: Problem, bend: Bend, jumps: list[Jump], values: Floats) -> Diagnostic:
+def _note(
+    rows: SweepRows, problem: Problem, bend: Bend, jumps: list[Jump], values: Floats
+) -> Diagnostic:
     largest = max(jumps, key=lambda jump: jump.size)
     more = f", the largest of {len(jumps)} such jumps" if len(jumps) > 1 else ""
     there = np.zeros(values.shape, dtype=np.bool_)
@@ -202,7 +203,7 @@ def _note(problem: Problem, bend: Bend, jumps: list[Jump], values: Floats) -> Di
     if there.any():
         one = np.count_nonzero(there) == 1
         stands = "stands there and has" if one else "stand there and have"
-        text += f"; {named_rows(np.flatnonzero(there))} {stands} the rates of one side"
+        text += f"; {rows.named(there)} {stands} the rates of one side"
     unit, label = coordinate_unit(problem, bend.name)
     return Diagnostic(
         "slope-jump",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ from mechkin_cli.assembly import choose_start
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     DERIVED_KINDS,
+    LEDGER_KINDS,
     TRANSMISSION_KINDS,
     Moments,
     base_name,
@@ -29,6 +30,7 @@ from mechkin_cli.sweep.following import follow_rows, followed_session
 from mechkin_cli.sweep.friction import judged_by, lifted, uncounted_notes
 from mechkin_cli.sweep.limits import judge_limits, limited
 from mechkin_cli.sweep.messages import (
+    FirstRow,
     actuation_notes,
     condition_notes,
     first_order_note,
@@ -39,6 +41,7 @@ from mechkin_cli.sweep.messages import (
     unrated_notes,
     watched,
 )
+from mechkin_cli.sweep.parts import Part, joined_rows, parts_of
 from mechkin_cli.sweep.result import Result
 from mechkin_cli.sweep.slopes import bending, slope_notes
 from mechkin_cli.units import TIME
@@ -130,29 +133,78 @@ def analyze(
     Raises:
         KeyError: an unknown quantity.
     """
-    names = list(dict.fromkeys(quantities))
-    known = session.problem.quantities() if names else {}
-    asked = [known[name] for name in read_for(names, known)]
-    if session.problem.follow is not None:
-        session = followed_session(session, [*asked, *limited(session.problem)])
-    session, start = first_assembly(session)
-    if start.stuck:
-        from mechkin_cli.sweep.branch_end import input_faults
+    return Sweep(session, quantities, verdicts=verdicts, unasked=unasked).run()
 
-        start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
-    wanted, ask, rests_on_reactions = question(session, tuple(asked), verdicts=verdicts)
-    result = _closed(session, start, ask)
-    result.read(wanted)
-    judge_limits(result)
-    result.row_states.diagnostics += row_notes(
-        result, wanted, rests_on_reactions=rests_on_reactions
-    )
-    result.row_states.diagnostics += [*actuation_notes(result), *locked_pose_notes(result)]
-    result.row_states.diagnostics += slope_notes(result)
-    failed = any(d.severity == "error" for d in result.row_states.diagnostics)
-    if result.solved.any() and not failed:
-        result.row_states.diagnostics += unrated_notes(session.problem, asked, unasked)
-    return result
+
+class Sweep:
+    """A sweep that is to be run; arguments and errors are those of `analyze`."""
+
+    def __init__(
+        self,
+        session: Session,
+        quantities: Iterable[str] = (),
+        *,
+        verdicts: bool = True,
+        unasked: Collection[str] = (),
+    ) -> None:
+        names = list(dict.fromkeys(quantities))
+        known = session.problem.quantities() if names else {}
+        self.asked = [known[name] for name in read_for(names, known)]
+        self.unasked = unasked
+        if session.problem.follow is not None:
+            session = followed_session(session, [*self.asked, *limited(session.problem)])
+        session, start = first_assembly(session)
+        if start.stuck:
+            from mechkin_cli.sweep.branch_end import input_faults
+
+            start = replace(start, diagnostics=input_faults(session) or start.diagnostics)
+        self.session, self.start = session, start
+        self.question = question(session, tuple(self.asked), verdicts=verdicts)
+
+    def run(self) -> Result:
+        """All rows at once."""
+        found = list(self.parts())
+        if len(found) == 1:
+            return found[0].result
+        rows = joined_rows(found, self.session)
+        result = Result(self.session, self.start, rows, motion_between)
+        result.join([part.result for part in found], [part.own for part in found])
+        result.read(self.question[0])  # what depends on the rows of the whole run
+        return result
+
+    def parts(self) -> Iterator[Part]:
+        """The rows in order, part by part; one part, if they are few."""
+        first: FirstRow | None = None
+        for number, part in enumerate(parts_of(self.session, self.start, self._judged)):
+            result = part.result
+            if number == 0:
+                first = FirstRow.of(self.session, result.row_states)
+            if result.session is not self.session:
+                note = open_turn_note(result.session, result.row_states, first)
+                result.row_states.diagnostics += [note] if note else []
+                # only the first whole turn is told
+                first = None if note else first
+            yield part
+
+    def _judged(self, session: Session, start: AssemblyStart, rows: SweepRows | None) -> Result:
+        """The rows of a session, which is all of the run or a part, on the branch through a first
+        assembly: closed, read and judged. They are followed here if they are None."""
+        wanted, ask, rests_on_reactions = self.question
+        result = _closed(session, start, ask, rows)
+        is_part = session is not self.session
+        if is_part:
+            result.run_start = self.session, self.start
+            wanted = tuple(each for each in wanted if each.kind not in LEDGER_KINDS)
+        result.read(wanted)
+        judge_limits(result)
+        notes = result.row_states.diagnostics
+        notes += row_notes(result, wanted, rests_on_reactions=rests_on_reactions)
+        notes += [*actuation_notes(result), *locked_pose_notes(result)]
+        notes += slope_notes(result)
+        failed = any(note.severity == "error" for note in notes)
+        if result.solved.any() and not failed:
+            notes += unrated_notes(session.problem, self.asked, self.unasked)
+        return result
 
 
 def closed_rows(
@@ -184,18 +236,20 @@ def _in_parts_of_its_size(session: Session) -> Session:
     return session.sized(assembly_size(session.plan, inputs, start.state))
 
 
-def _closed(session: Session, start: AssemblyStart, ask: Ask) -> Result:
-    """Follows and closes all rows and reads what can be read at once."""
-    result = _closed_once(session, start, ask, every_row=False)
+def _closed(
+    session: Session, start: AssemblyStart, ask: Ask, rows: SweepRows | None = None
+) -> Result:
+    """Closes all rows, which are followed if they are None, and reads what can be read at once."""
+    result = _closed_once(session, start, ask, rows or follow_rows(session, start))
     if result.row_states.has_failed:
         # a filled-in row ended away from its guess: take every row as a careful step
-        result = _closed_once(session, start, ask, every_row=True)
+        result = _closed_once(session, start, ask, follow_rows(session, start, every_row=True))
     return result
 
 
-def _closed_once(session: Session, start: AssemblyStart, ask: Ask, *, every_row: bool) -> Result:
-    """The same by one way of following; rows that do not close are no longer marked as reached."""
-    rows = follow_rows(session, start, every_row=every_row)
+def _closed_once(session: Session, start: AssemblyStart, ask: Ask, rows: SweepRows) -> Result:
+    """The same of rows that were followed; those that do not close are no longer marked as
+    reached."""
     result = Result(session, start, rows, motion_between)
     if not rows.reached.any():
         return result
@@ -350,8 +404,9 @@ def row_notes(
             rows.diagnostics[:] = [d for d in rows.diagnostics if d.code != unsaid]
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
         notes += uncounted_notes(result)
-    note = open_turn_note(session, rows.states, rows.reached)
-    notes += [note] if note else []
+    if rows.span.rows == rows.span.run_rows:
+        note = open_turn_note(session, rows, FirstRow.of(session, rows))
+        notes += [note] if note else []
     notes += lifted(result) if problem.mechanism.couplings else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():
         notes.append(redundancy_note(result, asked))

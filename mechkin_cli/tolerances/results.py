@@ -43,6 +43,20 @@ DEAD_CENTRE_LOST: Final = 0.1
 """Part of a rate by which it is wrong, as double-double tells, from which on a row stands at a dead
 centre as nearly as a double can say: no digit is left. At a dead centre itself the part is 1."""
 
+PART_ROWS: Final = 1 << 16
+"""Rows of a part of a long run: its states, inputs and a few columns take some tens of megabytes,
+and what is done once for each part is small beside its rows."""
+
+PART_NUMBERS: Final = 1 << 21
+"""Numbers of states and turns of all rows of a part: 16 MB."""
+
+LEAST_PART_ROWS: Final = 64
+"""Rows of a part of the largest mechanisms: of fewer the steps between them would be cut short."""
+
+BORDER_CONDITION: Final = 10.0
+"""Condition of the row at which a part ends, in parts of the least of its second half: within it
+lies what conditions vary over a motion, and next to a dead centre they grow without bound."""
+
 BEFORE_DEAD_CENTRE: Final = (1e-4, 1e-6)
 """Distances of two places before a dead centre (rad, sizes): what grows as the root of the inverse
 does so tenfold between them, and both are far above rounding."""

@@ -10,7 +10,7 @@ from oracle.numerics import mpmath_context as mp
 
 import mechkin_cli as mk
 from mechkin_cli.sweep import dead_centre
-from mechkin_cli.sweep.messages import named_rows
+from mechkin_cli.sweep.rows import named_rows
 from mechkin_cli.tape import TraceLost
 
 PLACES = ["0", "10", "39.93", "39.931180949", "39.9311809496", "39.93118094965"]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 from mechanisms.runs import model
 
+from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.search.clusters import pose_keys, same_poses
 from mechkin_cli.search.search import all_assemblies
-from mechkin_cli.sweep.messages import open_turn_note
+from mechkin_cli.sweep.messages import FirstRow, open_turn_note
+from mechkin_cli.sweep.rows import SweepRows
 
 
 def test_a_turn_that_closes_is_not_mentioned() -> None:
@@ -24,13 +25,19 @@ def test_a_turn_that_ends_at_another_assembly_is_told() -> None:
     assert found.number == 2
     keys = pose_keys(layout, found.states)
     assert not same_poses(keys[:, :1], keys[:, 1:])[0, 0]
-    states = np.repeat(found.states[:, :1], inputs.shape[1], axis=1)
-    reached = np.ones(inputs.shape[1], dtype=bool)
-    assert open_turn_note(session, states, reached) is None
-    states[:, -1] = found.states[:, 1]
-    note = open_turn_note(session, states, reached)
-    assert note is not None
-    assert (note.code, note.severity) == ("turn-not-closed", "note")
-    assert "after 1 full turn of O1.theta, in row 37" in note.message
-    reached[-1] = False
-    assert open_turn_note(session, states, reached) is None
+    count = inputs.shape[1]
+    rows = SweepRows.without_guesses(found.states.shape[0], 0, count)
+    rows.states[:] = found.states[:, :1]
+    rows.reached[:] = True
+
+    def note() -> Diagnostic | None:
+        return open_turn_note(session, rows, FirstRow.of(session, rows))
+
+    assert note() is None
+    rows.states[:, -1] = found.states[:, 1]
+    told = note()
+    assert told is not None
+    assert (told.code, told.severity) == ("turn-not-closed", "note")
+    assert "after 1 full turn of O1.theta, in row 37" in told.message
+    rows.reached[-1] = False
+    assert note() is None
