@@ -18,6 +18,7 @@ __getattr__, __dir__ = lazy_names(
         "home": "NamedModes is_cyclic is_home_assembled is_home_singular name_modes "
         "nearest_to_home probe_of telling_points wrapped",
         "near": "AssemblyStart NEAR nothing_found",
-        "start": "HOME MAY_BE_RIGID choose_start continued_start mode_letter state_at_first_row",
+        "start": "HOME MAY_BE_RIGID choose_start continued_start mode_letter "
+        "rows_of_start state_at_first_row",
     },
 )

@@ -16,6 +16,7 @@ from mechkin_cli.assembly.home import (
     is_home_assembled,
     is_home_singular,
     name_modes,
+    nearest_to_home,
     probe_of,
     rows_from_home,
     two_sides,
@@ -37,7 +38,7 @@ from mechkin_cli.assembly.near import (
 )
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
-from mechkin_cli.mechanism import dimension_of, is_angle
+from mechkin_cli.mechanism import LongRun, dimension_of, is_angle
 from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Layout, TrackEnd, build_plan, home_inputs, home_state
 from mechkin_cli.record import replace
@@ -61,6 +62,8 @@ from mechkin_cli.structure import structure_of
 from mechkin_cli.verdict import Status
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.kernel._kernel import Plan
     from mechkin_cli.show import Floats
 
@@ -80,12 +83,39 @@ MAY_BE_RIGID = "an overconstrained loop moves only if its dimensions are exact (
 @remembered
 def choose_start(session: Session) -> AssemblyStart:
     """The assembly that the file means, or the one that is continued."""
+    few, rows = rows_of_start(session)
+    if rows is not None:
+        start = choose_start(few)
+        return replace(start, row=int(rows[start.row]))
     continued = continued_start(session)
     if continued is not None:
         return _continued(continued)
     start = _choose_start(session)
     by_mode = start.mode not in (NEAR, HOME) and session.problem.assembly.mode is not None
     return start if by_mode else judged_off_fold(session, start)
+
+
+@remembered
+def rows_of_start(session: Session) -> tuple[Session, NDArray[np.int64] | None]:
+    """The rows among which the first assembly is looked for, and their numbers: all, None, or of a
+    long run a sample, with those next to the drawing."""
+    motion = session.problem.motion
+    if not isinstance(motion, LongRun):
+        return session, None
+    sample = motion.sample
+    rows = motion.sampled
+    few = session.moved(replace(session.problem, motion=sample).with_quantities_of(session.problem))
+    wanted = session.problem.assembly
+    if wanted.mode == HOME or (not wanted.near and wanted.mode is None):
+        place = nearest_to_home(few, few.inputs.values)
+        low, high = int(rows[max(place - 1, 0)]), int(rows[min(place + 1, rows.size - 1)])
+        between = session.part(low, high)
+        nearest = low + nearest_to_home(between, between.inputs.values)
+        rows = np.unique(np.concatenate([rows, np.arange(max(nearest - 1, low), nearest + 2)]))
+        rows = rows[rows < motion.rows]
+        problem = replace(session.problem, motion=motion.at(rows))
+        few = session.moved(problem.with_quantities_of(session.problem))
+    return few, rows
 
 
 @remembered
@@ -183,6 +213,9 @@ def mode_letter(session: Session, start: AssemblyStart, *, thorough: bool = True
     `home` where it is on no letter's branch, or where only a `thorough` search finds all modes."""
     if start.mode not in (NEAR, HOME) or start.state is None:
         return start.mode
+    few, rows = rows_of_start(session)
+    if rows is not None:
+        session, start = few, replace(start, row=int(np.searchsorted(rows, start.row)))
     first = session.inputs.reduced[:, 0]
     state = state_at_first_row(session, start)
     if state is None or not (thorough or is_in_reach(session.layout, state)):

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from mechkin_cli.building.drawn_wheels import *
     from mechkin_cli.building.edit import *
     from mechkin_cli.building.fields import *
-    from mechkin_cli.building.motion import *
     from mechkin_cli.building.recording import *
     from mechkin_cli.building.source import *
+    from mechkin_cli.building.spacing import *
     from mechkin_cli.building.tables import *
     from mechkin_cli.building.view import *
     from mechkin_cli.building.written_numbers import *
@@ -30,9 +30,9 @@ __getattr__, __dir__ = lazy_names(
         "drawn_wheels": "DrawnBelt DrawnScrew DrawnWheel",
         "edit": "Edited edit_parameters value_text",
         "fields": "is_tiny_length",
-        "motion": "by_count by_step",
         "recording": "precise precise_response record record_response shifting",
         "source": "BadTable open_data open_file open_text table_path table_text",
+        "spacing": "Spacing",
         "tables": "used_quantities",
         "view": "DrawnBetween Kind ShapeSetting ViewSettings",
         "written_numbers": "FileNumber file_numbers",

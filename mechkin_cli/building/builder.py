@@ -33,7 +33,7 @@ from mechkin_cli.building.fields import (
 from mechkin_cli.building.joints import build_linkage
 from mechkin_cli.building.limits import build_limits
 from mechkin_cli.building.loads import LoadBuilder, build_drives, note_own_motors
-from mechkin_cli.building.motion import build_motion, numbers_per_row, point_guides
+from mechkin_cli.building.motion import build_motion, point_guides
 from mechkin_cli.building.play import build_plays, loose_in_sweep, note_tight, with_plays
 from mechkin_cli.building.responses import (
     build_assembly,
@@ -42,6 +42,7 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
+from mechkin_cli.building.spacing import numbers_per_row
 from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,

@@ -125,7 +125,7 @@ class _Reading:
         first = self.fields.written((*path, "from"), section.first, TIME)
         last = self.fields.written((*path, "to"), section.last, TIME)
         assert self.motion.time is not None
-        self.clock = Clock(self.motion.time, first, last)
+        self.clock = Clock(self.motion.time, first, last, self.motion.rows)
 
     def add(self, name: str, item: SweptInput | ListedInput | HeldInput | Law) -> None:
         """An input that does not follow others."""

@@ -9,6 +9,7 @@ of that link; the halves of a joint may meet at any place of the drawing.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from mechkin_cli.building.datum import Datum
 from mechkin_cli.diagnostics import Diagnostic, InvalidFile, Number, nearest_hint
@@ -53,6 +54,10 @@ from mechkin_cli.units import (
     UnitError,
     UnitSystem,
 )
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 Path = tuple[str | int, ...]
 
@@ -461,8 +466,11 @@ def note_force_unit(fields: Fields) -> None:
 
 
 class Clock(NamedTuple):
-    """The moments of the rows, and `from` and `to` of `time` in the file's units."""
+    """The moments of the rows, and `from` and `to` of `time` in the file's units; how many rows the
+    run has, and the `numbers` of those that are meant, None: all."""
 
     time: Moments
     first: float
     last: float
+    run_rows: int
+    numbers: NDArray[np.int64] | None = None

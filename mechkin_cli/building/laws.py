@@ -45,6 +45,8 @@ from mechkin_cli.tape import Recorder, Tape, Traced, TraceLost, is_traced, regis
 from mechkin_cli.units import TIME
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.schema import InputMotion
     from mechkin_cli.units import Dimension
 
@@ -65,7 +67,8 @@ def law_values(fields: Fields, path: Path, law: Law, coordinate: str, clock: Clo
     if rows.size:
         row = int(rows[0])
         moment = f"time = {clock.time.written[row]:.12g} {fields.units.label(TIME)}"
-        _note_undefined(fields, (*path, "value"), str(path[-1]), orders, row, moment)
+        number = row if clock.numbers is None else int(clock.numbers[row])
+        _note_undefined(fields, (*path, "value"), str(path[-1]), orders[:, row], number, moment)
         return np.zeros_like(orders)
     return orders
 
@@ -251,9 +254,9 @@ def _tape(
 def _note_undefined(
     fields: Fields, path: Path, name: str, orders: Floats, row: int, measured: str
 ) -> None:
-    """Notes that an input has no finite value, or no such rate, in a row."""
+    """Notes that an input has no finite value, or no such rate, in a row: `orders` (4,)."""
     words = ("value", "rate", "second rate", "third rate")
-    order = int(np.argmax(~np.isfinite(orders[:, row])))
+    order = int(np.argmax(~np.isfinite(orders)))
     fields.error(
         "undefined-rate" if order else "undefined-value",
         path,
@@ -272,17 +275,24 @@ class Following:
     `orders` holds value, rate, acceleration and jerk (4, rows) in the file's units of the inputs
     that are known, by name, and `path` leads to their section; `expressions` gets those of inputs
     that follow, in the order in which they are evaluated; `constrained` are those that the
-    motors of others move.
+    motors of others move. `numbers` are those of the rows, where they are not all of a run.
     """
 
     def __init__(
-        self, fields: Fields, orders: dict[str, Floats], rows: int, time: Moments | None, path: Path
+        self,
+        fields: Fields,
+        orders: dict[str, Floats],
+        rows: int,
+        time: Moments | None,
+        path: Path,
+        numbers: NDArray[np.int64] | None = None,
     ) -> None:
         self.fields = fields
         self.orders = orders
         self.rows = rows
         self.time = time
         self.path = path
+        self.numbers = numbers
         self.expressions: dict[str, Expression] = {}
         self.constrained: set[str] = set()
 
@@ -404,7 +414,8 @@ class Following:
         if rows.size:
             row = int(rows[0])
             places = ", ".join(self._place(used, row) for used in sorted(expression.names))
-            _note_undefined(self.fields, self._path(name), name, in_si, row, places)
+            number = row if self.numbers is None else int(self.numbers[row])
+            _note_undefined(self.fields, self._path(name), name, in_si[:, row], number, places)
             self.fields.refused.add(name)
             return
         self.orders[name] = np.stack(

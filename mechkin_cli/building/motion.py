@@ -1,10 +1,5 @@
-"""`motion:` to values, rates, accelerations and jerks of the inputs over the rows; row limits,
-equal spacing, and the guides of points whose coordinates are inputs.
-
-The equally spaced values of a sweep are the doubles nearest to the decimal numbers: 0, 0.1, 0.2,
-0.3 and not 0.30000000000000004. The numbers written are fractions over one power of ten, so x_i =
-from + i*step is a quotient of two whole numbers that doubles hold exactly, and a single division
-rounds it. Numbers with too many digits for that (results of expressions) are added as doubles.
+"""`motion:` to values, rates, accelerations and jerks of the inputs over the rows, and the
+guides of points whose coordinates are inputs.
 
 A point is guided by a slide that no drawing has: it runs along those axes of the ground and carries
 a ball on a plane, in a groove or in a socket, in a plane a pin in a slot or in a hole, whose centre
@@ -15,14 +10,12 @@ point; in the drawing they are not zero.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from decimal import Decimal
-from math import floor, isfinite, pi, prod
-from typing import Final
+from collections.abc import Callable, Mapping, Sequence
+from math import pi, prod
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli import tolerances
 from mechkin_cli.building.fields import (
     Clock,
     Fields,
@@ -32,7 +25,14 @@ from mechkin_cli.building.fields import (
     refuse_efforts,
 )
 from mechkin_cli.building.joints import Halves, parts_of
-from mechkin_cli.diagnostics import Number, nearest_hint
+from mechkin_cli.building.spacing import (
+    Spacing,
+    has_too_many_rows,
+    is_long,
+    sampled,
+    spacing,
+)
+from mechkin_cli.diagnostics import InvalidFile, nearest_hint
 from mechkin_cli.expressions import Expression
 from mechkin_cli.mechanism import (
     GROUND,
@@ -46,146 +46,43 @@ from mechkin_cli.mechanism import (
     MotionInputs,
     Part,
     RigidLink,
+    Span,
     Vector,
     frame_about,
     guide_letter,
     joint_type,
+    long_motion,
     perpendicular,
     scale,
     seat_letter,
     told_coordinates,
     upright,
 )
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.schema import (
     FollowingInput,
     HeldCoordinate,
     HeldInput,
     InputMotion,
     ListedInput,
-    MechanismFile,
     MotionSection,
     SweptInput,
     TimeSection,
     WithRates,
 )
-from mechkin_cli.show import Floats
-from mechkin_cli.tables import default_table
 from mechkin_cli.tape import differ, of_numbers, with_rates, within
-from mechkin_cli.tolerances import LARGEST_NUMBER, LARGEST_TURNS, MOST_NUMBERS
-from mechkin_cli.units import ANGLE, TIME, Dimension
+from mechkin_cli.tolerances import (
+    LARGEST_NUMBER,
+    LARGEST_TURNS,
+    MOST_NUMBERS,
+)
+from mechkin_cli.units import ANGLE, TIME
 from mechkin_cli.verdict import SWEEP
 
-_ROW_COLUMNS: Final = 6
-"""Columns of rows.csv beside the inputs."""
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
-
-def has_too_many_rows(fields: Fields, path: Path, rows: float, per_row: int) -> bool:
-    """Whether this number of rows, before any of them is made, is too large for memory; that is
-    noted at `path`, the place of the number. `per_row`: `numbers_per_row`."""
-    numbers = rows * per_row
-    if numbers <= MOST_NUMBERS:
-        return False
-    fields.error(
-        "too-many-numbers",
-        path,
-        f"the run has too many numbers, {rows:.12g} rows of {per_row}",
-        "take a larger step or fewer columns, or split the sweep into several files",
-        measured=f"{numbers:.12g} numbers",
-        limit=f"{MOST_NUMBERS} numbers, {MOST_NUMBERS // per_row} rows",
-        numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
-    )
-    return True
-
-
-def numbers_per_row(file: MechanismFile, joints: Mapping[str, Joint]) -> int:
-    """The numbers of each row of the file's run in memory: the cells of all tables, the columns of
-    rows.csv and the freedoms of all joints."""
-    motion = file.motion
-    inputs = list(motion.inputs) if motion else []
-    cells = sum(len(table.columns) for table in file.tables)
-    if not file.tables:
-        names = told_coordinates(joints.values())
-        timed = motion is not None and motion.time is not None
-        cells = len(default_table(names, inputs, timed=timed).columns)
-    freedoms = sum(joint.type.freedoms for joint in joints.values())
-    return cells + _ROW_COLUMNS + len(inputs) + freedoms
-
-
-EXACT = 2**53
-"""Whole numbers up to this one are doubles."""
-
-
-def by_step(first: float, step: float, count: int) -> Floats:
-    """The values first + i*step, shape (count,)."""
-    (start, stride), power = _whole_numbers(first, step)
-    numerators = _exact(start, stride, count)
-    if numerators is None or power > EXACT:
-        return np.asarray(first + np.arange(count) * step, dtype=np.float64)
-    return numerators / float(power)
-
-
-def by_count(first: float, last: float, count: int) -> Floats:
-    """`count` values from `first` to `last`, both included; one value is `first`."""
-    if count == 1:
-        return np.array([first])
-    (start, end), power = _whole_numbers(first, last)
-    gaps = count - 1
-    numerators = _exact(start * gaps, end - start, count)
-    if numerators is None or power * gaps > EXACT:
-        values = np.asarray(first + np.arange(count) * (last / gaps - first / gaps), dtype=float)
-        values[-1] = last
-        return values
-    return numerators / float(power * gaps)
-
-
-def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
-    """Whole numbers and the power of ten over which they are the values' shortest decimals."""
-    decimals = [Decimal(repr(float(value))) for value in values]
-    exponents = [int(number.as_tuple().exponent) for number in decimals]
-    power = 10 ** max(0, *(-exponent for exponent in exponents))
-    return tuple(int(number * power) for number in decimals), power
-
-
-def _exact(start: int, stride: int, count: int) -> Floats | None:
-    """start + i*stride as doubles; None where one of them is not an exact double."""
-    if max(abs(start), abs(stride), abs(start + (count - 1) * stride)) > EXACT:
-        return None
-    return np.asarray(start + np.arange(count, dtype=np.int64) * stride, dtype=np.float64)
-
-
-def spaced(
-    fields: Fields,
-    path: Path,
-    section: SweptInput | TimeSection,
-    dimension: Dimension,
-    per_row: int,
-) -> Floats:
-    """The values or moments of the rows in the file's units: n = floor(|to - from|/|step| + 1e-9) +
-    1 values x_i = from + i*step, or `count` values. Errors are noted in `fields`, with one
-    value."""
-    errors = fields.error_count
-    first = fields.written((*path, "from"), section.first, dimension)
-    last = fields.written((*path, "to"), section.last, dimension)
-    if section.count is not None:
-        at = (*path, "count")
-        if fields.error_count > errors or has_too_many_rows(fields, at, section.count, per_row):
-            return np.array([first])
-        return by_count(first, last, section.count)
-    assert section.step is not None  # the schema wants one of the two
-    step = abs(fields.written((*path, "step"), section.step, dimension))
-    if fields.error_count > errors:
-        return np.array([first])
-    if step == 0.0:
-        if first != last:
-            hint = "give the distance of rows"
-            fields.error("zero-step", (*path, "step"), "the step is zero", hint)
-        return np.array([first])
-    ratio = abs(last - first) / step + tolerances.LAST_ROW
-    rows = floor(ratio) + 1 if isfinite(ratio) else ratio
-    if has_too_many_rows(fields, (*path, "step"), rows, per_row):
-        return np.array([first])
-    return by_step(first, step if last >= first else -step, int(ratio) + 1)
-
+    from mechkin_cli.show import Floats
 
 _RATES = ("rate", "acceleration", "jerk")
 _ORDERS = ("value", *_RATES)
@@ -198,17 +95,49 @@ def build_motion(
     if section is None:
         return MotionInputs((), 1)
     errors = fields.error_count
-    grid = section.with_rows if section.grid else ()
-    path, clock = ("motion", "inputs"), None
-    if section.time is not None:
-        clock = spaced_moments(fields, ("motion", "time"), section.time, per_row)
-    motion = build_inputs(fields, path, section.inputs, joints, per_row, clock, grid)
+    motion = _swept(fields, section, joints, per_row, None)
     if motion is not None and fields.error_count == errors:
-        return motion
+        if motion.span is None:
+            return motion
+        rows, build = sampled(motion.span.run_rows), _rows_of(fields, section, joints)
+        return long_motion(motion._replace(span=None), rows, build, MOST_NUMBERS // per_row)
     fields.failed.add(SWEEP)
     fields.refused.add("time")
     refuse_efforts(fields, joints)
     return MotionInputs((), 1)
+
+
+def _swept(
+    fields: Fields,
+    section: MotionSection,
+    joints: Mapping[str, Joint],
+    per_row: int | None,
+    rows: NDArray[np.int64] | None,
+) -> MotionInputs | None:
+    """The motion in some rows, by their numbers; None: in all, or in a sample of very many. None
+    where an error was noted."""
+    grid = section.with_rows if section.grid else ()
+    clock, path = None, ("motion", "time")
+    if section.time is not None:
+        clock = spaced_moments(fields, path, section.time, per_row, in_parts=True, rows=rows)
+    path = ("motion", "inputs")
+    return build_inputs(fields, path, section.inputs, joints, per_row, clock, grid, rows=rows)
+
+
+def _rows_of(
+    fields: Fields, section: MotionSection, joints: Mapping[str, Joint]
+) -> Callable[[NDArray[np.int64]], MotionInputs]:
+    """What builds the motion in some rows, by their numbers; it raises InvalidFile where what the
+    file says does not hold there."""
+
+    def build(rows: NDArray[np.int64]) -> MotionInputs:
+        own = replace(fields, diagnostics=[], refused=set(fields.refused))
+        motion = _swept(own, section, joints, None, rows)
+        if motion is None or own.error_count:
+            raise InvalidFile([one for one in own.diagnostics if one.severity == "error"])
+        return motion
+
+    return build
 
 
 def build_inputs(
@@ -216,9 +145,11 @@ def build_inputs(
     path: Path,
     sections: Mapping[str, InputMotion | HeldCoordinate],
     joints: Mapping[str, Joint],
-    per_row: int,
+    per_row: int | None,
     clock: Clock | None = None,
     pair: tuple[str, ...] = (),
+    *,
+    rows: NDArray[np.int64] | None = None,
 ) -> MotionInputs | None:
     """Driven coordinates over the rows and between them; None where an error was noted.
 
@@ -230,22 +161,33 @@ def build_inputs(
         per_row: numbers that a row takes.
         clock: of their laws, where the rows are moments.
         pair: the two inputs of a grid, the slow one first.
+        rows: the numbers of those that are wanted, which rise; None: all, or of the sweep a sample
+            of very many.
     """
     errors = fields.error_count
     time = None if clock is None else clock.time
     with np.errstate(all="ignore"):
-        orders, following = _orders(fields, path, sections, joints, per_row, clock)
-    rows = time.written.size if time else _row_count(fields, pair, orders)
-    grid = None
-    if fields.error_count == errors and not has_too_many_rows(fields, path, rows, per_row):
-        grid = _all_pairs(orders, pair)
+        read, following = _read(fields, path, sections, joints, clock)
+    run_rows = clock.run_rows if clock else _row_count(fields, pair, read)
+    if fields.error_count > errors:
+        return None
+    if rows is None and clock is not None:
+        rows = clock.numbers
+    elif rows is None and not pair and is_long(run_rows, per_row):
+        rows = sampled(run_rows)
+    if rows is None and has_too_many_rows(fields, path, run_rows, per_row):
+        return None
+    orders = {name: one.at(rows) for name, one in read.items()}
+    grid = _all_pairs(orders, pair)
+    count = run_rows if rows is None else rows.size
+    span = None if rows is None else Span(int(rows[0]), count, run_rows)
     expressions: dict[str, Expression] = {}
     constraint_rates: dict[tuple[str, str], Floats] = {}
-    if fields.error_count == errors and following:
+    if following:
         from mechkin_cli.building.laws import Following
 
         coordinates = frozenset(told_coordinates(joints.values()))
-        followers = Following(fields, orders, rows, time, path)
+        followers = Following(fields, orders, count, time, path, rows)
         followers.add_all(following, coordinates)
         expressions = followers.expressions
         if fields.error_count == errors:
@@ -254,14 +196,14 @@ def build_inputs(
         return None
     inputs = tuple(
         _driven(
-            fields, joints, (*path, name), np.broadcast_to(column, (4, rows)), name in following
+            fields, joints, (*path, name), np.broadcast_to(column, (4, count)), name in following
         )
         for name, column in ((name, orders[name]) for name in sections if name in orders)
     )
     if fields.error_count > errors:
         return None
     unrated = () if time else _unrated(fields, path, inputs)
-    motion = MotionInputs(inputs, rows, time, unrated=unrated, grid=grid)
+    motion = MotionInputs(inputs, count, time, unrated=unrated, grid=grid, span=span)
     if constraint_rates:
         number = {item.name: k for k, item in enumerate(inputs)}
         pairs = [(number[name], number[leader]) for name, leader in constraint_rates]
@@ -278,34 +220,75 @@ def build_inputs(
     return motion._replace(course=course, paths=paths)
 
 
-def spaced_moments(fields: Fields, path: Path, section: TimeSection, per_row: int) -> Clock:
-    """The moments of a section, which run forwards; errors are noted, with one moment."""
+def spaced_moments(
+    fields: Fields,
+    path: Path,
+    section: TimeSection,
+    per_row: int | None,
+    *,
+    in_parts: bool = False,
+    rows: NDArray[np.int64] | None = None,
+) -> Clock:
+    """The moments of a section, which run forwards; errors are noted, with one moment.
+
+    Args:
+        fields: of the file.
+        path: of the section.
+        section: as written.
+        per_row: numbers that a row takes.
+        in_parts: whether the rows may be made part by part, where they are many.
+        rows: the numbers of those that are wanted; None: all, or a sample of many.
+    """
     errors = fields.error_count
-    written = spaced(fields, path, section, TIME, per_row)
-    last = float(written[0])
+    found = spacing(fields, path, section, TIME, None if in_parts else per_row)
+    if rows is None and in_parts and is_long(found.rows, per_row):
+        rows = sampled(found.rows)
+    written = found.values(rows)
+    last = found.first
     if fields.error_count == errors:
         last = fields.written((*path, "to"), section.last, TIME)
-    if written[-1] < written[0]:
+    rise = float(found.values(np.array([found.rows - 1]))[0]) - found.first
+    if rise < 0.0:
         fields.error("time-backwards", path, "time runs backwards", "exchange from and to")
-    elif written.size > 1 and (written[-1] - written[0]) * LARGEST_NUMBER <= 1.0:
-        text = f"time stands still over {written.size} rows"
+    elif found.rows > 1 and rise * LARGEST_NUMBER <= 1.0:
+        text = f"time stands still over {found.rows} rows"
         fields.error("zero-step", (*path, "to"), text, "give a later moment, or count: 1")
-        written = written[:1]
+        written, found, rows = written[:1], found._replace(rows=1), None
     moments = Moments(fields.units.to_si(written.copy(), TIME), written)
-    return Clock(moments, float(written[0]), last)
+    return Clock(moments, found.first, last, found.rows, rows)
 
 
-def _orders(
+class _Read(NamedTuple):
+    """An input as written: value, rate, acceleration and jerk (4, rows) in the file's units, in one
+    row where it stands still or is `spaced`; `timed` in the rows of a clock."""
+
+    orders: Floats
+    spaced: Spacing | None = None
+    timed: bool = False
+
+    @property
+    def rows(self) -> int:
+        """How many there are; 1 of an input that stands still."""
+        return self.orders.shape[1] if self.spaced is None else self.spaced.rows
+
+    def at(self, rows: NDArray[np.int64] | None) -> Floats:
+        """The numbers in some rows (4, rows); None: in all."""
+        if self.rows == 1 or self.timed:
+            return self.orders
+        if self.spaced is not None:
+            return with_rates(self.spaced.values(rows), self.orders[1:, 0])
+        return self.orders if rows is None else self.orders[:, rows]
+
+
+def _read(
     fields: Fields,
     path: Path,
     sections: Mapping[str, InputMotion | HeldCoordinate],
     joints: Mapping[str, Joint],
-    per_row: int,
     clock: Clock | None,
-) -> tuple[dict[str, Floats], dict[str, FollowingInput]]:
-    """Value, rate, acceleration, jerk (4, rows) in the file's units of the inputs that follow none,
-    and the sections of those that follow."""
-    orders: dict[str, Floats] = {}
+) -> tuple[dict[str, _Read], dict[str, FollowingInput]]:
+    """The inputs that follow none, and the sections of those that follow."""
+    orders: dict[str, _Read] = {}
     following: dict[str, FollowingInput] = {}
     for name, item in sections.items():
         own = (*path, name)
@@ -316,16 +299,20 @@ def _orders(
             following[name] = item
         elif isinstance(item, HeldCoordinate):
             at = fields.written((*own, "at"), item.at, dimension_of(coordinate))
-            orders[name] = with_rates(of_numbers([at]), [0.0, 0.0, 0.0])
+            orders[name] = _Read(with_rates(of_numbers([at]), [0.0, 0.0, 0.0]))
         elif isinstance(item, (SweptInput, ListedInput, HeldInput)):
-            values = _values(fields, own, item, coordinate, per_row)
+            values = _values(fields, own, item, coordinate)
             rates = _constant_rates(fields, own, item, coordinate, timed=clock is not None)
-            orders[name] = with_rates(values, rates)
+            if isinstance(values, Spacing):
+                orders[name] = _Read(with_rates(of_numbers([values.first]), rates), values)
+            else:
+                orders[name] = _Read(with_rates(values, rates))
         else:
             from mechkin_cli.building.laws import law_values
 
             assert clock is not None  # the schema refuses a law without time
-            orders[name] = law_values(fields, own, item, coordinate, clock)
+            found = law_values(fields, own, item, coordinate, clock)
+            orders[name] = _Read(found, timed=True)
     return orders, following
 
 
@@ -363,15 +350,14 @@ def _values(
     path: Path,
     item: SweptInput | ListedInput | HeldInput,
     coordinate: str,
-    per_row: int,
-) -> Floats:
+) -> Floats | Spacing:
     dimension = dimension_of(coordinate)
     if isinstance(item, HeldInput):
         return of_numbers([fields.written((*path, "at"), item.at, dimension)])
     if isinstance(item, ListedInput):
         texts = enumerate(item.values)
         return of_numbers(fields.written((*path, "values", i), t, dimension) for i, t in texts)
-    return spaced(fields, path, item, dimension, per_row)
+    return spacing(fields, path, item, dimension, None)
 
 
 def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int] | None:
@@ -385,10 +371,10 @@ def _all_pairs(orders: dict[str, Floats], grid: Sequence[str]) -> tuple[int, int
     return shape
 
 
-def _row_count(fields: Fields, grid: Sequence[str], columns: Mapping[str, Floats]) -> int:
+def _row_count(fields: Fields, grid: Sequence[str], columns: Mapping[str, _Read]) -> int:
     if grid:
-        return prod(columns[name].shape[1] for name in grid if name in columns)
-    lengths = {name: orders.shape[1] for name, orders in columns.items() if orders.shape[1] > 1}
+        return prod(columns[name].rows for name in grid if name in columns)
+    lengths = {name: read.rows for name, read in columns.items() if read.rows > 1}
     if len(set(lengths.values())) > 1:
         text = "inputs that run together need equally many rows"
         hint = "use the same number of values, or hold an input with at:"

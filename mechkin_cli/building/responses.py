@@ -20,7 +20,8 @@ import numpy as np
 from mechkin_cli import idle, mobility, tolerances
 from mechkin_cli.building.fields import Clock, Fields, Path, dimension_of, is_coordinate
 from mechkin_cli.building.load_laws import LoadLaws
-from mechkin_cli.building.motion import build_inputs, has_too_many_rows, spaced_moments
+from mechkin_cli.building.motion import build_inputs, spaced_moments
+from mechkin_cli.building.spacing import has_too_many_rows
 from mechkin_cli.diagnostics import Diagnostic, nearest_hint
 from mechkin_cli.expressions import parse
 from mechkin_cli.mechanism import (
@@ -431,7 +432,7 @@ class _ResponseBuilder:
         has_too_many_rows(self.fields, (*place, "values"), len(values), self.per_row)
         moments = np.array(values)
         time = Moments(self.fields.units.to_si(moments.copy(), TIME), moments)
-        return Clock(time, float(moments[0]), float(moments[-1]))
+        return Clock(time, float(moments[0]), float(moments[-1]), moments.size)
 
     def _assembly(self, path: Path, section: written.Response) -> Assembly:
         """The response's own choice, else the file's."""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism.derived import *
     from mechkin_cli.mechanism.held import *
     from mechkin_cli.mechanism.joint import *
+    from mechkin_cli.mechanism.long_run import *
     from mechkin_cli.mechanism.model import (
         Amount as Amount,
         Damper as Damper,
@@ -53,6 +54,7 @@ __getattr__, __dir__ = lazy_names(
         "held": "LockedFreedom is_turn is_unnamed slide_name turn_name",
         "joint": "GROUND_NAME Joint counted far_link frame_on is_told is_written stop_of "
         "told_coordinates",
+        "long_run": "LongRun long_motion",
         "model": "Amount Damper Drives JointLoad LinkLoad Load Mechanism RigidLink Spring Tensor "
         "Varying diagonal without_effort",
         "motion": "Assembly CellKind Course DrivenInput ExactMotion Limit Moments MotionInputs "

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.mechanism import LongRun
 from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.plan import Demand, Layout, PassageEnd, Readout
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
@@ -170,6 +171,13 @@ class Session:
             return self.own_inputs
         return kernel_inputs(self.problem, self.layout)
 
+    @property
+    def _known_inputs(self) -> KernelInputs | None:
+        """The inputs, of a short run or where they have been asked for."""
+        if isinstance(self.problem.motion, LongRun):
+            return self.__dict__.get("inputs", self.own_inputs)
+        return self.inputs
+
     @cached_property
     def route(self) -> Route | None:
         """The way along all rows; None where it goes straight from each to the next."""
@@ -275,17 +283,17 @@ class Session:
         """The same session with rows packed otherwise."""
         if packing == self.packing:
             return self
-        return replace(self, packing=packing, own_inputs=self.inputs)
+        return replace(self, packing=packing, own_inputs=self._known_inputs)
 
     def sized(self, size: float) -> Session:
         """The same session with residual and condition in parts of another size (m)."""
         if size == self.size:
             return self
-        return replace(self, size=size, own_inputs=self.inputs)
+        return replace(self, size=size, own_inputs=self._known_inputs)
 
     def with_constants(self, constants: Floats) -> Session:
         """The same session with other constants of its plan."""
-        return replace(self, constants=constants, own_inputs=self.inputs)
+        return replace(self, constants=constants, own_inputs=self._known_inputs)
 
     def assembled(self, assembly: Assembly) -> Session:
         """The same session with another choice of the first assembly."""

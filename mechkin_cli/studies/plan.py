@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mechkin_cli.building import BadTable, by_count, by_step, table_path, table_text
+from mechkin_cli.building import BadTable, Spacing, table_path, table_text
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, Place, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, Vector
 from mechkin_cli.mechanism import response_problem
@@ -211,8 +211,9 @@ class _VariationReader:
             self.faults.error(TOO_MANY, path, text, "take fewer, or draw them")
             return np.empty(0)
         if step is None:
-            return by_count(first, last, count)
-        return by_step(first, abs(step) if last >= first else -abs(step), count)
+            return Spacing(first, last, None, count).values()
+        step = abs(step) if last >= first else -abs(step)
+        return Spacing(first, last, step, count).values()
 
     def _distribution(
         self, name: str, form: written.Uniform | written.Normal | written.Tolerance

@@ -44,10 +44,9 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     With `every_row` each row is a careful step instead of a place filled in between two.
     """
     motion = session.problem.motion
-    count, grid, span = session.inputs.values.shape[1], motion.grid, motion.span
-    sizes = (session.layout.states, turn_count(session.plan), count)
+    grid, span = motion.grid, motion.span
     if start.state is None:
-        rows = SweepRows.without_guesses(*sizes, span)
+        rows = _unknown_rows(session)
         rows.status[:] = start.status
         return rows
     first = None if grid is not None else _first_row(session, start, every_row)
@@ -59,7 +58,7 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
         rows = SweepRows.followed(followed, span)
         explain_way(session, followed, rows, every_row)
     else:
-        rows = SweepRows.without_guesses(*sizes, span)
+        rows = _unknown_rows(session)
         for step in (-1, 1):
             followed = session.follow_rows(
                 start.state, start.row, step, every_row=every_row, turn=turn
@@ -75,6 +74,13 @@ def follow_rows(session: Session, start: AssemblyStart, *, every_row: bool = Fal
     return rows
 
 
+def _unknown_rows(session: Session) -> SweepRows:
+    """The rows of a session before they are followed."""
+    motion = session.problem.motion
+    sizes = (session.layout.states, turn_count(session.plan), session.inputs.values.shape[1])
+    return SweepRows.without_guesses(*sizes, motion.span)
+
+
 class _Lines:
     """The rows of a grid while they are followed: lines of a width, on which only the fast of two
     inputs moves.
@@ -85,11 +91,8 @@ class _Lines:
 
     def __init__(self, session: Session, width: int, every_row: bool) -> None:
         self.session, self.width, self.every_row = session, width, every_row
-        count = session.inputs.values.shape[1]
-        self.lines = count // width
-        self.rows = SweepRows.without_guesses(
-            session.layout.states, turn_count(session.plan), count
-        )
+        self.lines = session.inputs.values.shape[1] // width
+        self.rows = _unknown_rows(session)
 
     def follow(self, start: AssemblyStart) -> SweepRows:
         """All rows, from the assembly at its row on."""

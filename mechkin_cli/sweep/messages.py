@@ -48,28 +48,35 @@ LOADS_NAMED = 4
 
 
 class FirstRow(NamedTuple):
-    """The first row of a run: the one input that moves over the run, and its value without whole
-    turns, and these, there; the states (states,), None where it is not reached."""
+    """The first row of a run whose one moving input turns: that input, its value there without
+    whole turns, and these; the states (states,)."""
 
     number: int
     reduced: float
     whole: float
-    state: Floats | None
+    state: Floats
 
-    @classmethod
-    def of(cls, session: Session, rows: SweepRows) -> FirstRow | None:
-        """Of a run by its session, and the rows from the first on; None where it is not one input
-        alone that turns."""
-        inputs = session.inputs
-        moving = np.flatnonzero(np.ptp(inputs.values, axis=1) > 0.0)
-        if moving.size != 1:
-            return None
-        number = int(moving[0])
-        item = session.problem.motion.inputs[number]
-        if not is_cyclic(session.problem.mechanism, item.name):
-            return None
-        state = np.array(rows.states[:, 0]) if rows.reached[0] else None
-        return cls(number, inputs.reduced[number, 0], inputs.whole[number, 0], state)
+
+def first_row(session: Session, rows: SweepRows) -> FirstRow | None:
+    """That of a run by its session, and the rows from the first on; None where the row is not
+    reached, or it is not one input alone that turns, and by a whole turn."""
+    number = _turning_input(session)
+    if number is None or not rows.reached[0]:
+        return None
+    inputs = session.inputs
+    reduced, whole = float(inputs.reduced[number, 0]), float(inputs.whole[number, 0])
+    return FirstRow(number, reduced, whole, np.array(rows.states[:, 0]))
+
+
+@remembered
+def _turning_input(session: Session) -> int | None:
+    """The number of the one input that moves, where it turns and comes to whole turns."""
+    inputs = session.inputs
+    moving = np.flatnonzero(np.ptp(inputs.values, axis=1) > 0.0)
+    if moving.size != 1 or not np.ptp(inputs.whole[moving[0]]):
+        return None
+    name = session.problem.motion.inputs[moving[0]].name
+    return int(moving[0]) if is_cyclic(session.problem.mechanism, name) else None
 
 
 def open_turn_note(session: Session, rows: SweepRows, first: FirstRow | None) -> Diagnostic | None:
@@ -78,7 +85,7 @@ def open_turn_note(session: Session, rows: SweepRows, first: FirstRow | None) ->
 
     A thread that advances with the turn, and what moves with it, is not meant to be.
     """
-    if first is None or first.state is None:
+    if first is None:
         return None
     turns = session.inputs.whole[first.number] - first.whole
     rest = (session.inputs.reduced[first.number] - first.reduced) / (2.0 * np.pi)

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Ask, RowInputs, turn_count
@@ -71,6 +72,7 @@ class _Followed(NamedTuple):
     lost: bool
 
 
+@remembered
 def part_rows(session: Session) -> int:
     """Rows of a part at most: fewer of large mechanisms, so that parts need about one memory."""
     numbers = session.layout.states + turn_count(session.plan)
@@ -80,14 +82,15 @@ def part_rows(session: Session) -> int:
     return rows
 
 
-def parts_of(session: Session, start: AssemblyStart, judge: Judge) -> Iterator[Part]:
-    """The parts of a run in the order of its rows; one, if it is short, or the pairs of a grid."""
+def has_parts(session: Session) -> bool:
+    """Whether a run has several parts: it is long, and has not the pairs of a grid."""
     motion = session.problem.motion
-    size = part_rows(session)
-    if motion.rows <= size + 1 or motion.grid is not None:
-        yield Part(judge(session, start, None), slice(0, motion.rows))
-        return
-    yield from _Walk(session, start, size, judge).parts()
+    return motion.grid is None and motion.rows > part_rows(session) + 1
+
+
+def parts_of(session: Session, start: AssemblyStart, judge: Judge) -> Iterator[Part]:
+    """The parts of a long run in the order of its rows."""
+    return _Walk(session, start, part_rows(session), judge).parts()
 
 
 class _Walk:

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import idle, tolerances
-from mechkin_cli.assembly import choose_start
+from mechkin_cli.assembly import choose_start, rows_of_start
 from mechkin_cli.mechanism import (
     COEFFICIENT_KINDS,
     DERIVED_KINDS,
     LEDGER_KINDS,
     TRANSMISSION_KINDS,
+    LongRun,
     Moments,
     base_name,
     base_quantity,
@@ -30,10 +31,10 @@ from mechkin_cli.sweep.following import follow_rows, followed_session
 from mechkin_cli.sweep.friction import judged_by, lifted, uncounted_notes
 from mechkin_cli.sweep.limits import judge_limits, limited
 from mechkin_cli.sweep.messages import (
-    FirstRow,
     actuation_notes,
     condition_notes,
     first_order_note,
+    first_row,
     locked_pose_notes,
     not_converged_note,
     open_turn_note,
@@ -41,7 +42,7 @@ from mechkin_cli.sweep.messages import (
     unrated_notes,
     watched,
 )
-from mechkin_cli.sweep.parts import Part, joined_rows, parts_of
+from mechkin_cli.sweep.parts import Part, has_parts, joined_rows, parts_of
 from mechkin_cli.sweep.result import Result
 from mechkin_cli.sweep.slopes import bending, slope_notes
 from mechkin_cli.units import TIME
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from mechkin_cli.mechanism import DrivenInput, Problem, Wanted
     from mechkin_cli.session import Batch, Session
     from mechkin_cli.show import Bools, Floats
+    from mechkin_cli.sweep.messages import FirstRow
     from mechkin_cli.sweep.rows import SweepRows
 
 
@@ -162,10 +164,17 @@ class Sweep:
         self.question = question(session, tuple(self.asked), verdicts=verdicts)
 
     def run(self) -> Result:
-        """All rows at once."""
+        """All rows at once.
+
+        Raises:
+            UsageError: they do not fit in memory.
+        """
+        motion = self.session.problem.motion
+        if isinstance(motion, LongRun):
+            _ = motion.whole  # refused before anything is computed
+        if not has_parts(self.session):
+            return self._judged(self.session, self.start, None)
         found = list(self.parts())
-        if len(found) == 1:
-            return found[0].result
         rows = joined_rows(found, self.session)
         result = Result(self.session, self.start, rows, motion_between)
         result.join([part.result for part in found], [part.own for part in found])
@@ -174,16 +183,19 @@ class Sweep:
 
     def parts(self) -> Iterator[Part]:
         """The rows in order, part by part; one part, if they are few."""
+        if not has_parts(self.session):
+            result = self._judged(self.session, self.start, None)
+            yield Part(result, slice(0, result.rows))
+            return
         first: FirstRow | None = None
-        for number, part in enumerate(parts_of(self.session, self.start, self._judged)):
-            result = part.result
-            if number == 0:
-                first = FirstRow.of(self.session, result.row_states)
-            if result.session is not self.session:
-                note = open_turn_note(result.session, result.row_states, first)
-                result.row_states.diagnostics += [note] if note else []
-                # only the first whole turn is told
-                first = None if note else first
+        for part in parts_of(self.session, self.start, self._judged):
+            rows = part.result.row_states
+            if rows.span.first == 0:
+                first = first_row(rows_of_start(self.session)[0], rows)
+            note = open_turn_note(part.result.session, rows, first)
+            rows.diagnostics += [note] if note else []
+            # only the first whole turn is told
+            first = None if note else first
             yield part
 
     def _judged(self, session: Session, start: AssemblyStart, rows: SweepRows | None) -> Result:
@@ -232,7 +244,9 @@ def _in_parts_of_its_size(session: Session) -> Session:
     """The session with residual and condition in parts of the size of its first assembly."""
     start = choose_start(session)
     assert start.state is not None
-    inputs = session.inputs.reduced[:, start.row]
+    few, rows = rows_of_start(session)
+    row = start.row if rows is None else int(np.searchsorted(rows, start.row))
+    inputs = few.inputs.reduced[:, row]
     return session.sized(assembly_size(session.plan, inputs, start.state))
 
 
@@ -405,7 +419,7 @@ def row_notes(
     if problem.mechanism.frictions and result.demand & Demand.FORCES:
         notes += uncounted_notes(result)
     if rows.span.rows == rows.span.run_rows:
-        note = open_turn_note(session, rows, FirstRow.of(session, rows))
+        note = open_turn_note(session, rows, first_row(session, rows))
         notes += [note] if note else []
     notes += lifted(result) if problem.mechanism.couplings else []
     if rests_on_reactions and session.is_redundant and rows.reached.any():

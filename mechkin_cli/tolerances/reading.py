@@ -87,6 +87,12 @@ MOST_NUMBERS: Final = 40_000_000
 all joints. Measured per number: 40 bytes with CSV, 80 with Markdown, 110 with JSON; 4.4 GB in
 all."""
 
+LONG_RUN: Final = (1 << 16) + 1
+"""Rows of a run from which on its numbers are made part by part, as they are wanted."""
+
+MOST_ROWS: Final = 1e12
+"""Rows of a sweep: a week of a machine that closes a million of them in a second."""
+
 MOST_KEPT: Final = 400_000_000
 """Numbers that the results of variants may have together; 3.2 GB, the machine's memory before
 anything is computed with them."""

@@ -77,7 +77,7 @@ ACCEPTED = {
     ("response/integration.py", "np.linalg"): "eigenvectors for a message",
     ("building/joints.py", "np.linalg"): "eigenvalues for a warning",
     (
-        "building/motion.py",
+        "building/spacing.py",
         "10 ** max(0, *(-exponent for exponent in exponents))",
     ): "whole numbers",
     ("tape/identities.py", "pow(rest, -1, whole)"): "whole numbers",

@@ -12,10 +12,10 @@ MOTION = [
     inputs("{»A.theta: {at: 0}}", "unknown-coordinate", "type S and has no coordinate theta"),
     inputs("{»Q.theta: {at: 0}}", "unknown-coordinate", "Q.theta is not a coordinate", "O.theta"),
     inputs("{O.theta: {from: 0, to: 9, step: »0}}", "zero-step", "step is zero"),
-    inputs("{O.theta: {from: 0, to: 9, step: »1e-7}}", "too-many-numbers", "rows", "2666666"),
+    inputs("{O.theta: {from: 0, to: 9, step: »1e-12}}", "too-many-rows", "9e+12"),
     inputs("{O.theta: {at: »1e308}}", "too-large", "1e+308 (limit 1e+100)"),
     inputs("{O.theta: »{at: 1e99}}", "too-large", "1e+99 deg (limit 1.621e+18 deg)"),
-    inputs("{O.theta: {from: 0, to: 9, count: »99999999}}", "too-many-numbers", "rows", "2666666"),
+    inputs("{O.theta: {from: 0, to: 9, count: »9999999999999}}", "too-many-rows", "1e+13"),
     inputs("{O.theta: {from: 0, to: »9 mm, step: 1}}", "expression", "expected an angle", "length"),
     inputs(
         "{O.theta: {from: 0, to: 9, step: 1, rate: »1 mm/s}}",

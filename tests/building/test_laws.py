@@ -164,7 +164,7 @@ BAD = [
     ("{at: 7}", "{at: 7, »rate: 1}", "held-rate", "write law: constant-rate"),
     ("{from: 100, to: 900, step: 50}", "»{from: 9, to: 1, step: 1}", "time-backwards"),
     ("step: 50}", "step: »0}", "zero-step"),
-    ("step: 50}", "step: »1e-9}", "too-many-numbers"),
+    ("step: 50}", "step: »1e-10}", "too-many-rows"),
     ("step: 50}", "step: »1 mm}", "expression", "expected a time, found a length"),
     ("900, step: 50}", '"»1/2 s", step: 1}', "expression", "expected a time, found a frequency"),
     ("900, step: 50}", '"»1/2 s", count: 3}', "expression", "expected a time, found a frequency"),

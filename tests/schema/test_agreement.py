@@ -69,6 +69,7 @@ EDITORS_ACCEPT = {
     "effort-and-drive": CROSSING,
     "block-too-large": CROSSING,
     "too-many-numbers": CROSSING,
+    "too-many-rows": CROSSING,
     "csv-table": "it is a property of another file",
     "too-large": VALUE,
     "too-small": VALUE,

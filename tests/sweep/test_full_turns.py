@@ -7,7 +7,7 @@ from mechanisms.runs import model
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.search.clusters import pose_keys, same_poses
 from mechkin_cli.search.search import all_assemblies
-from mechkin_cli.sweep.messages import FirstRow, open_turn_note
+from mechkin_cli.sweep.messages import first_row, open_turn_note
 from mechkin_cli.sweep.rows import SweepRows
 
 
@@ -31,7 +31,7 @@ def test_a_turn_that_ends_at_another_assembly_is_told() -> None:
     rows.reached[:] = True
 
     def note() -> Diagnostic | None:
-        return open_turn_note(session, rows, FirstRow.of(session, rows))
+        return open_turn_note(session, rows, first_row(session, rows))
 
     assert note() is None
     rows.states[:, -1] = found.states[:, 1]

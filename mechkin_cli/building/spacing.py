@@ -1,0 +1,178 @@
+"""How many rows a run has, and equally spaced values over them.
+
+The equally spaced values of a sweep are the doubles nearest to the decimal numbers: 0, 0.1, 0.2,
+0.3 and not 0.30000000000000004. The numbers written are fractions over one power of ten, so x_i =
+from + i*step is a quotient of two whole numbers that doubles hold exactly, and a single division
+rounds it. Numbers with too many digits for that (results of expressions) are added as doubles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from decimal import Decimal
+from math import floor, isfinite
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from mechkin_cli.building.fields import Fields, Path
+from mechkin_cli.diagnostics import Number
+from mechkin_cli.mechanism import Joint, told_coordinates
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.schema import MechanismFile, SweptInput, TimeSection
+from mechkin_cli.tables import default_table
+from mechkin_cli.tolerances import LAST_ROW, LONG_RUN, MOST_NUMBERS, MOST_ROWS
+from mechkin_cli.units import Dimension
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.show import Floats
+
+_ROW_COLUMNS: Final = 6
+"""Columns of rows.csv beside the inputs."""
+
+
+def has_too_many_rows(fields: Fields, path: Path, rows: float, per_row: int | None) -> bool:
+    """Whether this number of rows, before any of them is made, is too large for memory; that is
+    noted at `path`, the place of the number. `per_row`: `numbers_per_row`; None of rows that are
+    made part by part, of which no one would see the end."""
+    if per_row is None:
+        if rows <= MOST_ROWS:
+            return False
+        text, hint = f"the run has too many rows, {rows:.12g}", "take a larger step"
+        fields.error("too-many-rows", path, text, hint, limit=f"{MOST_ROWS:.12g} rows")
+        return True
+    numbers = rows * per_row
+    if numbers <= MOST_NUMBERS:
+        return False
+    fields.error(
+        "too-many-numbers",
+        path,
+        f"the run has too many numbers, {rows:.12g} rows of {per_row}",
+        "take a larger step or fewer columns, or split the sweep into several files",
+        measured=f"{numbers:.12g} numbers",
+        limit=f"{MOST_NUMBERS} numbers, {MOST_NUMBERS // per_row} rows",
+        numbers=(Number("numbers", float(numbers), limit=MOST_NUMBERS),),
+    )
+    return True
+
+
+def numbers_per_row(file: MechanismFile, joints: Mapping[str, Joint]) -> int:
+    """The numbers of each row of the file's run in memory: the cells of all tables, the columns of
+    rows.csv and the freedoms of all joints."""
+    motion = file.motion
+    inputs = list(motion.inputs) if motion else []
+    cells = sum(len(table.columns) for table in file.tables)
+    if not file.tables:
+        names = told_coordinates(joints.values())
+        timed = motion is not None and motion.time is not None
+        cells = len(default_table(names, inputs, timed=timed).columns)
+    freedoms = sum(joint.type.freedoms for joint in joints.values())
+    return cells + _ROW_COLUMNS + len(inputs) + freedoms
+
+
+EXACT = 2**53
+"""Whole numbers up to this one are doubles."""
+
+
+SAMPLE = 4096
+"""Steps of a sample of the rows of a long run."""
+
+
+def sampled(run_rows: int) -> NDArray[np.int64]:
+    """The numbers of some rows of a run, first and last among them."""
+    places = np.linspace(0.0, 1.0, SAMPLE + 1) * (run_rows - 1)
+    return np.unique(np.rint(places).astype(np.int64))
+
+
+def is_long(run_rows: int, per_row: int | None) -> bool:
+    """Whether the rows of a run are made part by part."""
+    return run_rows > LONG_RUN or run_rows * (per_row or 1) > MOST_NUMBERS
+
+
+class Spacing(NamedTuple):
+    """Equally spaced values, one for each row: from the first by a step, or without one to the
+    last."""
+
+    first: float
+    last: float
+    step: float | None
+    rows: int
+
+    def values(self, rows: NDArray[np.int64] | None = None) -> Floats:
+        """The values in some rows, by their numbers from 0 (rows,); None: in all."""
+        every = np.arange(self.rows) if rows is None else rows
+        if self.step is not None:
+            return self._by_step(every, self.step)
+        return np.full(every.shape, self.first) if self.rows == 1 else self._by_count(every)
+
+    def _by_step(self, rows: NDArray[np.int64], step: float) -> Floats:
+        """first + i*step."""
+        (start, stride), power = _whole_numbers(self.first, step)
+        numerators = _exact(start, stride, self.rows, rows)
+        if numerators is None or power > EXACT:
+            return np.asarray(self.first + rows * step, dtype=np.float64)
+        return numerators / float(power)
+
+    def _by_count(self, rows: NDArray[np.int64]) -> Floats:
+        """From `first` to `last`, both included."""
+        (start, end), power = _whole_numbers(self.first, self.last)
+        gaps = self.rows - 1
+        numerators = _exact(start * gaps, end - start, self.rows, rows)
+        if numerators is None or power * gaps > EXACT:
+            rise = self.last / gaps - self.first / gaps
+            values = np.asarray(self.first + rows * rise, dtype=np.float64)
+            return np.where(rows == gaps, self.last, values)
+        return numerators / float(power * gaps)
+
+
+def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
+    """Whole numbers and the power of ten over which they are the values' shortest decimals."""
+    decimals = [Decimal(repr(float(value))) for value in values]
+    exponents = [int(number.as_tuple().exponent) for number in decimals]
+    power = 10 ** max(0, *(-exponent for exponent in exponents))
+    return tuple(int(number * power) for number in decimals), power
+
+
+def _exact(start: int, stride: int, count: int, rows: NDArray[np.int64]) -> Floats | None:
+    """start + i*stride in some of `count` rows as doubles; None where one of all is not an exact
+    double."""
+    if max(abs(start), abs(stride), abs(start + (count - 1) * stride)) > EXACT:
+        return None
+    return np.asarray(start + rows.astype(np.int64) * stride, dtype=np.float64)
+
+
+def spacing(
+    fields: Fields,
+    path: Path,
+    section: SweptInput | TimeSection,
+    dimension: Dimension,
+    per_row: int | None,
+) -> Spacing:
+    """The values or moments of the rows in the file's units: n = floor(|to - from|/|step| + 1e-9) +
+    1 values x_i = from + i*step, or `count` values. Errors are noted in `fields`, with one
+    value."""
+    errors = fields.error_count
+    first = fields.written((*path, "from"), section.first, dimension)
+    last = fields.written((*path, "to"), section.last, dimension)
+    one = Spacing(first, first, None, 1)
+    if section.count is not None:
+        at = (*path, "count")
+        if fields.error_count > errors or has_too_many_rows(fields, at, section.count, per_row):
+            return one
+        return Spacing(first, last, None, section.count)
+    assert section.step is not None  # the schema wants one of the two
+    step = abs(fields.written((*path, "step"), section.step, dimension))
+    if fields.error_count > errors:
+        return one
+    if step == 0.0:
+        if first != last:
+            hint = "give the distance of rows"
+            fields.error("zero-step", (*path, "step"), "the step is zero", hint)
+        return one
+    ratio = abs(last - first) / step + LAST_ROW
+    rows = floor(ratio) + 1 if isfinite(ratio) else ratio
+    if has_too_many_rows(fields, (*path, "step"), rows, per_row):
+        return one
+    return Spacing(first, last, step if last >= first else -step, int(ratio) + 1)
