@@ -106,7 +106,7 @@ HINGES = "\n".join(
 MORE_BAD = [
     SMALL + 'name: "a \\x1b[31m b"\n',
     f"format: 1\nlinks: {{door: {{}}}}\njoints:\n{HINGES}\n",
-    SOUND.replace("step: 5}", "count: 9000000}"),
+    SOUND.replace("step: 5}", "count: 9999999999999}"),
     SOUND.replace("step: 5}", "count: 3.0}"),
     SOUND.replace("format: 1", "format: 1.0"),
     "format: 1\nlinks: {a: {}}\njoints:\n  A:\n    type: R\n    links: [ground, a]\n"
