@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mechkin_cli.tables.csv import *
     from mechkin_cli.tables.errata import *
     from mechkin_cli.tables.errors import *
+    from mechkin_cli.tables.folder import *
     from mechkin_cli.tables.json import *
     from mechkin_cli.tables.layout import *
     from mechkin_cli.tables.markup import *
@@ -36,6 +37,7 @@ __getattr__, __dir__ = lazy_names(
         "against_print_record counts disagreements_csv errata_page overview_page",
         "errors": "ALL_COLUMNS AT_DEAD_CENTRE ColumnErrors LOST ZERO clashing column_errors "
         "least_digits not_repeated worst_column",
+        "folder": "Claim OutputFolder write_files",
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_EVENT ROW_NUMBERS ROW_PROOF "
         "ROW_TEXTS Remark TableLayout chosen counted default_table effort_names row_texts",
@@ -45,6 +47,6 @@ __getattr__, __dir__ = lazy_names(
         "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "
         "root_mean_square row_weights statistics summary_of",
         "table": "NEEDS_OPENPYXL Columns evaluate summary_table",
-        "writers": "Claim OutputFolder USUAL_FORMATS WRITERS write_files written_files",
+        "writers": "USUAL_FORMATS WRITERS written_files",
     },
 )
