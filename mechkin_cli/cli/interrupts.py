@@ -86,7 +86,7 @@ def leave(code: int) -> NoReturn:
 def _interrupted(number: int, frame: FrameType | None) -> None:
     if _final_code is not None:
         os._exit(_final_code)
-    if getattr(sys.modules.get("mechkin_cli.tables.folder"), "replacing", None):
+    if getattr(sys.modules.get("mechkin_cli.tables.file_set"), "replacing", None):
         raise KeyboardInterrupt
     claims = sys.modules.get("mechkin_cli.tables.folder")
     for claim in tuple(getattr(claims, "held", ())):

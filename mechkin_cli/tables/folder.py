@@ -7,15 +7,29 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
 import re
-import stat
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 from zlib import crc32
 
 from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.record import NamedTuple
+from mechkin_cli.tables.file_set import (
+    PART,
+    begin_attempt,
+    each,
+    new_attempt,
+    refusal,
+    refuse_special,
+    replace_files,
+    settle,
+    settle_all,
+)
+from mechkin_cli.tolerances import HELD_BYTES
 
 # One writer at a time for a folder.
 #
@@ -39,6 +53,8 @@ class Claim:
         """
         self.folder = folder
         self.locked = False
+        self.attempt: Path | None = None
+        """Where the files of a run are written; it ends with the claim."""
         self._made: list[Path] = []
         self._descriptor: int | None = None
         for _ in range(MOST_TRIES):
@@ -50,6 +66,9 @@ class Claim:
 
     def release(self) -> None:
         """Ends the claim; folders made for it that are still empty go again."""
+        if self.attempt is not None:
+            settle(self.attempt)
+            self.attempt = None
         for folder in reversed(self._made):
             with contextlib.suppress(OSError):
                 folder.rmdir()
@@ -127,276 +146,6 @@ def _make(folder: Path, made: list[Path]) -> None:
         raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
 
 
-# Replacing several files at one moment: all of them are the old ones, or all are the new.
-#
-# A rename replaces one file at once, but not two. So an attempt at a set has a folder of its own,
-# `.mechkin-...`, with the new files in `new/`, second names of those that they replace in `old/`,
-# and a symbolic link `set` to one of the two. First `set` leads to `old/`, and file by file a link
-# through `set` is put in the place of what stands there: whoever reads still finds the old files.
-# Then one rename lets `set` lead to `new/`: that is the moment. At last the links are replaced by
-# the files themselves, and the attempt's folder goes.
-#
-# `settle` is this last part, in both directions: it also takes back what was interrupted before the
-# moment, and clears what a run left that was killed.
-#
-# A file that holds the new content already stays, with a new date: where a run is repeated, writing
-# and replacing its files takes longer than computing them.
-
-replacing: set[Path] = set()
-"""The attempts of this process that are under way: an interrupt must let them be taken back."""
-
-_ATTEMPT = re.compile(r"\.mechkin-[0-9a-f]{16}(\.tmp)?")
-_PART = 1 << 16
-"""As many bytes of a file are compared at once."""
-_UP = f"..{os.sep}..{os.sep}"
-"""From `old/` to the folder in which the set stands."""
-
-
-def replace_files(folder: Path, files: Mapping[str, bytes], removed: Sequence[str] = ()) -> None:
-    """Put files (name -> content) into the folder, replacing those of the same names; those of the
-    names `removed` go at the same moment.
-
-    Whatever fails, a keyboard interrupt included, the old files stay.
-
-    Raises:
-        UsageError: a file cannot be written.
-    """
-    files = {name: content for name, content in files.items() if not _stays(folder / name, content)}
-    names = [*files, *removed]
-    if not names:
-        return
-    attempt = folder / f".mechkin-{os.urandom(8).hex()}"
-    try:
-        replacing.add(attempt)
-        _prepare(attempt, folder, files, names)
-        if len(names) == len(files) == 1:
-            (name,) = files
-            with _refusal(folder / name):
-                os.replace(attempt / "new" / name, folder / name)
-        elif _link(attempt / "set", "old"):
-            _each(folder, names, lambda name: _put_link(name, folder, attempt))
-            with _refusal(folder):
-                os.symlink("new", attempt / "spare")
-                os.replace(attempt / "spare", attempt / "set")
-        else:
-            _replace_one_by_one(attempt, folder, names)
-    finally:
-        _without_interrupts(lambda: settle(attempt))
-        replacing.discard(attempt)
-
-
-def settle(attempt: Path) -> None:
-    """Let the side that `set` leads to stand in the folder, and remove the attempt; may be repeated
-    after an interrupt. What cannot be settled now stays as it is, readable, for the next time."""
-    with contextlib.suppress(OSError):
-        if links := _links(attempt):
-            side = attempt / os.readlink(attempt / "set")
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(attempt / "spare")
-            for name in links:
-                with contextlib.suppress(OSError):
-                    _put_file(f"{side}{os.sep}{name}", f"{attempt.parent}{os.sep}{name}", attempt)
-            if _links(attempt):
-                return
-        _remove(attempt)
-
-
-def settle_all(folder: Path) -> None:
-    """Settles and clears what runs left that were killed; none may be under way."""
-    for name in os.listdir(folder):
-        if _ATTEMPT.fullmatch(name):
-            path = folder / name
-            if path.is_dir() and not path.is_symlink():
-                settle(path)
-            else:
-                with contextlib.suppress(OSError):
-                    path.unlink()
-
-
-def _each(folder: Path, names: Iterable[str], work: Callable[[str], object]) -> None:
-    """Does the work for each name; an error is told of the file of that name in the folder."""
-    name = ""
-    try:
-        for name in names:
-            work(name)
-    except OSError as error:
-        raise _refused(folder / name, error) from error
-
-
-def _prepare(attempt: Path, folder: Path, files: Mapping[str, bytes], names: Sequence[str]) -> None:
-    """The attempt's folder with both sides."""
-    with _refusal(folder / names[0]):
-        for path in (attempt, attempt / "new", attempt / "old"):
-            os.mkdir(path)
-    new, old = (f"{attempt}{os.sep}{side}{os.sep}" for side in ("new", "old"))
-    _each(folder, files, lambda name: _write(new + name, files[name]))
-    _each(folder, names, lambda name: _keep(f"{folder}{os.sep}{name}", old + name))
-
-
-def _stays(path: Path, content: bytes) -> bool:
-    """Whether it is a regular file that holds this content already; then it gets a new date."""
-    try:
-        state = os.lstat(path)
-        if not stat.S_ISREG(state.st_mode) or state.st_size != len(content):
-            return False
-        with open(path, "rb") as stream:
-            for start in range(0, len(content), _PART):
-                if stream.read(_PART) != content[start : start + _PART]:
-                    return False
-        os.utime(path)
-    except OSError:
-        return False
-    return True
-
-
-def _write(path: str, content: bytes) -> None:
-    with open(path, "xb") as stream:
-        stream.write(content)
-
-
-def _keep(target: str, second: str) -> None:
-    """Give what stands at the target a second name."""
-    try:
-        mode = os.lstat(target).st_mode
-    except FileNotFoundError:
-        return
-    if stat.S_ISLNK(mode):
-        text = os.readlink(target)
-        os.symlink(text if os.path.isabs(text) else _UP + text, second)
-        return
-    try:
-        os.link(target, second)
-    except OSError:  # a file system without hard links
-        from shutil import copy2
-
-        copy2(target, second)
-
-
-def _link(path: Path, text: str) -> bool:
-    """Whether the symbolic link could be made: some file systems have none. Windows asks for a
-    right that few users have, and reads such links differently."""
-    if os.name == "nt":
-        return False
-    try:
-        os.symlink(text, path)
-    except OSError:
-        return False
-    return True
-
-
-def _put_link(name: str, folder: Path, attempt: Path) -> None:
-    """Put a link through `set` in the place of a file, or where there is none."""
-    text, target = f"{attempt.name}/set/{name}", f"{folder}{os.sep}{name}"
-    try:
-        os.symlink(text, target)
-    except FileExistsError:
-        spare = f"{attempt}{os.sep}spare"
-        os.symlink(text, spare)
-        os.replace(spare, target)
-
-
-def _links(attempt: Path) -> list[str]:
-    """Names in the attempt's folder that are links through `set`."""
-    with os.scandir(attempt.parent) as entries:
-        links = [entry.name for entry in entries if entry.is_symlink()]
-    ends = {name: os.readlink(f"{attempt.parent}{os.sep}{name}") for name in links}
-    return [name for name, end in ends.items() if end == f"{attempt.name}/set/{name}"]
-
-
-def _put_file(source: str, target: str, attempt: Path) -> None:
-    """Put the file at `source`, or nothing where there is none, in the place of the target."""
-    spare = f"{attempt}{os.sep}spare"
-    try:
-        # a second name, for readers that still come by the link
-        os.link(source, spare, follow_symlinks=False)
-    except FileNotFoundError:
-        os.unlink(target)
-        return
-    except FileExistsError:
-        os.unlink(spare)
-        _put_file(source, target, attempt)
-        return
-    except (OSError, NotImplementedError):  # a file system, or a system, without such links
-        spare = source
-        if not os.path.lexists(source):
-            os.unlink(target)
-            return
-    if os.path.islink(spare):
-        text = os.readlink(source).removeprefix(_UP)
-        spare = f"{attempt}{os.sep}spare"
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(spare)
-        os.symlink(text, spare)
-    os.replace(spare, target)
-
-
-def _remove(folder: str | Path) -> None:
-    """Removes a folder with all in it; what cannot be removed stays."""
-    with contextlib.suppress(OSError):
-        with os.scandir(folder) as entries:
-            inside = [(entry.path, entry.is_dir(follow_symlinks=False)) for entry in entries]
-        for path, is_folder in inside:
-            if is_folder:
-                _remove(path)
-                continue
-            with contextlib.suppress(OSError):
-                os.unlink(path)
-        os.rmdir(folder)
-
-
-def _replace_one_by_one(attempt: Path, folder: Path, names: list[str]) -> None:
-    """Without symbolic links there is no one moment; but what fails is taken back."""
-
-    def put(name: str) -> None:
-        if (attempt / "new" / name).exists():
-            os.replace(attempt / "new" / name, folder / name)
-        else:
-            os.unlink(folder / name)
-
-    try:
-        _each(folder, names, put)
-    except BaseException:
-        done = [name for name in names if not (attempt / "new" / name).exists()]
-        _without_interrupts(lambda: _take_back(attempt, folder, done))
-        raise
-
-
-def _take_back(attempt: Path, folder: Path, names: list[str]) -> None:
-    for name in names:
-        with contextlib.suppress(OSError):
-            _put_file(str(attempt / "old" / name), str(folder / name), attempt)
-
-
-def _without_interrupts(work: Callable[[], None]) -> None:
-    """Does the work to its end; an interrupt meanwhile counts only after that."""
-    interrupts = 0
-    while True:
-        try:
-            work()
-            break
-        except KeyboardInterrupt:
-            interrupts += 1
-    if interrupts:
-        raise KeyboardInterrupt
-
-
-_CURES = {
-    errno.ENOSPC: "the disk is full; free some space or choose another folder with --out",
-    errno.EDQUOT: "the disk quota is used up; free some space or choose another folder with --out",
-    errno.EFBIG: "the file is larger than is allowed here; write fewer rows or columns",
-    errno.EACCES: "no permission to write there; choose another folder with --out",
-    errno.EPERM: "no permission to write there; choose another folder with --out",
-    errno.EROFS: "the file system is read-only; choose another folder with --out",
-    errno.EEXIST: "a file stands where a folder is needed; choose another folder with --out",
-    errno.ENOTDIR: "a file stands where a folder is needed; choose another folder with --out",
-    errno.EISDIR: "a folder stands where a file is to be written; move it or choose another --out",
-    errno.ELOOP: "a symbolic link there leads nowhere; remove it or choose another --out",
-    errno.ENAMETOOLONG: "the name is too long; choose a shorter one with --out",
-}
-_OPEN_ELSEWHERE = (5, 32, 33)
-"""Errors of Windows: access denied, a sharing violation, a locked part."""
-
-
 # What a run wrote, by which the next one knows the files that it may remove.
 
 LISTING = ".mechkin-files"
@@ -406,12 +155,22 @@ _HEAD = "# the files of a run of mechkin analyze: the next one in this folder re
 _LINE = re.compile(r"(?P<sum>[0-9a-f]{8}) (?P<size>[0-9]+) (?P<name>[^/\\\0]+)")
 
 
-def _listing(files: Mapping[str, bytes]) -> bytes:
-    lines = (f"{crc32(data):08x} {len(data)} {name}\n" for name, data in files.items())
+class Digest(NamedTuple):
+    """What a file is known by: its checksum and its size."""
+
+    checksum: int
+    size: int
+
+    def __str__(self) -> str:
+        return f"{self.checksum:08x} {self.size}"
+
+
+def _listing(files: Mapping[str, Digest]) -> bytes:
+    lines = (f"{digest} {name}\n" for name, digest in files.items())
     return (_HEAD + "".join(lines)).encode()
 
 
-def _left_by_earlier(folder: Path, fresh: Mapping[str, bytes]) -> tuple[list[str], list[str]]:
+def _left_by_earlier(folder: Path, fresh: Collection[str]) -> tuple[list[str], list[str]]:
     """Names of files of the run before in a folder that are not among the fresh ones: those that
     are as they were written, and those that are not."""
     try:
@@ -424,22 +183,99 @@ def _left_by_earlier(folder: Path, fresh: Mapping[str, bytes]) -> tuple[list[str
         name = line["name"]
         path = folder / name
         if name not in fresh and name not in {".", ".."} and path.is_file():
-            is_same = not path.is_symlink() and path.stat().st_size == int(line["size"])
-            is_same = is_same and crc32(path.read_bytes()) == int(line["sum"], 16)
-            (same if is_same else changed).append(name)
+            known = Digest(int(line["sum"], 16), int(line["size"]))
+            (same if _is_as_written(path, known) else changed).append(name)
     return same, changed
+
+
+def _is_as_written(path: Path, known: Digest) -> bool:
+    if path.is_symlink() or path.stat().st_size != known.size:
+        return False
+    found = 0
+    with open(path, "rb") as stream:
+        while part := stream.read(PART):
+            found = crc32(part, found)
+    return found == known.checksum
+
+
+class OutputFile(io.RawIOBase):
+    """A file of a run while it is written: in memory as long as it is small, then in the folder of
+    the run's attempt. It takes its place with the others (`OutputFolder.write_run`)."""
+
+    def __init__(self, target: Path, begin: Callable[[str], str]) -> None:
+        """Begins it.
+
+        Args:
+            target: where it is to stand.
+            begin: makes the attempt's folder, and says where there the file of a name is.
+        """
+        self.target = target
+        self.held: bytes | bytearray | None = bytearray()
+        self._begin = begin
+        self._stream: io.FileIO | None = None
+        self._checksum = self._size = 0
+        self._has_failed = False
+
+    @property
+    def digest(self) -> Digest:
+        """Of what was written so far."""
+        return Digest(self._checksum, self._size)
+
+    def writable(self) -> bool:
+        """It is."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Adds bytes, all of them. After an error nothing more is written, nor refused: what packs
+        or frames a file may still write its end when it goes.
+
+        Raises:
+            OSError: they cannot be written.
+        """
+        view = memoryview(data).cast("B")
+        if self._has_failed:
+            return view.nbytes
+        self._checksum = crc32(view, self._checksum)
+        self._size += view.nbytes
+        if isinstance(self.held, bytearray) and self._size <= HELD_BYTES:
+            self.held += view
+            return view.nbytes
+        try:
+            if self._stream is None:
+                self._stream = io.FileIO(self._begin(self.target.name), "xb")
+            held, self.held = self.held, None
+            for part in (held, view) if held else (view,):
+                _write_all(self._stream, part)
+        except BaseException:
+            self._has_failed = True
+            raise
+        return view.nbytes
+
+    def close(self) -> None:
+        """Ends it."""
+        if self._stream is not None:
+            self._stream.close()
+        super().close()
+
+
+def _write_all(stream: io.FileIO, data: bytes | bytearray | memoryview) -> None:
+    view = memoryview(data)
+    while view:
+        view = view[stream.write(view) or 0 :]
 
 
 class OutputFolder:
     """A folder that this run alone writes to, inside `with`.
 
-    Entering it clears what a killed run left there; a folder that cannot be made is refused only
-    when something is written.
+    The files of a run are begun, written as they come, and take their places together
+    (`write_run`); a run that ends before leaves nothing. Entering it clears what a killed run left
+    there; a folder that cannot be made is refused only when something is written.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._claim: Claim | None = None
+        self._files: dict[str, OutputFile] = {}
 
     def __enter__(self) -> OutputFolder:
         """Claims the folder.
@@ -469,17 +305,38 @@ class OutputFolder:
             UsageError: a file cannot be written, and none was; the message says where, why and what
                 to do.
         """
-        targets = [self.folder / name for name in files]
-        if self._claim is None and targets:
-            with _refusal(targets[0]):
-                self._enter()
-        _each(self.folder, files, lambda name: _refuse_special(self.folder / name))
-        replace_files(self.folder, files, removed)
-        return targets
+        return self._place(files, removed)
 
-    def write_run(self, files: Mapping[str, bytes]) -> tuple[list[Path], list[str], list[str]]:
-        """Write the files of a run in the place of those of the run before, at one moment: what
-        that one wrote and this one does not is removed, unless it was changed since.
+    def begin(self, name: str) -> OutputFile:
+        """A file of the run, to be written and closed before `write_run`; one of the same name that
+        was begun before is dropped.
+
+        Raises:
+            UsageError: a file of this name cannot be written there.
+        """
+        target = self.folder / name
+        with refusal(target):
+            self._claimed()
+            refuse_special(target)
+        earlier = self._files.pop(name, None)
+        if earlier is not None and earlier.held is None:
+            with refusal(target):
+                os.unlink(self._new_file(name))
+        file = self._files[name] = OutputFile(target, self._new_file)
+        return file
+
+    def add(self, name: str, content: bytes) -> None:
+        """A whole file of the run.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
+        with self.begin(name) as file, refusal(file.target):
+            file.write(content)
+
+    def write_run(self) -> tuple[list[Path], list[str], list[str]]:
+        """Let the files that were begun take the place of those of the run before, at one moment:
+        what that one wrote and this one did not is removed, unless it was changed since.
 
         Returns:
             The files written; the names of those removed, and of those left since somebody changed
@@ -488,12 +345,44 @@ class OutputFolder:
         Raises:
             UsageError: as `write`.
         """
-        with _refusal(self.folder / next(iter(files), LISTING)):
-            if self._claim is None:
-                self._enter()
+        files, self._files = self._files, {}
+        assert all(file.closed for file in files.values())
+        with refusal(self.folder / next(iter(files), LISTING)):
+            self._claimed()
             removed, changed = _left_by_earlier(self.folder, files)
-        written = self.write({**files, LISTING: _listing(files)}, removed)
-        return written[:-1], removed, changed
+        held = {name: bytes(file.held) for name, file in files.items() if file.held is not None}
+        held[LISTING] = _listing({name: file.digest for name, file in files.items()})
+        self._place(held, removed, [name for name in files if name not in held])
+        return [self.folder / name for name in files], removed, changed
+
+    def _place(
+        self, files: Mapping[str, bytes], removed: Sequence[str] = (), streamed: Sequence[str] = ()
+    ) -> list[Path]:
+        targets = [self.folder / name for name in files]
+        if targets:
+            with refusal(targets[0]):
+                self._claimed()
+        each(self.folder, [*files, *streamed], lambda name: refuse_special(self.folder / name))
+        claim = self._claim
+        attempt = claim.attempt if claim is not None else None
+        replace_files(self.folder, files, removed, attempt, streamed)
+        if claim is not None:
+            claim.attempt = None
+        return targets
+
+    def _new_file(self, name: str) -> str:
+        """Where a file of the attempt stands; the first one makes its folder."""
+        claim = self._claimed()
+        if claim.attempt is None:
+            claim.attempt = new_attempt(self.folder)
+            begin_attempt(claim.attempt)
+        return f"{claim.attempt}{os.sep}new{os.sep}{name}"
+
+    def _claimed(self) -> Claim:
+        if self._claim is None:
+            self._enter()
+        assert self._claim is not None
+        return self._claim
 
     def _enter(self) -> None:
         claim = self._claim = Claim(self.folder)
@@ -506,41 +395,3 @@ def write_files(folder: Path, files: Mapping[str, bytes]) -> list[Path]:
     """Write `files` into a folder, as `OutputFolder.write`."""
     with OutputFolder(folder) as output:
         return output.write(files)
-
-
-def _refuse_special(target: Path) -> None:
-    """Only files and what leads nowhere are replaced: never a device, a pipe or a folder."""
-    try:
-        mode = os.stat(target).st_mode
-    except FileNotFoundError:
-        return
-    except OSError as error:
-        if error.errno == errno.ELOOP and target.is_symlink():
-            return
-        raise
-    if stat.S_ISDIR(mode):
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if not stat.S_ISREG(mode):
-        raise UsageError(
-            f"cannot write {target}: a device or a pipe stands there; choose another place with "
-            "--out"
-        )
-
-
-@contextlib.contextmanager
-def _refusal(target: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise _refused(target, error) from error
-
-
-def _refused(target: Path, error: OSError) -> UsageError:
-    reason = error.strerror or str(error)
-    cure = _CURES.get(error.errno or 0, f"{reason}; choose another folder with --out")
-    if getattr(error, "winerror", None) in _OPEN_ELSEWHERE:
-        cure = (
-            "no permission to write there, or another program has it open; close it there or "
-            "choose another folder with --out"
-        )
-    return UsageError(f"cannot write {target}: {cure}")

@@ -21,7 +21,7 @@ from mechkin_cli.cli import interrupts, messages, windows
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import read_document, text
 from mechkin_cli.studies import workers
-from mechkin_cli.tables import folder as file_set
+from mechkin_cli.tables import file_set, folder
 
 
 class Renamed:
@@ -220,9 +220,9 @@ def test_without_locks_files_are_written_all_the_same(
     def cannot(*_: object) -> int:
         raise PermissionError(errno.EACCES, "Permission denied")  # of a folder, there
 
-    monkeypatch.setattr(file_set, "os", Renamed("O_DIRECTORY", open=cannot))
+    monkeypatch.setattr(folder, "os", Renamed("O_DIRECTORY", open=cannot))
     monkeypatch.setitem(sys.modules, "fcntl", None)
-    claim = file_set.Claim(tmp_path / "out")
+    claim = folder.Claim(tmp_path / "out")
     assert not claim.locked
     claim.release()
 

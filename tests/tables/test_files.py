@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import folder as file_set
+from mechkin_cli.tables import file_set
 from mechkin_cli.tables.folder import write_files
 
 CONTENT = {"a.csv": b"x\n1\n", "b.md": b"# b\n"}
