@@ -152,13 +152,17 @@ def csv_bytes(
     return text.getvalue()
 
 
+_LONGEST_NUMBER = 40
+"""Room for a number alone in its line."""
+
+
 def _numbers(column: TableColumn, style: CsvStyle) -> FloatArray | WordColumn:
     """The cells as the kernel takes them: as texts where one is infinite."""
     assert not isinstance(column.values, Words)
     cells = number_column(column.values)
     if column.unbounded is None or not column.unbounded.any():
         return cells
-    pieces = TextRoom().pieces(
+    pieces = TextRoom(min(TEXT_ROOM, _LONGEST_NUMBER * cells.size)).pieces(
         cells.size,
         lambda first, memory: _kernel.csv_lines(
             [cells], first, memory, style.significant_digits, decimal_comma=style.decimal_comma
