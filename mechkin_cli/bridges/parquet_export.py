@@ -2,23 +2,31 @@
 
 A line for each row: its number, its verdict, all coordinates, rates and efforts, the columns of the
 file's tables, and the pose of each link (a shift, and a unit quaternion with the scalar first). The
-unit of a column is in its metadata, as in the results of a study; a missing number is null.
+unit of a column is in its metadata, as in tables of `--format parquet`; a missing number is null.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from mechkin_cli.bridges.parts import Exported, listed
 from mechkin_cli.diagnostics import Diagnostic, UsageError
 from mechkin_cli.mechanism import GROUND_NAME, is_written
-from mechkin_cli.studies import Format, Heading, format_of
-from mechkin_cli.tables import Words
+from mechkin_cli.tables import (
+    Columns,
+    TableColumn,
+    Words,
+    column_of_numbers,
+    heading_of,
+    metadata_of,
+    parquet_bytes,
+    pyarrow_for,
+    row_words,
+)
 from mechkin_cli.units import LENGTH
-from mechkin_cli.verdict import Status
 from mechkin_cli.view import continuous, link_poses
 
 if TYPE_CHECKING:
@@ -30,9 +38,6 @@ if TYPE_CHECKING:
 POSE: Final = ("x", "y", "z", "q0", "q1", "q2", "q3")
 """What a link's columns are called behind its name."""
 
-Column = tuple[str, str, Any]
-"""Label, unit, and numbers (rows,) or texts."""
-
 
 def export(model: Model, options: ExportOptions) -> Exported:
     """A run, or one of them for each run of the file, as Parquet; some of its rows, or all.
@@ -40,17 +45,21 @@ def export(model: Model, options: ExportOptions) -> Exported:
     Raises:
         UsageError: pyarrow is not there, or the run does not have a row that is named.
     """
-    kind = format_of("parquet")
+    pyarrow_for("Parquet")  # before anything is computed
     files, notes = {}, []
     for analysis in model.analyses(options.run, options.mode):
         rows = _rows(analysis, options.rows)
-        columns: dict[str, tuple[str, Any]] = {}
+        columns: dict[str, TableColumn] = {}
         twice = []
-        for label, unit, values in _columns(analysis):
-            known = columns.setdefault(label, (unit, values))
-            if known[1] is not values and not _same(known, (unit, values)):
-                twice.append(label)
-        files[f"{model.stem}.{analysis.run}.parquet"] = _frame(kind, columns, rows)
+        for column in _columns(analysis):
+            known = columns.setdefault(column.label, column)
+            if known is not column and not _same(known, column):
+                twice.append(column.label)
+        frame = Columns(analysis.run, "", tuple(one.part(rows) for one in columns.values()))
+        heading = heading_of(frame, ["row"])
+        files[f"{model.stem}.{analysis.run}.parquet"] = parquet_bytes(
+            heading.columns, frame.columns, metadata_of(heading)
+        )
         if twice:
             notes.append(
                 Diagnostic(
@@ -73,21 +82,17 @@ def _rows(analysis: Analysis, asked: tuple[int, ...]) -> list[int]:
     return [row - 1 for row in asked] or list(range(analysis.rows))
 
 
-def _columns(analysis: Analysis) -> Iterator[Column]:
+def _columns(analysis: Analysis) -> Iterator[TableColumn]:
     result = analysis.result
-    yield "row", "", np.arange(1, analysis.rows + 1, dtype=np.int64)
-    words = [Status(int(code)).label for code in result.status]
-    yield "row.status", "", words
+    yield TableColumn("row", "", np.arange(1.0, analysis.rows + 1))
+    yield TableColumn("row.status", "", row_words("row.status", result))
     if "time" in result.inputs:
-        yield "time", analysis.unit("time"), analysis["time"]
+        yield column_of_numbers("time", analysis.unit("time"), analysis["time"])
     for name in _names(analysis):
-        yield name, analysis.unit(name), analysis[name]
+        yield column_of_numbers(name, analysis.unit(name), analysis[name])
     for table in analysis.tables:
         if table.of_rows:
-            for column in table.columns:
-                is_words = isinstance(column.values, Words)
-                values = column.values.texts(range(column.rows)) if is_words else column.numbers  # type: ignore[union-attr]
-                yield column.label, column.unit, values
+            yield from table.columns
     yield from _poses(analysis)
 
 
@@ -103,7 +108,7 @@ def _names(analysis: Analysis) -> Iterator[str]:
                 yield f"{name}.effort"
 
 
-def _poses(analysis: Analysis) -> Iterator[Column]:
+def _poses(analysis: Analysis) -> Iterator[TableColumn]:
     """Where the drawing of each link is: x = R x0 + shift of what is drawn at x0."""
     result = analysis.result
     mechanism = result.problem.mechanism
@@ -119,7 +124,7 @@ def _poses(analysis: Analysis) -> Iterator[Column]:
         for k, word in enumerate(POSE):
             unit = result.units.label(LENGTH) if k < 3 else ""
             values = result.units.from_si(pose[:, k], LENGTH) if k < 3 else pose[:, k]
-            yield f"{link}.pose.{word}", unit, np.asarray(values)
+            yield column_of_numbers(f"{link}.pose.{word}", unit, np.asarray(values))
 
 
 def _turned(poses: Floats, vector: Floats) -> Floats:
@@ -130,22 +135,9 @@ def _turned(poses: Floats, vector: Floats) -> Floats:
     return found
 
 
-def _same(one: tuple[str, Any], other: tuple[str, Any]) -> bool:
-    if one[0] != other[0] or isinstance(one[1], list) != isinstance(other[1], list):
+def _same(one: TableColumn, other: TableColumn) -> bool:
+    if one.unit != other.unit or isinstance(one.values, Words) != isinstance(other.values, Words):
         return False
-    if isinstance(one[1], list):
-        return bool(one[1] == other[1])
-    return bool(np.array_equal(one[1], other[1], equal_nan=True))
-
-
-def _frame(kind: Format, columns: dict[str, tuple[str, Any]], rows: list[int]) -> bytes:
-    headings, records = [], {}
-    for label, (unit, values) in columns.items():
-        if isinstance(values, list):
-            word, chosen = "text", np.array([values[row] for row in rows], dtype=object)
-        else:
-            chosen = np.asarray(values)[rows]
-            word = "whole" if chosen.dtype == np.int64 else "number"
-        headings.append(Heading(label, unit, word))
-        records[label] = chosen
-    return kind.piece(headings, records)
+    if isinstance(one.values, Words):
+        return np.array_equal(one.values.array(), other.values.array())  # type: ignore[union-attr]
+    return np.array_equal(one.numbers, other.numbers, equal_nan=True)

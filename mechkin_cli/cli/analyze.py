@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
 from pathlib import Path
@@ -24,10 +25,23 @@ from mechkin_cli.cli.messages import (
     tell_as,
 )
 from mechkin_cli.cli.progress import Tell, working
-from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError
+from mechkin_cli.diagnostics import (
+    LONGEST_NAME,
+    Diagnostic,
+    InvalidFile,
+    UsageError,
+    nearest_hint,
+)
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import listed
-from mechkin_cli.tables import NEEDS_OPENPYXL, USUAL_FORMATS, WRITERS, Results, written_files
+from mechkin_cli.tables import (
+    USUAL_FORMATS,
+    WRITERS,
+    Columns,
+    Results,
+    refuse_without_library,
+    write_results,
+)
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -110,6 +124,7 @@ class AnalyzeCommand(NamedTuple):
     set_: list[str] | None = None
     mode: str | None = None
     table: list[str] | None = None
+    columns: list[str] | None = None
     lanes: int = 0
     threads: int = 0
     certify: bool = False
@@ -134,11 +149,7 @@ class AnalyzeCommand(NamedTuple):
             if name not in WRITERS:
                 cure = f"; for messages write --messages {name}" if name in FORMS else ""
                 raise UsageError(f"--format {name}: formats are {', '.join(WRITERS)}{cure}")
-        if "xlsx" in formats:  # refused before anything is computed
-            from importlib.util import find_spec
-
-            if find_spec("openpyxl") is None:
-                raise UsageError(NEEDS_OPENPYXL)
+        refuse_without_library(formats)
         return formats
 
     @property
@@ -206,6 +217,7 @@ def _one(
     try:
         tell("reading")
         model = model_of(path, settings)
+        command = _with_labels(command, model)
         if command.errors:
             _refuse_own_errors(model, command.table)
         analyses, notes, written, removed = _run(model, folder, command, tell)
@@ -242,11 +254,12 @@ def _run(
             return analyses, notes, [], []
         tell("measuring true errors" if command.errors else "writing tables")
         results = [_results(analysis, command) for analysis in analyses]
-        files = written_files(results, command.formats)
+        write_results(results, command.formats, output.begin)
         if command.view:
-            files[view.PAGE_NAME], left_out = view.view_page(analyses)
+            page, left_out = view.view_page(analyses)
+            output.add(view.PAGE_NAME, page)
             notes = (*notes, *left_out)
-        written, removed, changed = output.write_run(files)
+        written, removed, changed = output.write_run()
         return analyses, (*notes, *_changed_notes(folder, changed)), written, removed
 
 
@@ -276,6 +289,33 @@ def _refuse_own_errors(model: Model, wanted: list[str] | None) -> None:
         )
 
 
+def _with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
+    """The command with the labels of the columns that it asks for, and only the tables that have
+    one of them.
+
+    Raises:
+        UsageError: no table has a column of a label.
+    """
+    if command.columns is None:
+        return command
+    wanted = table_room.chosen(tuple(model.tables), command.table)
+    labels = {table.name: [column.label for column in table.columns] for table in wanted}
+    known = dict.fromkeys(label for listed in labels.values() for label in listed)
+    asked: list[str] = []
+    for text in command.columns:
+        # as the header of CSV is written, since a label may have a comma
+        asked += [text] if text in known else next(csv.reader([text], skipinitialspace=True), [])
+    for label in asked:
+        if label not in known:
+            hint = nearest_hint(label, known)
+            raise UsageError(
+                f"--columns: no table has a column {label[:LONGEST_NAME]}"
+                + (f"; {hint}" if hint else "")
+            )
+    tables = [name for name, own in labels.items() if set(own).intersection(asked)]
+    return command._replace(columns=list(dict.fromkeys(asked)), table=tables)
+
+
 def _is_enough(analysis: Analysis, command: AnalyzeCommand) -> bool:
     proofs = command.strict and command.certify and analysis.run == SWEEP
     if proofs and not analysis.certificate.is_one_branch:
@@ -300,15 +340,27 @@ def _folders(files: list[Path], out: Path | None) -> dict[Path, Path]:
     return folders
 
 
+def _chosen(table: Columns, labels: Sequence[str] | None) -> Columns:
+    return table if labels is None else table.chosen(labels)
+
+
 def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
+    labels = command.columns
+    errors = analysis.errors.columns if command.errors else None
+    if errors is not None and labels is not None:
+        errors = tuple(column for column in errors if column.label in labels)
     return Results(
         analysis.model.name,
-        (*analysis.tables, *analysis.coefficients, *analysis.balance_tables),
+        (
+            *(_chosen(table, labels) for table in analysis.tables),
+            *analysis.coefficients,
+            *analysis.balance_tables,
+        ),
         analysis.result,
         analysis.diagnostics,
         command.threads,
         analysis.run,
-        analysis.errors.columns if command.errors else None,
+        errors,
         command.units,
         command.decimal_comma,
         analysis.impacts,
@@ -330,7 +382,8 @@ def _report(
     for analysis in analyses:
         if command.explain:
             put(f"{explanation(analysis)}\n")
-        for part in () if command.quiet else shown_tables(analysis, folder):
+        tables = () if command.quiet else [_chosen(t, command.columns) for t in analysis.tables]
+        for part in shown_tables(tables, analysis.rows, folder) if tables else ():
             put(part)
     if command.quiet:
         return

@@ -130,6 +130,14 @@ ANALYZE = Command(
         MODE,
         TABLE,
         Word(
+            "columns",
+            "Only columns of these labels, as theta4,torque; may be repeated.",
+            ("--columns",),
+            "text",
+            "LABELS",
+            repeated=True,
+        ),
+        Word(
             "lanes",
             "Rows computed at a time: 2, 4 or 8; 0: the most the machine can.",
             ("--lanes",),

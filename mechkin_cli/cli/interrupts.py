@@ -86,9 +86,9 @@ def leave(code: int) -> NoReturn:
 def _interrupted(number: int, frame: FrameType | None) -> None:
     if _final_code is not None:
         os._exit(_final_code)
-    if getattr(sys.modules.get("mechkin_cli.tables.writers"), "replacing", None):
+    if getattr(sys.modules.get("mechkin_cli.tables.file_set"), "replacing", None):
         raise KeyboardInterrupt
-    claims = sys.modules.get("mechkin_cli.tables.writers")
+    claims = sys.modules.get("mechkin_cli.tables.folder")
     for claim in tuple(getattr(claims, "held", ())):
         claim.release()
     progress = sys.modules.get("mechkin_cli.cli.progress")

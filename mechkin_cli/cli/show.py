@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -62,19 +62,20 @@ GAP_MARK = "..."
 GAP = "  "
 
 
-def shown_tables(analysis: Analysis, folder: Path) -> Iterator[str]:
-    """Each table as text that ends in an empty line; the files in `folder` hold all of it."""
+def shown_tables(tables: Iterable[Columns], rows: int, folder: Path) -> Iterator[str]:
+    """Each table of a run as text that ends in an empty line; the files in `folder` hold all of
+    its rows."""
     width = shutil.get_terminal_size((80, 24)).columns
-    chosen = _chosen_rows(analysis.rows)
-    for table in analysis.tables:
+    chosen = _chosen_rows(rows)
+    for table in tables:
         title = _one_line(table.title)
         heading = f"{table.name}: {title}" if title != table.name else table.name
         lines = wrap(heading, width)
         for group in _grouped(table, chosen, width):
             lines += ["", *group]
-        left_out = analysis.rows - len(chosen)
+        left_out = rows - len(chosen)
         if left_out:
-            lines.append(f"({left_out} of {analysis.rows} rows left out here; all are in {folder})")
+            lines.append(f"({left_out} of {rows} rows left out here; all are in {folder})")
         if table.summary is not None:
             notes = table.summary.written_notes(_one_line)
             lines += [line for note in notes for line in wrap(f"({note})", width)]

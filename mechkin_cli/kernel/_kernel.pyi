@@ -167,14 +167,24 @@ WordColumn = tuple[NDArray[np.int32], Sequence[str]]
 DecimalColumn = tuple[Floats, bool, int, bool]
 
 def decimal_texts(column: DecimalColumn) -> list[str]: ...
-def csv_text(
-    labels: Sequence[str],
+def csv_header(labels: Sequence[str], decimal_comma: bool = False) -> str: ...
+def csv_lines(
     columns: Sequence[Floats | WordColumn],
-    missing: NDArray[np.bool_] | None = None,
+    first: int,
+    room: NDArray[np.uint8],
     significant_digits: int = 0,
     quoted_empty: bool = False,
+    decimal_comma: bool = False,
     threads: int = 1,
-) -> bytes: ...
+) -> tuple[int, list[tuple[int, int]]]: ...
+def json_lines(
+    keys: Sequence[str],
+    columns: Sequence[Floats | WordColumn],
+    first: int,
+    room: NDArray[np.uint8],
+    whole: Sequence[bool],
+    threads: int = 1,
+) -> tuple[int, list[tuple[int, int]]]: ...
 def markdown_text(
     headers: Sequence[str], columns: Sequence[DecimalColumn | WordColumn], threads: int = 1
 ) -> bytes: ...

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "formats": "Format Heading format_of",
+        "formats": "Format format_of",
         "results": "Spread StudyFiles StudyResults",
         "shares": "share_of",
         "source": "open_study",

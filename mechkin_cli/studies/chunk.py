@@ -9,8 +9,8 @@ import numpy as np
 
 from mechkin_cli.diagnostics import InvalidFile, MechkinError
 from mechkin_cli.record import NamedTuple, dataclass
-from mechkin_cli.studies.formats import Heading, Records, Values, empty_values
-from mechkin_cli.tables import REDUCTIONS, mean, root_mean_square
+from mechkin_cli.studies.formats import Records, Values, empty_values
+from mechkin_cli.tables import REDUCTIONS, Heading, mean, root_mean_square
 from mechkin_cli.tolerances import LAST_ROW
 from mechkin_cli.variants import vary, with_parameters
 from mechkin_cli.verdict import SWEEP, Status

@@ -24,8 +24,8 @@ from typing import Any, BinaryIO
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import MOST_TABLE_BYTES, read_regular
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.studies.formats import FORMATS, Format, Heading, Records
-from mechkin_cli.tables import Claim
+from mechkin_cli.studies.formats import FORMATS, Format, Records
+from mechkin_cli.tables import Claim, Heading
 
 MANIFEST = "study.json"
 PIECES = "pieces"

@@ -7,7 +7,6 @@ depend on the pieces.
 from __future__ import annotations
 
 import csv
-import io
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
@@ -16,8 +15,19 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TypeAlias
 import numpy as np
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.record import NamedTuple
-from mechkin_cli.tables import Columns, TableColumn, column_of_numbers, csv_bytes, words_of
+from mechkin_cli.tables import (
+    ArrowTable,
+    Columns,
+    Heading,
+    TableColumn,
+    Words,
+    column_of_numbers,
+    csv_bytes,
+    parquet_blocks,
+    parquet_bytes,
+    pyarrow_for,
+    words_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,15 +37,6 @@ if TYPE_CHECKING:
 
 Values: TypeAlias = "NDArray[np.float64] | NDArray[np.int64] | NDArray[np.object_]"
 """Numbers (lines,), nan where there is none; whole numbers; or texts."""
-
-
-class Heading(NamedTuple):
-    """A column: its label, its unit ("" where it has none), and what it holds."""
-
-    label: str
-    unit: str = ""
-    kind: str = "number"
-    """`number`, `whole` or `text`."""
 
 
 Records = dict[str, Values]
@@ -64,9 +65,6 @@ def numbers(values: Values) -> Floats:
 LINES_AT_ONCE = 65536
 """Lines that are held while a file is read."""
 
-ROW_GROUP = 65536
-"""Lines of a row group of Parquet, whatever the pieces were."""
-
 
 class Format(Protocol):
     """A kind of file."""
@@ -94,13 +92,7 @@ class Csv:
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        columns = [
-            TableColumn(h.label, h.unit, words_of(records[h.label].tolist()))
-            if h.kind == "text"
-            else column_of_numbers(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
-            for h in headings
-        ]
-        return csv_bytes(Columns("study", "", tuple(columns)))
+        return csv_bytes(Columns("study", "", _columns(headings, records)))
 
     def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """As `Format.read`."""
@@ -132,72 +124,45 @@ def _read(kind: str, cells: Sequence[str]) -> Any:
     return np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
 
 
+def _columns(headings: Sequence[Heading], records: Records) -> tuple[TableColumn, ...]:
+    return tuple(
+        TableColumn(h.label, h.unit, words_of(records[h.label].tolist()))
+        if h.kind == "text"
+        else column_of_numbers(h.label, h.unit, np.asarray(records[h.label], dtype=np.float64))
+        for h in headings
+    )
+
+
 class Parquet:
-    """Apache Parquet; a cell without a number is null, units stand in the fields' metadata."""
+    """Apache Parquet, as runs are written; texts are not coded, as they are not known before."""
 
     ending = "parquet"
 
     def __init__(self) -> None:
-        try:
-            import pyarrow.parquet
-        except ImportError:
-            raise UsageError("Parquet needs pyarrow: pip install 'mechkin[parquet]'") from None
-        self._arrow: Any = pyarrow
-        self._files: Any = pyarrow.parquet
+        pyarrow_for("Parquet")
 
     def piece(self, headings: Sequence[Heading], records: Records) -> bytes:
         """As `Format.piece`."""
-        buffer, schema, columns = io.BytesIO(), self._schema(headings), []
-        for heading, field in zip(headings, schema, strict=True):
-            values = records[heading.label]
-            mask = np.isnan(values) if heading.kind == "number" else None
-            columns.append(self._arrow.array(values, field.type, mask=mask))
-        self._files.write_table(self._arrow.Table.from_arrays(columns, schema=schema), buffer)
-        return buffer.getvalue()
+        return parquet_bytes(headings, _columns(headings, records))
 
     def read(self, path: Path, headings: Sequence[Heading]) -> Iterator[Records]:
         """As `Format.read`."""
-        with self._files.ParquetFile(path) as file:
-            for batch in file.iter_batches(batch_size=LINES_AT_ONCE):
-                yield {h.label: _read_arrow(h.kind, batch.column(h.label)) for h in headings}
+        for block in parquet_blocks(path, headings, LINES_AT_ONCE):
+            yield {h.label: _values(h.kind, c) for h, c in zip(headings, block, strict=True)}
 
     def join(self, pieces: Iterable[Path], headings: Sequence[Heading], file: BinaryIO) -> None:
         """As `Format.join`."""
-        with self._files.ParquetWriter(file, self._schema(headings)) as writer:
-            for group in self._groups(pieces):
-                writer.write_table(group, row_group_size=ROW_GROUP)
-
-    def _schema(self, headings: Sequence[Heading]) -> Any:
-        arrow = self._arrow
-        types = {"number": arrow.float64(), "whole": arrow.int64(), "text": arrow.string()}
-        return arrow.schema(
-            [
-                arrow.field(h.label, types[h.kind], metadata={"unit": h.unit} if h.unit else None)
-                for h in headings
-            ]
-        )
-
-    def _groups(self, pieces: Iterable[Path]) -> Iterator[Any]:
-        """Tables of as many lines as a row group has, the last one of the rest."""
-        held: list[Any] = []
-        lines = 0
+        table = ArrowTable("parquet", headings, file)
         for path in pieces:
-            table = self._files.read_table(path)
-            held.append(table)
-            lines += table.num_rows
-            while lines >= ROW_GROUP:
-                whole = self._arrow.concat_tables(held)
-                yield whole.slice(0, ROW_GROUP).combine_chunks()
-                held = [whole.slice(ROW_GROUP)]
-                lines -= ROW_GROUP
-        if lines:
-            yield self._arrow.concat_tables(held).combine_chunks()
+            for block in parquet_blocks(path, headings, LINES_AT_ONCE):
+                table.write(block)
+        table.end()
 
 
-def _read_arrow(kind: str, column: Any) -> Any:
-    if kind == "number":
-        return np.asarray(column.to_numpy(zero_copy_only=False), dtype=np.float64)
-    return np.array(column.to_pylist(), dtype=object if kind == "text" else np.int64)
+def _values(kind: str, column: TableColumn) -> Values:
+    if isinstance(column.values, Words):
+        return np.array(column.values.words, dtype=object)[column.values.codes]
+    return column.values.astype(np.int64) if kind == "whole" else column.values
 
 
 _FORMATS: dict[str, type[Csv] | type[Parquet]] = {"csv": Csv, "parquet": Parquet}

@@ -29,9 +29,8 @@ from mechkin_cli.studies.chunk import (
     StudyColumn,
     StudyQuestion,
 )
-from mechkin_cli.studies.formats import Heading
 from mechkin_cli.studies.source import Faults, in_file_units, split
-from mechkin_cli.tables import ROW_TEXTS, RunParameter
+from mechkin_cli.tables import ROW_TEXTS, Heading, RunParameter
 from mechkin_cli.tolerances import LAST_ROW, MOST_DRAWN, MOST_TABLE_TEXT, MOST_VARIANTS
 from mechkin_cli.variants import (
     Draws,

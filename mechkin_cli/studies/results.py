@@ -14,7 +14,8 @@ from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS
 from mechkin_cli.studies.folder import ROWS, VARIANTS
-from mechkin_cli.studies.formats import Heading, Records, Values, numbers
+from mechkin_cli.studies.formats import Records, Values, numbers
+from mechkin_cli.tables import Heading
 
 if TYPE_CHECKING:
     import pandas

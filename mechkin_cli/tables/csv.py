@@ -9,19 +9,19 @@ Labels that a spreadsheet would take for formulas begin with an apostrophe (`tab
 
 from __future__ import annotations
 
-import csv
 import os
-from collections.abc import Callable, Iterable, Sequence
-from io import StringIO
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from io import BytesIO
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli.kernel import _kernel
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import FloatArray, TableColumn, Words, number_column, words_of
 from mechkin_cli.tables.layout import csv_text
 from mechkin_cli.tables.table import Columns
-from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS
+from mechkin_cli.tolerances import CELLS_PER_THREAD, MOST_TEXT_THREADS, TEXT_ROOM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -55,6 +55,87 @@ def _processors() -> int:
     return os.cpu_count() or 1
 
 
+class CsvStyle(NamedTuple):
+    """How tables stand in CSV.
+
+    Attributes:
+        significant_digits: `SHORTEST`, or 1 to 15.
+        threads: that write; 0: as many as a table is worth.
+        units: whether the header has them, as `theta [deg]`.
+        decimal_comma: whether numbers have a comma, and semicolons part the cells.
+    """
+
+    significant_digits: int = SHORTEST
+    threads: int = 0
+    units: bool = False
+    decimal_comma: bool = False
+
+
+PLAIN_CSV = CsvStyle()
+
+
+class TextRoom:
+    """Memory that lines are written into, the same for all blocks of all tables of a run: they are
+    written to their files before the next ones take their place."""
+
+    def __init__(self, size: int = TEXT_ROOM) -> None:
+        self._memory = np.empty(size, np.uint8)
+
+    def pieces(
+        self,
+        rows: int,
+        write: Callable[[int, NDArray[np.uint8]], tuple[int, list[tuple[int, int]]]],
+    ) -> Iterator[memoryview]:
+        """The text of all rows; each piece is to be used before the next one is asked for.
+
+        Args:
+            write: takes the first row and the memory, and says the row behind the last one for
+                which there was room, with the starts and sizes of the pieces.
+        """
+        row = 0
+        while row < rows:
+            end, pieces = write(row, self._memory)
+            if end == row:  # not even one line
+                self._memory = np.empty(2 * self._memory.size, np.uint8)
+            view = self._memory.data
+            for start, size in pieces:
+                yield view[start : start + size]
+            row = end
+
+
+def csv_header(columns: Iterable[tuple[str, str]], style: CsvStyle = PLAIN_CSV) -> bytes:
+    """The first line, of labels and units."""
+    labels = [
+        csv_text(f"{label} [{unit}]" if style.units and unit else label) for label, unit in columns
+    ]
+    return _kernel.csv_header(labels, style.decimal_comma).encode()
+
+
+def csv_lines(
+    columns: Sequence[TableColumn], room: TextRoom, style: CsvStyle = PLAIN_CSV
+) -> Iterator[memoryview]:
+    """The lines of a block of rows, piece by piece, as `TextRoom.pieces`."""
+    cells = [
+        word_column(column.values, csv_text)
+        if isinstance(column.values, Words)
+        else _numbers(column, style)
+        for column in columns
+    ]
+    threads = threads_for(columns, style.threads)
+    return room.pieces(
+        columns[0].rows if columns else 0,
+        lambda first, memory: _kernel.csv_lines(
+            cells,
+            first,
+            memory,
+            significant_digits=style.significant_digits,
+            quoted_empty=len(columns) == 1,
+            decimal_comma=style.decimal_comma,
+            threads=threads,
+        ),
+    )
+
+
 def csv_bytes(
     columns: Columns,
     significant_digits: int = SHORTEST,
@@ -62,51 +143,30 @@ def csv_bytes(
     units: bool = False,
     decimal_comma: bool = False,
 ) -> bytes:
-    """The whole file as UTF-8; `SHORTEST` or 1 to 15 significant digits; threads 0: as many as the
-    table is worth; with `units` in the header, as `theta [deg]`; with a decimal comma, and then
-    semicolons between the cells."""
-    labels = [
-        csv_text(f"{column.label} [{column.unit}]" if units and column.unit else column.label)
-        for column in columns.columns
-    ]
-    cells = [
-        word_column(column.values, csv_text)
-        if isinstance(column.values, Words)
-        else _numbers(column, significant_digits)
-        for column in columns.columns
-    ]
-    text: bytes = _kernel.csv_text(
-        labels,
-        cells,
-        significant_digits=significant_digits,
-        quoted_empty=len(labels) == 1,
-        threads=threads_for(columns, threads),
-    )
-    if decimal_comma:
-        is_number = [not isinstance(column.values, Words) for column in columns.columns]
-        return _with_commas(text.decode(), is_number)
-    return text
+    """The whole file as UTF-8, with a `CsvStyle` of these."""
+    style = CsvStyle(significant_digits, threads, units, decimal_comma)
+    text = BytesIO(csv_header(((c.label, c.unit) for c in columns.columns), style))
+    text.seek(0, os.SEEK_END)
+    for piece in csv_lines(columns.columns, TextRoom(), style):
+        text.write(piece)
+    return text.getvalue()
 
 
-def _with_commas(text: str, is_number: Sequence[bool]) -> bytes:
-    """CSV with a comma in its numbers, and semicolons between its cells."""
-    stream = StringIO()
-    writer = csv.writer(stream, delimiter=";", lineterminator="\n")
-    header, *rows = csv.reader(StringIO(text, newline=""))
-    writer.writerow(header)
-    for row in rows:
-        cells = zip(row, is_number, strict=True)
-        writer.writerow([one.replace(".", ",") if number else one for one, number in cells])
-    return stream.getvalue().encode()
+_LONGEST_NUMBER = 40
+"""Room for a number alone in its line."""
 
 
-def _numbers(column: TableColumn, significant_digits: int) -> FloatArray | WordColumn:
+def _numbers(column: TableColumn, style: CsvStyle) -> FloatArray | WordColumn:
     """The cells as the kernel takes them: as texts where one is infinite."""
     assert not isinstance(column.values, Words)
     cells = number_column(column.values)
-    if column.unbounded is None:
+    if column.unbounded is None or not column.unbounded.any():
         return cells
-    one: bytes = _kernel.csv_text(
-        [""], [cells], significant_digits=significant_digits, quoted_empty=False, threads=1
+    pieces = TextRoom(min(TEXT_ROOM, _LONGEST_NUMBER * cells.size)).pieces(
+        cells.size,
+        lambda first, memory: _kernel.csv_lines(
+            [cells], first, memory, style.significant_digits, decimal_comma=style.decimal_comma
+        ),
     )
-    return word_column(words_of(column.texts(one.decode().split("\n")[1:-1])))
+    lines = b"".join(map(bytes, pieces)).decode()
+    return word_column(words_of(column.texts(lines.split("\n")[:-1])))

@@ -43,7 +43,7 @@ class JsonCells:
     def json_bytes(self) -> bytes:
         """The list as JSON."""
         text: bytes = _kernel.json_list(
-            word_column(self.values, _one_line_json)
+            word_column(self.values, one_line_json)
             if isinstance(self.values, Words)
             else number_column(self.values),
             self.threads,
@@ -178,7 +178,8 @@ def _errors_record(errors: Sequence[ColumnErrors]) -> Plain:
     }
 
 
-def _one_line_json(value: object) -> str:
+def one_line_json(value: object) -> str:
+    """A value as JSON in one line."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False)
     # a reader of JSON need not take half characters, which file names may hold
     return SURROGATES.sub(lambda found: escape(found[0]).replace("\\", "\\\\"), text)
@@ -190,7 +191,7 @@ def _parts(value: object, indent: str) -> Iterator[bytes]:
         yield value.json_bytes()
     elif isinstance(value, dict) and value:
         for number, (key, item) in enumerate(value.items()):
-            yield f"{',' if number else '{'}\n{inner}{_one_line_json(key)}: ".encode()
+            yield f"{',' if number else '{'}\n{inner}{one_line_json(key)}: ".encode()
             yield from _parts(item, inner)
         yield f"\n{indent}}}".encode()
     elif isinstance(value, list) and any(
@@ -201,4 +202,4 @@ def _parts(value: object, indent: str) -> Iterator[bytes]:
             yield from _parts(item, inner)
         yield f"\n{indent}]".encode()
     else:
-        yield _one_line_json(value).encode()
+        yield one_line_json(value).encode()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import TableSource
-from mechkin_cli.tables.csv import csv_bytes
+from mechkin_cli.tables.csv import CsvStyle
 from mechkin_cli.tables.errors import ColumnErrors
 from mechkin_cli.tables.table import Columns
 from mechkin_cli.verdict import SWEEP
@@ -34,11 +34,7 @@ class Results(NamedTuple):
     decimal_comma: bool = False
     impacts: Columns | None = None
 
-    def csv(self, table: Columns) -> bytes:
-        """A table of the run as CSV."""
-        return csv_bytes(
-            table,
-            threads=self.threads,
-            units=self.units,
-            decimal_comma=self.decimal_comma,
-        )
+    @property
+    def style(self) -> CsvStyle:
+        """How its tables stand in CSV."""
+        return CsvStyle(threads=self.threads, units=self.units, decimal_comma=self.decimal_comma)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from mechkin_cli.record import dataclass
+from mechkin_cli.record import NamedTuple, dataclass, replace
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.tables.columns import (
     AT,
@@ -22,10 +23,28 @@ from mechkin_cli.tables.columns import (
 from mechkin_cli.tables.layout import TableLayout
 
 if TYPE_CHECKING:
+    from io import RawIOBase
+    from typing import IO
+
     from mechkin_cli.tables.summary import Summary
 
-NEEDS_OPENPYXL = "--format xlsx needs openpyxl: pip install 'mechkin[xlsx]'"
-"""Said of a workbook before anything is computed for it."""
+
+Sink: TypeAlias = "IO[bytes] | RawIOBase"
+"""A file that bytes are written to."""
+
+
+class Heading(NamedTuple):
+    """A column before its rows: its label, its unit ("" where it has none), and what it holds.
+
+    Attributes:
+        kind: `number`, `whole` or `text`.
+        texts: all that a column of texts may hold; () where they are not known before.
+    """
+
+    label: str
+    unit: str = ""
+    kind: str = "number"
+    texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -38,6 +57,22 @@ class Columns(Listed):
     columns: tuple[TableColumn, ...]
     of_rows: bool = True
     summary: Summary | None = None
+
+    def chosen(self, labels: Sequence[str]) -> Columns:
+        """With those of its columns alone that have one of the labels, in the order of these."""
+        numbers = {column.label: number for number, column in enumerate(self.columns)}
+        kept = [numbers[label] for label in labels if label in numbers]
+        summary = self.summary
+        if summary is not None:
+            by_number = {column.number: column for column in summary.columns}
+            below = [
+                by_number[number]._replace(number=place)
+                for place, number in enumerate(kept)
+                if number in by_number
+            ]
+            summary = summary._replace(columns=tuple(below)) if below else None
+        columns = tuple(self.columns[number] for number in kept)
+        return replace(self, columns=columns, summary=summary)
 
     @property
     def listing(self) -> Listing:

@@ -20,7 +20,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import UsageError, legible
 from mechkin_cli.tables.columns import TableColumn, Words
-from mechkin_cli.tables.table import NEEDS_OPENPYXL, Columns, summary_table
+from mechkin_cli.tables.table import Columns, summary_table
 
 if TYPE_CHECKING:
     from mechkin_cli.tables.results import Results
@@ -88,7 +88,7 @@ def _openpyxl() -> Any:
     try:
         import openpyxl
     except ImportError:
-        raise UsageError(NEEDS_OPENPYXL) from None
+        raise UsageError("xlsx needs openpyxl: pip install 'mechkin[xlsx]'") from None
     return openpyxl
 
 

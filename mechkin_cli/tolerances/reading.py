@@ -133,6 +133,24 @@ one."""
 MOST_TEXT_THREADS: Final = 64
 """Threads that write one table: beyond, the memory takes longer than the digits."""
 
+# --- files of tables -----------------------------------------------------------------------------
+
+TEXT_ROOM: Final = 8 << 20
+"""Bytes of memory that lines of a table are written into at a time: a quarter of a million numbers,
+which are worth the threads that write them, in a part of a processor's cache."""
+
+PACKED_PART: Final = 1 << 20
+"""Bytes that are packed at a time, so that a packed file depends on its text alone, and not on the
+blocks that the text comes in."""
+
+HELD_BYTES: Final = 1 << 20
+"""Bytes of a file that are held in memory before it begins on the disk: smaller files are compared
+with what stands there, and need no folder of their own where nothing changed."""
+
+ROW_GROUP: Final = 65536
+"""Rows of a row group of Parquet and of a batch of Arrow, whatever the blocks were: half a MB a
+column in memory, and enough for readers that share groups among their threads."""
+
 
 # Where a search for dimensions steps, and what it takes as held or reached.
 

@@ -83,7 +83,7 @@ HOMES = {
     "rich": {"cli"},
     "pandas": {"analysis", "sensitivities", "studies"},
     "scipy": {"bench", "fit", "variants"},
-    "pyarrow": {"studies"},
+    "pyarrow": {"tables"},
     "distributed": {"studies"},
     "matplotlib": {"analysis", "plots"},
     "ezdxf": {"bridges"},

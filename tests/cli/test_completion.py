@@ -61,7 +61,7 @@ def offered(folder: Path, line: str) -> list[str]:
         ("mechkin view craned/x.yml --mode ", []),
         ("mechkin analyze crank.yaml --table ", ["tip", "drive"]),
         ("mechkin analyze crank.yaml --table d", ["drive"]),
-        ("mechkin analyze crank.yaml --format ", ["csv", "md", "json", "tex", "xlsx"]),
+        ("mechkin analyze crank.yaml --format j", ["json", "jsonl", "jsonl.gz", "jsonl.zst"]),
         ("mechkin analyze crank.yaml --set ", ["r="]),
         ("mechkin analyze craned/x.yml --table ", []),
         ("mechkin analyze nowhere.yaml --table ", []),

@@ -90,12 +90,22 @@ def test_a_command_that_cannot_be_done_says_why_and_what_to_do(
     assert words in run.err
 
 
-def test_a_workbook_without_its_library_is_refused_before_the_run(mechkin, monkeypatch) -> None:
-    monkeypatch.setitem(sys.modules, "openpyxl", None)
+@pytest.mark.parametrize(
+    ("name", "library", "extra"),
+    [
+        ("xlsx", "openpyxl", "xlsx"),
+        *((name, "pyarrow", "parquet") for name in ("parquet", "arrow", "csv.zst", "jsonl.zst")),
+    ],
+)
+def test_a_format_without_its_library_is_refused_before_the_run(
+    mechkin, monkeypatch, name: str, library: str, extra: str
+) -> None:
+    monkeypatch.setitem(sys.modules, library, None)
     monkeypatch.setattr("mechkin_cli.model.load", lambda *_: 1 / 0)
-    run = mechkin("analyze", "crank.yaml", "--format", "csv,xlsx")
+    run = mechkin("analyze", "crank.yaml", "--format", f"csv,{name}")
     assert (run.code, run.out) == (2, "")
-    assert "pip install 'mechkin[xlsx]'" in run.err
+    said = f"--format {name} needs {library}: pip install 'mechkin[{extra}]'"
+    assert said in run.err
 
 
 def test_a_mode_without_a_letter_is_quoted(mechkin) -> None:

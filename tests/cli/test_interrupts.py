@@ -31,7 +31,7 @@ LOADED = [
     "mechkin_cli.cli.analyze",
     "mechkin_cli.model.model",
     "mechkin_cli.kernel._kernel",
-    "mechkin_cli.tables.writers",
+    "mechkin_cli.tables.folder",
     "mechkin_cli.tables.csv",
     "numpy",
     "numpy.linalg",

@@ -21,7 +21,7 @@ from mechkin_cli.cli import interrupts, messages, windows
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.reading import read_document, text
 from mechkin_cli.studies import workers
-from mechkin_cli.tables import writers
+from mechkin_cli.tables import file_set, folder
 
 
 class Renamed:
@@ -180,11 +180,11 @@ def test_files_are_replaced_without_links(tmp_path: Path, monkeypatch: pytest.Mo
     def refused(*_: object, **__: object) -> None:
         raise AssertionError("a symbolic link was made")
 
-    monkeypatch.setattr(writers, "os", Renamed("O_DIRECTORY", "fchmod", symlink=refused))
+    monkeypatch.setattr(file_set, "os", Renamed("O_DIRECTORY", "fchmod", symlink=refused))
     for files in (OLD, NEW):
-        writers.replace_files(tmp_path, files)
+        file_set.replace_files(tmp_path, files)
         assert contents(tmp_path) == files
-    writers.replace_files(tmp_path, {"a.csv": b"0"}, removed=["c.csv", "b.csv"])
+    file_set.replace_files(tmp_path, {"a.csv": b"0"}, removed=["c.csv", "b.csv"])
     assert contents(tmp_path) == {"a.csv": b"0"}
 
 
@@ -192,7 +192,7 @@ def test_a_file_that_is_open_elsewhere_leaves_the_old_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As a workbook does that shows a table: its file cannot be replaced while it is shown."""
-    writers.replace_files(tmp_path, OLD)
+    file_set.replace_files(tmp_path, OLD)
 
     def replace(source: Any, target: Any) -> None:
         if str(target).endswith("b.csv") and b"20" in Path(source).read_bytes():
@@ -201,10 +201,10 @@ def test_a_file_that_is_open_elsewhere_leaves_the_old_files(
             raise error
         os.replace(source, target)
 
-    monkeypatch.setattr(writers, "os", Renamed(replace=replace, link=without_links))
-    monkeypatch.setattr(writers, "_keep", copied)
+    monkeypatch.setattr(file_set, "os", Renamed(replace=replace, link=without_links))
+    monkeypatch.setattr(file_set, "_keep", copied)
     with pytest.raises(UsageError, match=r"b\.csv: no permission .*another program has it open"):
-        writers.replace_files(tmp_path, NEW)
+        file_set.replace_files(tmp_path, NEW)
     assert contents(tmp_path) == OLD
 
 
@@ -220,9 +220,9 @@ def test_without_locks_files_are_written_all_the_same(
     def cannot(*_: object) -> int:
         raise PermissionError(errno.EACCES, "Permission denied")  # of a folder, there
 
-    monkeypatch.setattr(writers, "os", Renamed("O_DIRECTORY", open=cannot))
+    monkeypatch.setattr(folder, "os", Renamed("O_DIRECTORY", open=cannot))
     monkeypatch.setitem(sys.modules, "fcntl", None)
-    claim = writers.Claim(tmp_path / "out")
+    claim = folder.Claim(tmp_path / "out")
     assert not claim.locked
     claim.release()
 

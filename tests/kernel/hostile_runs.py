@@ -478,15 +478,21 @@ class HostileRuns(Hostile):
         columns = [self.text_column(rows) for _ in range(count)]
         labels = [self.either(self.random.choice(["a", "ß", ""]), "\ud800") for _ in range(count)]
         labels = self.either(labels, [*labels, "more"], tuple(labels))
-        missing = self.either(
-            None, np.zeros((rows, count), bool), np.zeros((rows, count + 1), bool)
+        room = self.either(
+            np.zeros(self.random.choice([0, 1, 100, 1 << 16]), np.uint8),
+            np.zeros(100),
+            b"not to be written",
         )
+        whole = self.either([False] * count, [True] * (count + 1))
         changed = self.changed(columns)
 
         def call() -> None:
             threads = self.either(self.random.choice([1, 3]), *INDICES)
             digits = self.either(self.random.randint(0, 15), *INDICES)
-            self.attempt(_kernel.csv_text, labels, columns, missing, digits, False, threads)
+            comma, first = self.random.random() < 0.5, self.either(0, rows, rows + 1, *INDICES)
+            self.attempt(_kernel.csv_header, labels, comma)
+            self.attempt(_kernel.csv_lines, columns, first, room, digits, False, comma, threads)
+            self.attempt(_kernel.json_lines, labels, columns, first, room, whole, threads)
             self.attempt(_kernel.markdown_text, labels, columns, threads)
             for column in columns:
                 self.attempt(_kernel.json_list, column, threads)

@@ -53,7 +53,16 @@ def test_tapes_variants_positions_paths_and_texts_refuse_bad_calls() -> None:
         assert counts[refusal] > 5 * RUNS
     for done in ("variants complete", "positions found", "rows followed", "judge done"):
         assert counts[done] > RUNS / 2
-    for made in ("Tape", "Variants", "Positions", "straight", "along", "csv_text", "markdown_text"):
+    for made in (
+        "Tape",
+        "Variants",
+        "Positions",
+        "straight",
+        "along",
+        "csv_lines",
+        "json_lines",
+        "markdown_text",
+    ):
         assert counts[f"{made} done"] > RUNS / 10
 
 

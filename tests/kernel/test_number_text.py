@@ -2,14 +2,34 @@
 
 import csv
 import io
+import json
+import math
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 
 import numpy as np
 import pytest
 
-from mechkin_cli.kernel._kernel import csv_text, decimal_texts, number_text
+from mechkin_cli.kernel._kernel import (
+    csv_header,
+    csv_lines,
+    decimal_texts,
+    json_lines,
+    number_text,
+)
 
 INFINITY, NAN = float("inf"), float("nan")
+
+
+def csv_text(labels, columns, digits=0, size=1 << 20, **options):
+    """A header and all lines, written into a room of so many bytes at a time."""
+    text, row, room = csv_header(labels).encode(), 0, np.zeros(size, np.uint8)
+    rows = len(columns[0][0] if isinstance(columns[0], tuple) else columns[0])
+    while row < rows:
+        end, pieces = csv_lines(columns, row, room, digits, **options)
+        assert end > row, "no line fits"
+        text += b"".join(room[start : start + count].tobytes() for start, count in pieces)
+        row = end
+    return text
 
 
 def random_doubles(count, seed):
@@ -64,6 +84,16 @@ def test_shortest_has_the_digits_of_repr():
         text = number_text(value)
         assert float(text) == value
         assert text == plain_or_exponent(Decimal(repr(value)))
+
+
+def test_shortest_at_all_powers_and_beside_them():
+    """Of two the way to the number below is half as long; near powers of ten digits run over."""
+    powers = [math.ldexp(1.0, e) for e in range(-1074, 1024)]
+    powers += [float(f"{digit}e{e}") for e in range(-323, 309) for digit in (1, 5, 9)]
+    values = [x for p in powers for x in (math.nextafter(p, 0.0), p, math.nextafter(p, math.inf))]
+    values += [float(2**53 + k) for k in range(-5, 5)] + [k / 8 for k in range(1, 5000)]
+    wrong = [x for x in values if x and number_text(x) != plain_or_exponent(Decimal(repr(x)))]
+    assert wrong == []
 
 
 @pytest.mark.parametrize("digits", [1, 6, 12, 15])
@@ -142,7 +172,7 @@ def test_refused_decimals(decimals):
 @pytest.mark.parametrize("threads", [0, -1, 257])
 def test_refused_threads(threads):
     with pytest.raises(ValueError, match="threads must be 1 to 256"):
-        csv_text(["a"], [np.zeros(1)], threads=threads)
+        csv_lines([np.zeros(1)], 0, np.zeros(100, np.uint8), threads=threads)
 
 
 def test_csv():
@@ -166,10 +196,63 @@ def test_csv_is_read_back_by_the_csv_module():
     ]
 
 
-def test_csv_with_missing_cells_and_significant_digits():
-    columns = [np.array([1 / 3, 2.0]), np.array([4.0, 2 / 3])]
-    missing = np.array([[False, True], [False, False]])
-    assert csv_text(["a", "b"], columns, missing, 12) == b"a,b\n0.333333333333,\n2,0.666666666667\n"
+def test_csv_with_significant_digits():
+    columns = [np.array([1 / 3, 2.0]), np.array([NAN, 2 / 3])]
+    assert csv_text(["a", "b"], columns, 12) == b"a,b\n0.333333333333,\n2,0.666666666667\n"
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_lines_do_not_depend_on_the_room(threads):
+    """Rooms for one line, for some, for a part of a thread's block, and for all."""
+    numbers = np.array(random_doubles(3000, 1)[:4000])
+    words = (np.arange(4000, dtype=np.int32) % 3, ["ok", "", "a longer word, in quotes"])
+    columns = [numbers, words, numbers[::-1].copy()]
+    whole = csv_text(["a", "b", "c"], columns)
+    for size in (100, 1000, 90_001, 1 << 19):
+        assert csv_text(["a", "b", "c"], columns, size=size, threads=threads) == whole
+    end, pieces = csv_lines(columns, 0, np.zeros(50, np.uint8), threads=threads)
+    assert (end, pieces) == (0, [])
+
+
+def test_a_room_is_not_written_beyond_its_end():
+    """Of longest numbers: digits are copied by more bytes than a number has."""
+    room = np.full(1000, 7, np.uint8)
+    column = np.full(100, -1.2345678901234567e-05)
+    for size in range(1, 900, 13):
+        room[:] = 7
+        end, pieces = csv_lines([column, column], 0, room[:size])
+        assert (room[size:] == 7).all()
+        assert end == sum(count for _, count in pieces) / 50
+
+
+def test_the_decimal_comma_stands_in_numbers_alone():
+    words = (np.array([0, 1], dtype=np.int32), ["a.b", "c;d"])
+    room = np.zeros(1000, np.uint8)
+    end, pieces = csv_lines([np.array([0.5, -1e-30]), words], 0, room, decimal_comma=True)
+    assert end == 2
+    assert room[: pieces[0][1]].tobytes() == b'0,5;a.b\n-1e-30;"c;d"\n'
+    assert csv_header(["a.b", "c;d", "e,f"], True) == 'a.b;"c;d";e,f\n'
+
+
+def test_lines_of_json_are_read_back_with_the_kinds_of_their_columns():
+    numbers = [value for value in random_doubles(2000, 3) if value] + [NAN, INFINITY, 3.0, -0.0]
+    rows = len(numbers)
+    words = (np.arange(rows, dtype=np.int32) % 2, ['"ok"', '"\\u03b8"'])
+    columns = [np.array(numbers), np.arange(rows, dtype=float), words]
+    room = np.zeros(rows * 200, np.uint8)
+    end, pieces = json_lines(['"x"', '"row"', '"word"'], columns, 0, room, [False, True, False], 2)
+    assert end == rows
+    text = b"".join(room[start : start + count].tobytes() for start, count in pieces).decode()
+    for row, line in enumerate(text.splitlines()):
+        read = json.loads(line)
+        x = numbers[row]
+        assert read == {
+            "x": x if math.isfinite(x) else None,
+            "row": row,
+            "word": "okθ"[row % 2 * 2 :][: 2 - row % 2],
+        }
+        assert type(read["row"]) is int
+        assert read["x"] is None or type(read["x"]) is float
 
 
 def test_csv_of_the_longest_numbers():
@@ -183,16 +266,26 @@ def test_csv_without_rows():
 
 
 @pytest.mark.parametrize(
-    ("labels", "columns", "missing", "error"),
+    ("columns", "error"),
     [
-        (["a"], [], None, "one label per column"),
-        (["a", "b"], [np.zeros(2), np.zeros(3)], None, "different length"),
-        (["a"], [np.zeros(2)], np.zeros((1, 2), dtype=bool), "shape"),
-        (["a"], [(np.array([2], dtype=np.int32), ["x", "y"])], None, "stands for none"),
-        (["a"], [(np.array([-1], dtype=np.int32), ["x"])], None, "stands for none"),
-        (["a"], [(np.array([0], dtype=np.int32),)], None, "pair"),
+        ([np.zeros(2), np.zeros(3)], "different length"),
+        ([(np.array([2], dtype=np.int32), ["x", "y"])], "stands for none"),
+        ([(np.array([-1], dtype=np.int32), ["x"])], "stands for none"),
+        ([(np.array([0], dtype=np.int32),)], "pair"),
     ],
 )
-def test_refused_tables(labels, columns, missing, error):
+def test_refused_tables(columns, error):
     with pytest.raises(ValueError, match=error):
-        csv_text(labels, columns, missing)
+        csv_lines(columns, 0, np.zeros(100, np.uint8))
+
+
+def test_refused_places_and_keys():
+    room = np.zeros(100, np.uint8)
+    with pytest.raises(ValueError, match="behind the last"):
+        csv_lines([np.zeros(2)], 3, room)
+    with pytest.raises(ValueError, match="one label per column"):
+        json_lines([], [np.zeros(1)], 0, room, [])
+    with pytest.raises(ValueError, match="whole"):
+        json_lines(['"x"'], [np.zeros(1)], 0, room, [])
+    with pytest.raises(TypeError):
+        csv_lines([np.zeros(1)], 0, b"not to be written")

@@ -19,7 +19,7 @@ import pytest
 from cli import files
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.writers import LISTING, write_files
+from mechkin_cli.tables.folder import LISTING, write_files
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 MECHKIN = [sys.executable, "-P", "-m", "mechkin_cli"]

@@ -251,7 +251,7 @@ def test_killed_at_any_moment_it_goes_on(tmp_path: Path, processes: str) -> None
 
 
 def test_two_cannot_write_to_one_folder(model: mk.Model, tmp_path: Path) -> None:
-    from mechkin_cli.tables.writers import Claim
+    from mechkin_cli.tables.folder import Claim
 
     claim = Claim(tmp_path / "out")
     try:

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables.writers import OutputFolder, write_files
+from mechkin_cli.tables.folder import OutputFolder, write_files
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
 STEP = 5 if TIMES == 1 else 3

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.tables import writers as file_set
-from mechkin_cli.tables.writers import write_files
+from mechkin_cli.tables import file_set
+from mechkin_cli.tables.folder import write_files
 
 CONTENT = {"a.csv": b"x\n1\n", "b.md": b"# b\n"}
 

@@ -1,5 +1,7 @@
 """The table of output formats: one entry is all that a new one needs."""
 
+import json
+
 import pytest
 
 from mechkin_cli.cli import analyze
@@ -9,6 +11,7 @@ from mechkin_cli.tables.csv import csv_bytes
 from mechkin_cli.tables.markup import rows_table
 from mechkin_cli.tables.results import Results
 from mechkin_cli.tables.table import evaluate
+from mechkin_cli.tables.writers import STREAM_FORMATS
 
 
 @pytest.fixture
@@ -23,12 +26,21 @@ def test_each_format_writes_its_files(results):
         "json": ["analysis.json"],
         "tex": ["table.tex"],
         "xlsx": ["analysis.xlsx"],
+        **{name: [f"table.{name}"] for name in STREAM_FORMATS if name != "csv"},
     }
     assert list(writers.WRITERS) == list(kinds)
     for name, files in kinds.items():
-        if name == "xlsx":
-            pytest.importorskip("openpyxl")
-        assert list(writers.written_files([results], [name])) == [*files, "rows.csv"]
+        library, _ = writers.NEEDS.get(name, ("numpy", ""))
+        pytest.importorskip(library)
+        rows = f"rows.{name if name in STREAM_FORMATS else 'csv'}"
+        assert list(writers.written_files([results], [name])) == [*files, rows]
+
+
+def test_rows_are_in_the_formats_of_streams_that_are_asked_for(results):
+    found = writers.written_files([results], ["jsonl", "md", "csv.gz"])
+    assert list(found) == ["table.jsonl", "table.md", "table.csv.gz", "rows.jsonl", "rows.csv.gz"]
+    row = json.loads(found["rows.jsonl"].splitlines()[0])
+    assert (row["row"], row["status"]) == (1, "ok")
 
 
 def test_rows_come_with_every_format_and_alone(results):

@@ -3,7 +3,7 @@
 // (array, scientific, decimals, trimmed); one of words a pair of int32 codes and the texts they stand for.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -17,7 +17,7 @@ using namespace nb::literals;
 namespace {
 
 using Codes = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
-using Missing = nb::ndarray<const bool, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Memory = nb::ndarray<std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
 constexpr int MOST_DECIMALS = 1000;
 constexpr int MOST_THREADS = 256;
@@ -77,6 +77,12 @@ using Field = std::string (*)(std::string_view);
 
 std::string as_it_is(std::string_view text) { return std::string(text); }
 
+std::string between_commas(std::string_view text) { return csv_field(text); }
+
+std::string between_semicolons(std::string_view text) { return csv_field(text, ';'); }
+
+Field csv_field_of(bool decimal_comma) { return decimal_comma ? between_semicolons : between_commas; }
+
 void add_words(TextTable& table, const nb::tuple& pair, Field field) {
   if (pair.size() != 2) throw nb::value_error("a text column is a pair of codes and texts");
   const auto given = read<Codes>(pair[0], "the codes of a text column are a C-contiguous array of int32");
@@ -106,9 +112,7 @@ void add_column(TextTable& table, nb::handle given, const NumberStyle& style, Fi
   add_numbers(table, parts[0], own);
 }
 
-TextTable table_of(const std::vector<std::string>& labels, const nb::list& columns, const NumberStyle& style,
-               Field field) {
-  if (labels.size() != columns.size()) throw nb::value_error("one label per column");
+TextTable table_of(const nb::list& columns, const NumberStyle& style, Field field) {
   TextTable table;
   for (const nb::handle column : columns) add_column(table, column, style, field);
   return table;
@@ -134,26 +138,62 @@ nb::bytes written(const Write& write) {
   return nb::steal<nb::bytes>(bytes);
 }
 
-nb::bytes csv(const std::vector<std::string>& labels, const nb::list& columns, const std::optional<Missing>& missing,
-              int significant_digits, bool quoted_empty, int threads) {
-  checked_threads(threads);
-  const TextTable table = table_of(labels, columns, significant(significant_digits), csv_field);
-  if (missing && (missing->shape(0) != table.rows || missing->shape(1) != labels.size()))
-    throw nb::value_error("missing must have the shape (rows, columns)");
+void check_labels(const std::vector<std::string>& labels, const nb::list& columns) {
+  if (labels.size() != columns.size()) throw nb::value_error("one label per column");
+}
+
+std::string csv_header(const std::vector<std::string>& labels, bool decimal_comma) {
   std::string header;
   for (const std::string& label : labels) {
-    if (&label != &labels.front()) header += ',';
-    header += csv_field(label);
+    if (&label != &labels.front()) header += decimal_comma ? ';' : ',';
+    header += csv_field_of(decimal_comma)(label);
   }
-  const auto* mask = missing ? reinterpret_cast<const unsigned char*>(missing->data()) : nullptr;
-  return written([&](const Room& room) {
-    csv_text(header, table.columns, table.rows, mask, quoted_empty, threads, room);
+  return header += '\n';
+}
+
+// The row behind the last line, and the start and size of each piece of the room that lines stand in.
+using Written = std::pair<std::size_t, std::vector<std::pair<std::size_t, std::size_t>>>;
+
+// Runs `write(room, size, pieces)` without the GIL.
+template <class Write>
+Written lines(const TextTable& table, std::size_t first, Memory& room, const Write& write) {
+  if (first > table.rows) throw nb::value_error("the first row lies behind the last");
+  std::vector<LinePiece> pieces;
+  Written written;
+  {
+    const nb::gil_scoped_release released;
+    written.first = write(reinterpret_cast<char*>(room.data()), room.shape(0), pieces);
+  }
+  for (const LinePiece& piece : pieces) written.second.emplace_back(piece.start, piece.size);
+  return written;
+}
+
+Written csv(const nb::list& columns, std::size_t first, Memory room, int significant_digits, bool quoted_empty,
+            bool decimal_comma, int threads) {
+  checked_threads(threads);
+  const TextTable table = table_of(columns, significant(significant_digits), csv_field_of(decimal_comma));
+  return lines(table, first, room, [&](char* memory, std::size_t size, std::vector<LinePiece>& pieces) {
+    return csv_lines(table.columns, first, table.rows, {quoted_empty, decimal_comma}, threads, memory, size, pieces);
+  });
+}
+
+Written json(const std::vector<std::string>& keys, const nb::list& columns, std::size_t first, Memory room,
+             const std::vector<bool>& whole, int threads) {
+  checked_threads(threads);
+  check_labels(keys, columns);
+  if (whole.size() != keys.size()) throw nb::value_error("for each column, whether its numbers are whole");
+  TextTable table;
+  for (std::size_t c = 0; c < keys.size(); ++c)
+    add_column(table, columns[c], {whole[c] ? Notation::json : Notation::real, 0, false}, as_it_is);
+  return lines(table, first, room, [&](char* memory, std::size_t size, std::vector<LinePiece>& pieces) {
+    return json_lines(keys, table.columns, first, table.rows, threads, memory, size, pieces);
   });
 }
 
 nb::bytes markdown(const std::vector<std::string>& headers, const nb::list& columns, int threads) {
   checked_threads(threads);
-  const TextTable table = table_of(headers, columns, {}, as_it_is);
+  check_labels(headers, columns);
+  const TextTable table = table_of(columns, {}, as_it_is);
   return written([&](const Room& room) { markdown_text(headers, table.columns, table.rows, threads, room); });
 }
 
@@ -180,8 +220,10 @@ std::vector<std::string> decimal_texts(const nb::tuple& column) {
 void bind_text(nb::module_& m) {
   m.def("number_text", &one_number, "x"_a, "significant_digits"_a = 0);
   m.def("decimal_texts", &decimal_texts, "column"_a);
-  m.def("csv_text", &csv, "labels"_a, "columns"_a, "missing"_a.none() = nb::none(), "significant_digits"_a = 0,
-        "quoted_empty"_a = false, "threads"_a = 1);
+  m.def("csv_header", &csv_header, "labels"_a, "decimal_comma"_a = false);
+  m.def("csv_lines", &csv, "columns"_a, "first"_a, "room"_a, "significant_digits"_a = 0, "quoted_empty"_a = false,
+        "decimal_comma"_a = false, "threads"_a = 1);
+  m.def("json_lines", &json, "keys"_a, "columns"_a, "first"_a, "room"_a, "whole"_a, "threads"_a = 1);
   m.def("markdown_text", &markdown, "headers"_a, "columns"_a, "threads"_a = 1);
   m.def("json_list", &json_list, "column"_a, "threads"_a = 1);
 }

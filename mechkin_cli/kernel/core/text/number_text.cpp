@@ -4,9 +4,110 @@
 #include <cstdint>
 #include <cstring>
 
+#include "text/shortest.hpp"
+
 namespace {
 
 bool is_finite(double x) { return x - x == 0; }
+
+// Pairs of digits, "00" to "99".
+struct Pairs {
+  char text[200] = {};
+  constexpr Pairs() {
+    for (int i = 0; i < 100; ++i) {
+      text[2 * i] = (char)('0' + i / 10);
+      text[2 * i + 1] = (char)('0' + i % 10);
+    }
+  }
+};
+
+constexpr Pairs PAIRS;
+
+void put_pair(std::uint32_t pair, char* out) { std::memcpy(out, PAIRS.text + 2 * pair, 2); }
+
+void put_eight(std::uint32_t number, char* out) {
+  const std::uint32_t high = number / 10000, low = number % 10000;
+  put_pair(high / 100, out);
+  put_pair(high % 100, out + 2);
+  put_pair(low / 100, out + 4);
+  put_pair(low % 100, out + 6);
+}
+
+constexpr int MOST_DIGITS = 17;  // of the shortest that a double needs
+
+struct PowersOfTen {
+  std::uint64_t of[MOST_DIGITS + 1] = {};
+  constexpr PowersOfTen() {
+    std::uint64_t power = 1;
+    for (std::uint64_t& one : of) {
+      one = power;
+      power *= 10;
+    }
+  }
+};
+
+constexpr PowersOfTen POWERS_OF_TEN;
+
+// Digits of a number from 1 to below 10^17.
+int digit_count(std::uint64_t number) {
+  const int below = (64 - __builtin_clzll(number)) * 1233 >> 12;  // bits times log10(2)
+  return below + (number >= POWERS_OF_TEN.of[below]);
+}
+
+// The digits of a number from 1 to below 10^17 at `out` (24 characters); returns how many.
+int put_digits(std::uint64_t number, char* out) {
+  char text[24 + MOST_DIGITS];
+  const std::uint64_t high = number / 100000000;
+  text[7] = (char)('0' + high / 100000000);
+  put_eight((std::uint32_t)(high % 100000000), text + 8);
+  put_eight((std::uint32_t)(number % 100000000), text + 16);
+  const int count = digit_count(number);
+  std::memcpy(out, text + 24 - count, MOST_DIGITS);
+  return count;
+}
+
+// Without the zeros that end it.
+DecimalNumber trimmed(DecimalNumber decimal) {
+  if (decimal.digits % 10) return decimal;
+  for (; decimal.digits % 10000 == 0; decimal.exponent += 4) decimal.digits /= 10000;
+  for (; decimal.digits % 10 == 0; ++decimal.exponent) decimal.digits /= 10;
+  return decimal;
+}
+
+std::size_t put_plain(const char* digits, int count, int exponent, char* out) {
+  const int whole = count + exponent;  // digits before the point
+  if (exponent >= 0) {
+    std::memcpy(out, digits, MOST_DIGITS);
+    std::memset(out + count, '0', (std::size_t)exponent);
+    return (std::size_t)whole;
+  }
+  if (whole > 0) {
+    std::memcpy(out, digits, MOST_DIGITS);
+    std::memcpy(out + whole + 1, digits + whole, (std::size_t)(count - whole));
+    out[whole] = '.';
+    return (std::size_t)count + 1;
+  }
+  std::memcpy(out, "0.000000", 8);  // no plain number has more than four zeros behind its point
+  std::memcpy(out + 2 - whole, digits, MOST_DIGITS);
+  return (std::size_t)(2 - whole + count);
+}
+
+std::size_t put_scientific(const char* digits, int count, int exponent, char* out) {
+  char* at = out;
+  *at++ = digits[0];
+  if (count > 1) {
+    *at++ = '.';
+    std::memcpy(at, digits + 1, (std::size_t)(count - 1));
+    at += count - 1;
+  }
+  const int power = count - 1 + exponent;
+  *at++ = 'e';
+  *at++ = power < 0 ? '-' : '+';
+  const auto size = (std::uint32_t)(power < 0 ? -power : power);
+  if (size >= 100) *at++ = (char)('0' + size / 100);
+  put_pair(size % 100, at);
+  return (std::size_t)(at + 2 - out);
+}
 
 // Shortest digits, without an exponent for least <= |x| < 1e16.
 std::size_t shortest(double x, double least, char* out) {
@@ -15,9 +116,13 @@ std::size_t shortest(double x, double least, char* out) {
     *out = '0';
     return 1;
   }
+  const DecimalNumber decimal = trimmed(shortest_decimal(magnitude));
+  char digits[24 + MOST_DIGITS];
+  const int count = put_digits(decimal.digits, digits);
+  const bool sign = x < 0;
+  *out = '-';
   const bool plain = magnitude >= least && magnitude < 1e16;
-  const auto format = plain ? std::chars_format::fixed : std::chars_format::scientific;
-  return (std::size_t)(std::to_chars(out, out + NUMBER_TEXT_SIZE, x, format).ptr - out);
+  return (plain ? put_plain : put_scientific)(digits, count, decimal.exponent, out + sign) + sign;
 }
 
 }  // namespace
@@ -36,6 +141,13 @@ std::size_t json_text(double x, char* out) {
   if (is_finite(x)) return shortest(x, 1e-4, out);
   std::memcpy(out, "null", 4);
   return 4;
+}
+
+std::size_t real_text(double x, char* out) {
+  const std::size_t size = json_text(x, out);
+  if (!(x > -1e16 && x < 1e16) || x != (double)(long long)x) return size;
+  std::memcpy(out + size, ".0", 2);
+  return size + 2;
 }
 
 namespace {

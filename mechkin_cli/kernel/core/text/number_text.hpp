@@ -23,6 +23,9 @@ std::size_t number_text(double x, int significant_digits, char* out);
 // JSON; `null` for what is not finite.
 std::size_t json_text(double x, char* out);
 
+// The same as a number that readers take for a double where they guess the kind of a column: whole ones end in `.0`.
+std::size_t real_text(double x, char* out);
+
 // Room for fixed_text and scientific_text: the 309 digits of the largest double, sign, point, decimals.
 constexpr std::size_t decimal_text_size(int decimals) { return (std::size_t)decimals + 320; }
 

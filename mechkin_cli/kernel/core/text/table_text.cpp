@@ -20,6 +20,7 @@ std::size_t styled_text(const NumberStyle& style, double x, char* out) {
     case Notation::fixed: return fixed_text(x, style.digits, out);
     case Notation::scientific: return scientific_text(x, style.digits, out);
     case Notation::json: return json_text(x, out);
+    case Notation::real: return real_text(x, out);
   }
   return 0;
 }
@@ -77,8 +78,38 @@ void write_blocks(const std::string& before, const std::string& after, std::size
 
 }  // namespace
 
-std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+namespace {
+
+// Writes lines of at most `capacity` characters into a room. One thread writes them without a gap; more of them write
+// blocks that begin where the longest lines before would end.
+template <class Put>
+std::size_t write_lines(std::size_t first, std::size_t rows, std::size_t capacity, int threads, char* room,
+                        std::size_t size, std::vector<LinePiece>& pieces, const Put& put_row) {
+  pieces.clear();
+  const std::size_t fit = std::min(rows - first, size / capacity), end = first + fit;
+  if (threads <= 1 || fit <= BLOCK_ROWS) {
+    char* at = room;
+    for (std::size_t row = first; row < end; ++row) at = put_row(row, at);
+    if (fit) pieces.push_back({0, (std::size_t)(at - room)});
+    return end;
+  }
+  pieces.resize(block_count(fit));
+  for_each_block(fit, threads, [&] {
+    return [&](std::size_t block, std::size_t begin, std::size_t finish) {
+      const std::size_t start = begin * capacity;
+      char* at = room + start;
+      for (std::size_t row = begin; row < finish; ++row) at = put_row(first + row, at);
+      pieces[block] = {start, (std::size_t)(at - room) - start};
+    };
+  });
+  return end;
+}
+
+}  // namespace
+
+std::string csv_field(std::string_view text, char between) {
+  const char special[] = {between, '"', '\r', '\n', '\0'};
+  if (text.find_first_of(special) == std::string_view::npos) return std::string(text);
   std::string field = "\"";
   for (const char c : text) {
     if (c == '"') field += '"';
@@ -87,17 +118,39 @@ std::string csv_field(std::string_view text) {
   return field += '"';
 }
 
-void csv_text(const std::string& header, const std::vector<TextColumn>& columns, std::size_t rows,
-              const unsigned char* missing, bool quoted_empty, int threads, const Room& room) {
+std::size_t csv_lines(const std::vector<TextColumn>& columns, std::size_t first, std::size_t rows,
+                      const CsvStyle& style, int threads, char* room, std::size_t size, std::vector<LinePiece>& pieces) {
   std::size_t capacity = 3;
   for (const TextColumn& column : columns) capacity += cell_capacity(column) + 1;
-  write_blocks(header + '\n', "", rows, capacity, threads, room, [&](std::size_t row, char* at) {
+  const char between = style.decimal_comma ? ';' : ',';
+  return write_lines(first, rows, capacity, threads, room, size, pieces, [&](std::size_t row, char* at) {
     char* const line = at;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (c) *at++ = ',';
-      if (!missing || !missing[row * columns.size() + c]) at = put_cell(columns[c], row, at);
+    for (const TextColumn& column : columns) {
+      if (&column != columns.data()) *at++ = between;
+      char* const cell = at;
+      at = put_cell(column, row, at);
+      if (style.decimal_comma && column.numbers) std::replace(cell, at, '.', ',');
     }
-    if (quoted_empty && at == line) at = put("\"\"", at);
+    if (style.quoted_empty && at == line) at = put("\"\"", at);
+    *at++ = '\n';
+    return at;
+  });
+}
+
+std::size_t json_lines(const std::vector<std::string>& keys, const std::vector<TextColumn>& columns,
+                       std::size_t first, std::size_t rows, int threads, char* room, std::size_t size,
+                       std::vector<LinePiece>& pieces) {
+  std::vector<std::string> before;  // what stands in front of each cell
+  std::size_t capacity = 3;
+  for (const std::string& key : keys) before.push_back((before.empty() ? '{' : ',') + key + ':');
+  for (std::size_t c = 0; c < columns.size(); ++c) capacity += before[c].size() + cell_capacity(columns[c]);
+  return write_lines(first, rows, capacity, threads, room, size, pieces, [&](std::size_t row, char* at) {
+    if (columns.empty()) *at++ = '{';
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      at = put(before[c], at);
+      at = put_cell(columns[c], row, at);
+    }
+    *at++ = '}';
     *at++ = '\n';
     return at;
   });

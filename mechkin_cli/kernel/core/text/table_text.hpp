@@ -1,4 +1,4 @@
-// Whole tables as text: CSV, the table of a Markdown page, lists of JSON.
+// Tables as text: lines of CSV and of JSON, the table of a Markdown page, lists of JSON.
 //
 // Rows are cut into blocks that are written independently, by several threads where asked; the text does not
 // depend on their number. Nothing is kept per cell: memory beside the text is that of a block.
@@ -12,7 +12,7 @@
 
 #include "text/number_text.hpp"
 
-enum class Notation { shortest, significant, fixed, scientific, json };
+enum class Notation { shortest, significant, fixed, scientific, json, real };
 
 // How a column's numbers are written; `digits` as the notation needs them.
 struct NumberStyle {
@@ -32,14 +32,31 @@ struct TextColumn {
 // Room for the text of a given size, once it is known; null, and no text is written, where there is none.
 using Room = std::function<char*(std::size_t)>;
 
-// A field of RFC 4180: in quotes where it holds a comma, a quote or a line break.
-std::string csv_field(std::string_view text);
+// A field of RFC 4180: in quotes where it holds the mark that parts cells, a quote or a line break.
+std::string csv_field(std::string_view text, char between = ',');
 
-// Header line (fields already as `csv_field`) and one line per row, LF endings. `missing`, row-major rows x
-// columns, or nullptr, empties cells. The empty cells of a single column are written `""` where `quoted_empty`,
-// as many readers skip blank lines.
-void csv_text(const std::string& header, const std::vector<TextColumn>& columns, std::size_t rows,
-              const unsigned char* missing, bool quoted_empty, int threads, const Room& room);
+// How lines of CSV are written: with `decimal_comma` semicolons part the cells; the empty cells of a single column are
+// `""` where `quoted_empty`, as many readers skip blank lines.
+struct CsvStyle {
+  bool quoted_empty = false;
+  bool decimal_comma = false;
+};
+
+// Where lines stand in the room that they were written into.
+struct LinePiece {
+  std::size_t start = 0, size = 0;
+};
+
+// One line per row, LF endings, from the row `first` on, as many as fit into a room of `size` characters. They stand
+// in `pieces`, in order. Returns the row behind the last one; `first` where not even one line fits. Fields of words
+// are as `csv_field` already.
+std::size_t csv_lines(const std::vector<TextColumn>& columns, std::size_t first, std::size_t rows,
+                      const CsvStyle& style, int threads, char* room, std::size_t size, std::vector<LinePiece>& pieces);
+
+// An object of JSON, `{"theta":0.5,"status":"ok"}`; keys and the fields of words are JSON already.
+std::size_t json_lines(const std::vector<std::string>& keys, const std::vector<TextColumn>& columns,
+                       std::size_t first, std::size_t rows, int threads, char* room, std::size_t size,
+                       std::vector<LinePiece>& pieces);
 
 // Lines of a header, of alignment and one per row, every column padded to one width (characters, not bytes, at
 // least 4): words to the left, numbers to the right.

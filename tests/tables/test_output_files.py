@@ -1,0 +1,161 @@
+"""Files of a run that are written as they come: they take their places together, or none does."""
+
+from __future__ import annotations
+
+import errno
+import gc
+import os
+from pathlib import Path
+
+import pytest
+from tables.streamed import cut, random_table
+from tables.test_file_set import DONE, KILLED, REFUSED, child, debris, die, fail, files, interrupt
+
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.tables import OutputFolder, TableStream, folder as room, heading_of, write_table
+from mechkin_cli.tables.writers import STREAM_FORMATS
+from mechkin_cli.tolerances import HELD_BYTES, TEXT_ROOM
+
+OLD = {"a.csv": b"old a" * 9, "b.md": b"old b", "other.csv": b"of the run before" * 9}
+NEW = {"a.csv": b"new a" * 9, "b.md": b"new b", "c.csv": b"new c" * 9}
+
+
+def write_run(folder: Path, content: dict[str, bytes]) -> None:
+    """A run that writes its files in parts, the large ones into the attempt's folder."""
+    with OutputFolder(folder) as output:
+        for name, data in content.items():
+            with output.begin(name) as file, room.refusal(file.target):
+                for start in range(0, len(data), 7):
+                    file.write(data[start : start + 7])
+        output.write_run()
+
+
+@pytest.fixture
+def little_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(room, "HELD_BYTES", 20)
+
+
+@pytest.mark.usefixtures("little_held")
+@pytest.mark.parametrize("fault", [die, fail, interrupt])
+@pytest.mark.parametrize("before", [{}, OLD], ids=["first run", "second run"])
+def test_a_fault_at_every_operation(tmp_path: Path, before: dict[str, bytes], fault) -> None:
+    """What the run before wrote goes at the same moment, too."""
+    seen = set()
+    for number in range(1, 500):
+        folder = tmp_path / str(number) / "out"
+        if before:
+            write_run(folder, before)
+        code = child(lambda folder=folder: write_run(folder, NEW), number, fault)
+        if code == 77:  # all operations were met
+            break
+        left = files(folder) if folder.is_dir() else {}
+        # where the listing cannot be read, nothing is known to be of the run before
+        beside = {"other.csv": OLD["other.csv"]} if fault is fail and before else {}
+        assert left in (before, NEW, NEW | beside), number
+        seen.add(left == before)
+        assert code in {die: (KILLED,), fail: (DONE, REFUSED), interrupt: (DONE, 130)}[fault]
+        if code == REFUSED:
+            assert left == before
+        if fault is interrupt and folder.is_dir():
+            assert debris(folder) in ([], [room.LISTING])
+        write_run(folder, {"next.csv": b"next" * 9})
+        assert debris(folder) == [room.LISTING]
+        assert files(folder) == {"next.csv": b"next" * 9} | (beside if left == NEW | beside else {})
+    assert number > 30
+    assert seen == {True, False}
+
+
+@pytest.mark.usefixtures("little_held")
+def test_a_small_file_that_is_as_before_stays_and_a_large_one_is_replaced(tmp_path: Path) -> None:
+    write_run(tmp_path, OLD)
+    before = {name: (tmp_path / name).stat().st_ino for name in OLD}
+    write_run(tmp_path, OLD)
+    assert files(tmp_path) == OLD
+    assert [n for n in OLD if (tmp_path / n).stat().st_ino == before[n]] == ["b.md"]
+
+
+@pytest.mark.usefixtures("little_held")
+def test_a_file_that_is_begun_again_is_the_last_one(tmp_path: Path) -> None:
+    with OutputFolder(tmp_path) as output:
+        for content in (b"1" * 50, b"2" * 5, b"3" * 60):
+            output.add("a.csv", content)
+        written, _, _ = output.write_run()
+    assert (files(tmp_path), written) == ({"a.csv": b"3" * 60}, [tmp_path / "a.csv"])
+
+
+@pytest.mark.usefixtures("little_held")
+def test_an_error_of_the_run_leaves_nothing(tmp_path: Path) -> None:
+    write_run(tmp_path, OLD)
+
+    def fails() -> None:
+        with OutputFolder(tmp_path) as output, output.begin("a.csv") as file:
+            file.write(b"x" * 100)
+            assert len(debris(tmp_path)) == 2
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fails()
+    assert (files(tmp_path), debris(tmp_path)) == (OLD, [room.LISTING])
+
+
+def test_a_place_that_cannot_be_written_is_refused_when_a_file_is_begun(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.csv")
+    with OutputFolder(tmp_path) as output, pytest.raises(UsageError, match="a device or a pipe"):
+        output.begin("a.csv")
+    (tmp_path / "file").write_bytes(b"")
+    with (
+        OutputFolder(tmp_path / "file") as output,
+        pytest.raises(UsageError, match=r"b\.csv: a file"),
+    ):
+        output.begin("b.csv")
+
+
+@pytest.mark.parametrize("format", STREAM_FORMATS)
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_a_full_disk_is_told_with_the_rows_that_were_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, format: str
+) -> None:
+    """And what packs or frames the file says nothing more when it goes."""
+    pytest.importorskip("pyarrow")
+    table = random_table(200_000)
+    left = [1_000_000]
+    whole = room._write_all
+
+    def write_all(stream, data) -> None:
+        if left[0] < len(data):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        left[0] -= len(data)
+        whole(stream, data)
+
+    monkeypatch.setattr(room, "_write_all", write_all)
+    monkeypatch.setattr(room, "HELD_BYTES", 1000)
+
+    def fails() -> None:
+        with OutputFolder(tmp_path / "out") as output, output.begin(f"t.{format}") as file:
+            write_table(TableStream(heading_of(table), cut(table, 1000)), format, file)
+
+    with pytest.raises(UsageError) as caught:
+        fails()
+    gc.collect()
+    words = str(caught.value).partition(" rows: the disk is full; free some space or choose")
+    assert words[1]
+    start, rows = words[0].split(" after ")
+    assert start == f"cannot write {tmp_path}/out/t.{format}"
+    assert int(rows) % 1000 == 0
+    assert 0 < int(rows) < 200_000
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_memory_of_a_stream_is_that_of_a_block(tmp_path: Path) -> None:
+    """While a file ten times as large as what is held is written."""
+    import tracemalloc
+
+    block = random_table(2000)
+    tracemalloc.start()
+    with OutputFolder(tmp_path) as output, output.begin("t.csv") as file:
+        stream = TableStream(heading_of(block), (block.columns for _ in range(100)))
+        assert write_table(stream, "csv", file) == 200_000
+        _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert file.digest.size > 10 * HELD_BYTES
+    assert peak < TEXT_ROOM + 4 * HELD_BYTES  # of the room a block touches what it needs
