@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.certificate import *
     from mechkin_cli.analysis.design import *
     from mechkin_cli.analysis.runs import *
+    from mechkin_cli.analysis.stream import *
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -22,6 +23,7 @@ __getattr__, __dir__ = lazy_names(
         "analysis": "Analysis Solvable",
         "certificate": "Certificate",
         "design": "Design",
-        "runs": "a_packing input_values respond response_name run_name run_sweep",
+        "runs": "a_packing input_values respond response_name run_name run_sweep stream_sweep",
+        "stream": "Block Stream",
     },
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from mechkin_cli import response as response_room, tolerances
 from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli.analysis.stream import Stream
 from mechkin_cli.arguments import (
     Setting,
     a_setting,
@@ -24,16 +25,19 @@ from mechkin_cli.expressions import ExpressionError, constant_in_file_units, loo
 from mechkin_cli.kernel.functions import check_threads, check_width
 from mechkin_cli.mechanism import DrivenInput, Problem, dimension_of, read_by
 from mechkin_cli.memo import remembered
-from mechkin_cli.record import replace
+from mechkin_cli.record import NamedTuple, replace
 from mechkin_cli.session import Packing, Session, turn_of
 from mechkin_cli.structure import UnsolvableGraph
-from mechkin_cli.sweep import analyze, refuse_loaded_spin
+from mechkin_cli.sweep import Sweep, refuse_loaded_spin
 from mechkin_cli.tables import TableLayout, chosen, row_texts
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.building import Built
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.mechanism import AnyBalance
+    from mechkin_cli.tables import CoefficientsLayout
 
 QUANTITIES = (
     "quantities are such as J.theta, J.force of a joint J, or p.position of a point p, or "
@@ -201,16 +205,64 @@ def _read_by(session: Session, layouts: tuple[TableLayout, ...]) -> list[str]:
     return used_quantities(layouts, session.problem.quantities())
 
 
-def known_mode(analysis: Analysis) -> Analysis:
-    """The analysis of a mode that was asked for.
+def refuse_unknown_mode(diagnostics: Iterable[Diagnostic]) -> None:
+    """Of a run in a mode that was asked for, by what it says.
 
     Raises:
         UsageError: there is no such mode.
     """
-    for diagnostic in analysis.diagnostics:
+    for diagnostic in diagnostics:
         if diagnostic.code == "no-such-mode":
             raise UsageError(f"{diagnostic.message}: {diagnostic.measured}")
-    return analysis
+
+
+class _Asked(NamedTuple):
+    """A sweep that is asked for: with its tables, the quantities that they read beside those named,
+    and what else the file wants of it."""
+
+    sweep: Sweep
+    layouts: tuple[TableLayout, ...]
+    names: tuple[str, ...]
+    systems: tuple[CoefficientsLayout, ...]
+    balances: tuple[AnyBalance, ...]
+
+
+def _asked(
+    model: Solvable,
+    quantities: Iterable[str] | None,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    closed_at: Sequence[str] | None,
+    packing: Packing,
+    *,
+    balanced: bool = True,
+) -> _Asked:
+    """The sweep of a model as it is asked for; arguments and errors are those of `Model.analyze`.
+    `balanced`: with the balances of the file."""
+    if SWEEP not in model.runs:
+        raise UsageError(
+            f"{model.name} has no sweep: its file has no motion:; its responses are run by "
+            f'respond("{model.runs[0]}")'
+        )
+    session, problem = model.design.session, model.problem
+    if closed_at is not None:
+        session = _closed_at(problem, closed_at)
+    if mode is not None:
+        a_text("mode", mode, '"A"')
+        session = session.in_mode(mode)
+    layouts = chosen_tables(model.built, tables, SWEEP)
+    balances = chosen(model.built.balances, tables) if balanced else ()
+    named = wanted_names(session, SWEEP, (), quantities)
+    names = [*wanted_names(session, SWEEP, layouts, None), *named]
+    asked = tuple(names)
+    if balances:
+        names += read_by(balances, problem)
+    refuse_loaded_spin(session, names)
+    # the table of a file that has none shows rates, too
+    own = tuple(table for table in layouts if table.name == SWEEP)
+    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
+    sweep = Sweep(session.packed(packing), names, unasked=unasked)
+    return _Asked(sweep, layouts, asked, chosen(model.built.coefficients, tables), balances)
 
 
 def run_sweep(
@@ -226,35 +278,34 @@ def run_sweep(
 ) -> Analysis:
     """Runs the sweep of a model; arguments and errors are those of `Model.analyze`."""
     packing = a_packing(lanes, threads)
-    if SWEEP not in model.runs:
-        raise UsageError(
-            f"{model.name} has no sweep: its file has no motion:; its responses are run by "
-            f'respond("{model.runs[0]}")'
-        )
-    session, problem = model.design.session, model.problem
-    if closed_at is not None:
-        session = _closed_at(problem, closed_at)
+    asked = _asked(model, quantities, tables, mode, closed_at, packing)
+    result = asked.sweep.run()
+    analysis = Analysis(
+        model, asked.layouts, result, SWEEP, asked.systems, asked.balances, asked.names
+    )
     if mode is not None:
-        a_text("mode", mode, '"A"')
-        session = session.in_mode(mode)
-    layouts = chosen_tables(model.built, tables, SWEEP)
-    balances = chosen(model.built.balances, tables)
-    named = wanted_names(session, SWEEP, (), quantities)
-    names = [*wanted_names(session, SWEEP, layouts, None), *named]
-    asked = tuple(names)
-    if balances:
-        names += read_by(balances, problem)
-    refuse_loaded_spin(session, names)
-    # the table of a file that has none shows rates, too
-    own = tuple(table for table in layouts if table.name == SWEEP)
-    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
-    result = analyze(session.packed(packing), names, unasked=unasked)
-    systems = chosen(model.built.coefficients, tables)
-    analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
-    analysis = analysis if mode is None else known_mode(analysis)
+        refuse_unknown_mode(analysis.diagnostics)
     if errors:
         _ = analysis.errors
     return analysis
+
+
+def stream_sweep(
+    model: Solvable,
+    quantities: Iterable[str] | None,
+    rows: int,
+    tables: Sequence[str] | None,
+    mode: str | None,
+    lanes: int,
+    threads: int,
+) -> Stream:
+    """The sweep of a model block by block; arguments and errors are those of `Model.stream`."""
+    packing = a_packing(lanes, threads)
+    rows = a_whole_number("rows", rows, "rows of a block", least=1)
+    asked = _asked(model, quantities, tables, mode, None, packing, balanced=False)
+    if mode is not None:
+        refuse_unknown_mode(asked.sweep.start.diagnostics)
+    return Stream(model, asked.layouts, asked.sweep, rows)
 
 
 def _closed_at(problem: Problem, names: Sequence[str]) -> Session:
@@ -301,4 +352,6 @@ def respond(
     names = wanted_names(session, run, layouts, quantities)
     result = response_room.respond(problem, response, names, packing, session)
     analysis = Analysis(model, layouts, result, run, asked=tuple(names))
-    return analysis if mode is None else known_mode(analysis)
+    if mode is not None:
+        refuse_unknown_mode(analysis.diagnostics)
+    return analysis

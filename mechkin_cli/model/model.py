@@ -16,6 +16,7 @@ from mechkin_cli.analysis import (
     respond,
     run_name,
     run_sweep,
+    stream_sweep,
 )
 from mechkin_cli.arguments import Setting, a_path, a_text, a_whole_number, settings, texts
 from mechkin_cli.building import Built, build, open_data, open_file, open_text
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
     from os import PathLike
 
-    from mechkin_cli.analysis import Certificate
+    from mechkin_cli.analysis import Certificate, Stream
     from mechkin_cli.building import ViewSettings
     from mechkin_cli.cams import Cam
     from mechkin_cli.fit import Fit
@@ -273,6 +274,32 @@ class Model(Listed):
             threads=threads,
             errors=errors,
         )
+
+    def stream(
+        self,
+        quantities: Iterable[str] | None = None,
+        *,
+        rows: int = 4096,
+        tables: Sequence[str] | None = None,
+        mode: str | None = None,
+        lanes: int = 0,
+        threads: int = 0,
+    ) -> Stream:
+        """The sweep block by block, in constant memory: the same numbers as those of `analyze`.
+
+        Args and errors are those of `analyze`; `rows` of a block, but for the last one.
+
+        Returns:
+            Gives the blocks one after the other, and says afterwards what the run has to say.
+
+        Example:
+            >>> from mechkin_cli import load
+            >>> m = load("mechanisms/dissertation/rcsr.yaml")
+            >>> blocks = m.stream(["O4.theta"], rows=10)
+            >>> [round(float(block["O4.theta"].max()), 3) for block in blocks][:2]
+            [37.231, 11.327]
+        """
+        return stream_sweep(self, quantities, rows, tables, mode, lanes, threads)
 
     def respond(
         self,

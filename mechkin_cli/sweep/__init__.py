@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mechkin_cli.sweep.friction import *
     from mechkin_cli.sweep.limits import *
     from mechkin_cli.sweep.messages import *
+    from mechkin_cli.sweep.parts import *
     from mechkin_cli.sweep.result import *
     from mechkin_cli.sweep.rows import *
     from mechkin_cli.sweep.slopes import *
@@ -30,10 +31,11 @@ __getattr__, __dir__ = lazy_names(
         "friction": "is_slack slack_quantities unfounded_in_motion",
         "limits": "beyond judge_limits limited",
         "messages": "refuse_loaded_spin stands_elsewhere",
+        "parts": "Notes RunVerdicts has_parts",
         "result": "Readable Result",
         "rows": "SHIFTS SweepRows has_turns",
         "slopes": "ROUNDED bends jumps_between place_text size_text value_at",
-        "sweep": "analyze at_once closed_rows first_assembly judge_condition rest_on_reactions "
-        "row_notes",
+        "sweep": "Sweep analyze at_once closed_rows first_assembly judge_condition "
+        "rest_on_reactions row_notes",
     },
 )

@@ -247,20 +247,62 @@ MOST_ALIKE = 4
 """Messages of one kind that a run in parts has at most."""
 
 
-def merged(notes: Sequence[Diagnostic]) -> list[Diagnostic]:
+class Notes:
     """The messages of all parts: each once, and of each kind the first few."""
-    counts: dict[str, int] = {}
-    shown: list[Diagnostic] = []
-    for one in dict.fromkeys(notes):
-        counts[one.code] = counts.get(one.code, 0) + 1
-        if counts[one.code] <= MOST_ALIKE:
-            shown.append(one)
-    for code, count in counts.items():
-        if count > MOST_ALIKE:
-            last = max(number for number, one in enumerate(shown) if one.code == code)
-            more = f" (and {count - MOST_ALIKE} more such messages)"
-            shown[last] = shown[last]._replace(message=shown[last].message + more)
-    return shown
+
+    def __init__(self) -> None:
+        self._shown: dict[Diagnostic, None] = {}
+        self._counts: dict[str, int] = {}
+        self._last: dict[str, Diagnostic] = {}
+
+    def add(self, notes: Sequence[Diagnostic]) -> None:
+        """Adds those of a part."""
+        for one in notes:
+            if one in self._shown:
+                continue
+            count = self._counts[one.code] = self._counts.get(one.code, 0) + 1
+            if count <= MOST_ALIKE:
+                self._shown[one] = None
+                self._last[one.code] = one
+
+    def found(self) -> list[Diagnostic]:
+        """All that are told."""
+        return [self._counted(one) for one in self._shown]
+
+    def _counted(self, one: Diagnostic) -> Diagnostic:
+        more = self._counts[one.code] - MOST_ALIKE
+        if more <= 0 or one is not self._last[one.code]:
+            return one
+        return one._replace(message=f"{one.message} (and {more} more such messages)")
+
+
+class RunVerdicts:
+    """The verdicts on the rows of a run, added part by part: how many there are, and how many of
+    each status in the order in which they come first; the worst measures; whether all rows have a
+    solution with all that it needs, and whether all are `ok`."""
+
+    def __init__(self) -> None:
+        self.rows = self.solved = 0
+        self.counts: dict[Status, int] = {}
+        self.worst: dict[str, float] = {}
+        self.complete = self.sound = True
+
+    def add(self, result: Result, own: slice) -> None:
+        """Adds the rows of a part."""
+        status = result.status[own]
+        self.rows += status.size
+        self.solved += int(np.count_nonzero(result.solved[own]))
+        codes, first, counts = np.unique(status, return_index=True, return_counts=True)
+        for k in np.argsort(first).tolist():
+            code = Status(int(codes[k]))
+            self.counts[code] = self.counts.get(code, 0) + int(counts[k])
+        self.complete &= result.complete
+        self.sound &= result.sound
+        measures = (result.residual, result.power_error, result.condition)
+        for name, values in zip(("residual", "power error", "condition"), measures, strict=True):
+            finite = values[own][np.isfinite(values[own])]
+            if finite.size:
+                self.worst[name] = max(self.worst.get(name, 0.0), float(finite.max()))
 
 
 def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:
@@ -275,7 +317,7 @@ def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:
         reached=_joined([each.reached[own] for each, own in found]),
         status=_joined([each.status[own] for each, own in found]),
         nodes=sum(each.nodes for each, _ in found),
-        diagnostics=merged([note for each, _ in found for note in each.diagnostics]),
+        diagnostics=_merged([each.diagnostics for each, _ in found]),
         numbers=np.arange(motion.rows),
         turns=_joined([each.turns[:, own] for each, own in found]),
         section=_joined([each.section[own] for each, own in found]),
@@ -292,6 +334,13 @@ def joined_rows(parts: Sequence[Part], session: Session) -> SweepRows:
             if begin <= place.row
         ]
     return rows
+
+
+def _merged(notes: Sequence[Sequence[Diagnostic]]) -> list[Diagnostic]:
+    merged = Notes()
+    for each in notes:
+        merged.add(each)
+    return merged.found()
 
 
 Scalar = TypeVar("Scalar", bound=np.generic)

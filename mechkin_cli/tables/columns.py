@@ -287,6 +287,12 @@ class TableColumn:
         unbounded = None if self.unbounded is None else self.unbounded[rows]
         return replace(self, values=values[rows], unbounded=unbounded)
 
+    def with_values(
+        self, values: FloatArray | Words, unbounded: FloatArray | None = None
+    ) -> TableColumn:
+        """The column with other rows."""
+        return replace(self, values=values, unbounded=unbounded)
+
     @property
     def rows(self) -> int:
         """Number of rows."""

@@ -16,7 +16,7 @@ Sums are added row by row, in order: their bits do not depend on the machine.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -194,6 +194,149 @@ def statistics(values: FloatArray, source: TableSource) -> Statistics:
         int(np.count_nonzero(~np.isnan(values))),
         int(np.count_nonzero(np.isinf(values))),
     )
+
+
+class RunningStatistics:
+    """The numbers of a column whose rows come block by block: what `statistics` finds of all of
+    them at once, bit for bit.
+
+    Args:
+        words: those of `REDUCTIONS` that are wanted; the others are nan.
+        moves: whether rows have places along the way; else all count the same in a mean.
+    """
+
+    def __init__(self, words: Iterable[str], *, moves: bool) -> None:
+        self._words, self._moves = frozenset(words), moves
+        nothing = Extreme(np.nan, np.nan)
+        self._extremes = dict.fromkeys(("max", "min", "peak"), nothing)
+        self._mean = _RunningMean(moves) if "mean" in self._words else None
+        self._squares = _RunningSquares(moves) if "rms" in self._words else None
+        self._rows = self._infinite = 0
+
+    def add(self, values: Floats, places: Floats) -> None:
+        """Adds rows: values (rows,), nan without a cell, at places (rows,) along the way."""
+        there = ~np.isnan(values)
+        count = int(np.count_nonzero(there))
+        self._rows += count
+        if count:
+            words = self._words | ({"max", "min"} if "range" in self._words else set())
+            for word in self._extremes.keys() & words:
+                self._find(word, np.abs(values) if word == "peak" else values, places)
+            self._infinite += int(np.count_nonzero(np.isinf(values)))
+        if self._mean is not None:
+            self._mean.add(values, places)
+        if self._squares is not None:
+            self._squares.add(values, places)
+
+    def found(self) -> Statistics:
+        """The numbers of the rows so far."""
+        most, least = self._extremes["max"], self._extremes["min"]
+        shown = {
+            word: each if word in self._words else Extreme(np.nan, np.nan)
+            for word, each in self._extremes.items()
+        }
+        return Statistics(
+            **shown,
+            mean=self._mean.found() if self._mean else np.nan,
+            rms=self._squares.found() if self._squares else np.nan,
+            range=most.value - least.value if "range" in self._words else np.nan,
+            rows=self._rows,
+            infinite=self._infinite,
+        )
+
+    def _find(self, word: str, values: Floats, places: Floats) -> None:
+        """Takes the block's extreme, with its first place, where it is the run's."""
+        own = self._extremes[word].value
+        found = float((np.fmin if word == "min" else np.fmax).reduce(values)) + 0.0
+        better = found < own if word == "min" else found > own
+        if better or np.isnan(own):
+            place = float(places[np.flatnonzero(values == found)[0]])
+            self._extremes[word] = Extreme(found, place)
+
+
+class _RunningMean:
+    """A mean as `mean` has it. The last row waits for the next one: what it counts for is half the
+    way to either side."""
+
+    def __init__(self, moves: bool) -> None:
+        self._moves = moves
+        self._last: tuple[float, float, float] | None = None
+        # nothing is changed by what is added to -0
+        self._over_way, self._over_rows = (-0.0, 0.0), (-0.0, 0.0)
+
+    def add(self, values: Floats, places: Floats) -> None:
+        there = np.isfinite(values)
+        clean = np.where(there, values, 0.0)
+        self._over_rows = (
+            _summed(self._over_rows[0], clean),
+            self._over_rows[1] + float(np.count_nonzero(there)),
+        )
+        if not self._moves or not values.size:
+            return
+        before = self._last
+        if before is not None:
+            values = np.concatenate([[before[0]], values])
+            places = np.concatenate([[before[1]], places])
+            there = np.isfinite(values)
+            clean = np.where(there, values, 0.0)
+        ways = np.where(there[1:] & there[:-1], 0.5 * np.abs(np.diff(places)), 0.0)
+        weights = ways.copy()
+        weights[1:] += ways[:-1]
+        if before is not None and ways.size:
+            weights[0] += before[2]
+        counts = np.where(there[:-1], weights, 0.0)
+        self._over_way = (
+            _summed(self._over_way[0], clean[:-1] * counts),
+            _summed(self._over_way[1], counts),
+        )
+        left = float(ways[-1]) if ways.size else 0.0
+        self._last = float(values[-1]), float(places[-1]), left
+
+    def rescale(self, factor: float) -> None:
+        """Multiplies all values so far by a power of two, which changes no bit."""
+        self._over_way = self._over_way[0] * factor, self._over_way[1]
+        self._over_rows = self._over_rows[0] * factor, self._over_rows[1]
+        if self._last is not None:
+            self._last = (self._last[0] * factor, *self._last[1:])
+
+    def found(self) -> float:
+        total, count = self._over_way
+        if self._last is not None and np.isfinite(self._last[0]):
+            value, _, left = self._last
+            total, count = total + value * left, count + left
+        if not count:
+            total, count = self._over_rows
+        return total / count if count else np.nan
+
+
+class _RunningSquares:
+    """A root mean square as `root_mean_square` has it."""
+
+    def __init__(self, moves: bool) -> None:
+        self._mean = _RunningMean(moves)
+        self._exponent: int | None = None
+
+    def add(self, values: Floats, places: Floats) -> None:
+        largest = np.where(np.isfinite(values), np.abs(values), 0.0).max(initial=0.0)
+        exponent = int(np.frexp(largest)[1])
+        if largest and (self._exponent is None or exponent > self._exponent):
+            if self._exponent is not None:
+                self._mean.rescale(float(np.ldexp(1.0, 2 * (self._exponent - exponent))))
+            self._exponent = exponent
+        scaled = np.ldexp(values, -(self._exponent or 0))
+        self._mean.add(scaled * scaled, places)
+
+    def found(self) -> float:
+        return float(np.ldexp(np.sqrt(self._mean.found()), self._exponent or 0))
+
+
+def _summed(total: float, values: Floats) -> float:
+    """A total and further values, added in order."""
+    if not values.size:
+        return total
+    first = values.copy()
+    first[0] += total
+    return float(np.cumsum(first, out=first)[-1])
 
 
 def summary_of(

@@ -1,0 +1,207 @@
+"""A sweep block by block: what `analyze` gives of all rows at once, in the memory of some of them.
+
+Rows are solved in parts of a size of their own (`sweep.parts`), so that no answer depends on how
+many are taken at a time; what is said of the whole run is known when its rows have been taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mechkin_cli.analysis.analysis import Analysis
+from mechkin_cli.arguments import a_text
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.mechanism import LEDGER_KINDS
+from mechkin_cli.show import Named
+from mechkin_cli.sweep import Notes, RunVerdicts, has_parts
+from mechkin_cli.tables import Columns, TableColumn, Words, column_of
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from mechkin_cli.analysis.analysis import Solvable
+    from mechkin_cli.diagnostics import Diagnostic
+    from mechkin_cli.sweep import Result, Sweep
+    from mechkin_cli.tables import TableLayout
+
+
+class Stream:
+    """The rows of a sweep in blocks, each of which may be forgotten when the next one is taken.
+
+    It may be gone through several times; each time the sweep is run anew.
+
+    Attributes:
+        model: of the file.
+        layouts: of the tables that were asked for.
+        rows: how many a block has, but for the last one.
+        run_rows: how many the run has.
+    """
+
+    def __init__(
+        self, model: Solvable, layouts: tuple[TableLayout, ...], sweep: Sweep, rows: int
+    ) -> None:
+        self.model, self.layouts, self.rows = model, layouts, rows
+        self.run_rows = sweep.session.problem.motion.rows
+        self.sweep = sweep
+        if has_parts(sweep.session):
+            whole = [each.name for each in sweep.asked if each.kind in LEDGER_KINDS]
+            if whole:
+                raise UsageError(
+                    f"{whole[0]} of a row depends on all rows of the run, which stream() does not "
+                    "hold; leave it out, or take fewer rows with analyze()"
+                )
+        self._verdicts = RunVerdicts()
+        self._notes = Notes()
+
+    def __iter__(self) -> Iterator[Block]:
+        """The blocks, in the order of the rows.
+
+        Raises:
+            InvalidFile: what the file says of the motion does not hold in some row.
+        """
+        first, count = 0, 0
+        pieces: list[_Piece] = []
+        for rows, own in self.parts():
+            begin, end, _ = own.indices(rows.rows)
+            while begin < end:
+                taken = min(self.rows - count, end - begin)
+                pieces.append(_Piece(rows, slice(begin, begin + taken)))
+                begin, count = begin + taken, count + taken
+                if count == self.rows:
+                    yield Block(first, pieces)
+                    first, count, pieces = first + count, 0, []
+        if pieces:
+            yield Block(first, pieces)
+
+    def parts(self) -> Iterator[tuple[PartRows, slice]]:
+        """The rows as they are solved, and which of each part are in none before it."""
+        self._verdicts, self._notes = RunVerdicts(), Notes()
+        for part in self.sweep.parts():
+            self._verdicts.add(part.result, part.own)
+            self._notes.add(part.result.row_states.diagnostics)
+            yield PartRows(self, part.result), part.own
+
+    @property
+    def verdicts(self) -> RunVerdicts:
+        """The verdicts on the rows that have been solved so far."""
+        return self._verdicts
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What the run has to say of the rows that have been solved so far."""
+        own = self.sweep.session.problem.diagnostics
+        return (*own, *self.sweep.start.diagnostics, *self._notes.found())
+
+    def __len__(self) -> int:
+        """Number of blocks."""
+        return -(-self.run_rows // self.rows)
+
+    def __repr__(self) -> str:
+        return f"{self.model.name}: {self.run_rows} rows in {len(self)} blocks"
+
+
+class PartRows:
+    """The rows of a part, whose columns are evaluated once for all blocks."""
+
+    def __init__(self, stream: Stream, result: Result) -> None:
+        self.analysis = Analysis(stream.model, stream.layouts, result, SWEEP)
+        self.rows = result.rows
+        self._columns: dict[tuple[int, int], TableColumn] = {}
+        self._values: dict[str, NDArray[Any]] = {}
+
+    def column(self, table: int, number: int) -> TableColumn:
+        """A column of a table by both numbers."""
+        if (table, number) not in self._columns:
+            layout = self.analysis.layouts[table].columns[number]
+            self._columns[table, number] = column_of(layout, self.analysis.result)
+        return self._columns[table, number]
+
+    def values(self, text: str) -> NDArray[Any]:
+        """As `Analysis.__getitem__`."""
+        if text not in self._values:
+            self._values[text] = self.analysis[text]
+        return self._values[text]
+
+
+class _Piece:
+    """Some neighbouring rows of a part."""
+
+    def __init__(self, part: PartRows, rows: slice) -> None:
+        self.part, self.rows = part, rows
+
+
+class Block:
+    """Some neighbouring rows of a sweep: `block["O4.theta"]` is an array over them, in the file's
+    units, as that of an analysis; `first` is the number of the first row, from 0."""
+
+    def __init__(self, first: int, pieces: Sequence[_Piece]) -> None:
+        self.first = first
+        self._pieces = tuple(pieces)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return sum(piece.rows.stop - piece.rows.start for piece in self._pieces)
+
+    def __getitem__(self, text: str) -> NDArray[Any]:
+        """A quantity or an expression of quantities in the file's units, (rows,), of a vector
+        (rows, 3); arguments and errors are those of `Analysis`. Arrays are parts of larger ones,
+        which are not to be written to."""
+        a_text("a quantity or expression", text, '"O4.theta"')
+        found = [piece.part.values(text)[piece.rows] for piece in self._pieces]
+        values = found[0] if len(found) == 1 else np.concatenate(found)
+        values.flags.writeable = False
+        return values
+
+    def unit(self, text: str) -> str:
+        """The unit of a quantity or an expression, as `Analysis.unit`."""
+        return self._pieces[0].part.analysis.unit(text)
+
+    @property
+    def tables(self) -> Named[Columns]:
+        """These rows of the tables that were asked for, in order, and by name."""
+        layouts = self._pieces[0].part.analysis.layouts
+        return Named(
+            Columns(
+                layout.name,
+                layout.title,
+                tuple(self._column(table, number) for number in range(len(layout.columns))),
+            )
+            for table, layout in enumerate(layouts)
+        )
+
+    def _column(self, table: int, number: int) -> TableColumn:
+        pieces = [rows_of(piece.part.column(table, number), piece.rows) for piece in self._pieces]
+        return pieces[0] if len(pieces) == 1 else _joined(pieces)
+
+    def __repr__(self) -> str:
+        return f"rows {self.first + 1} to {self.first + self.rows}"
+
+
+def rows_of(column: TableColumn, rows: slice) -> TableColumn:
+    """Some neighbouring rows of a column, without copying them."""
+    values, unbounded = column.values, column.unbounded
+    if isinstance(values, Words):
+        return column.with_values(Words(values.codes[rows], values.words))
+    return column.with_values(values[rows], None if unbounded is None else unbounded[rows])
+
+
+def _joined(pieces: Sequence[TableColumn]) -> TableColumn:
+    first = pieces[0]
+    if isinstance(first.values, Words):
+        codes = np.concatenate([piece.values.codes for piece in pieces])  # type: ignore[union-attr]
+        return first.with_values(Words(codes, first.values.words))
+    values = np.concatenate([np.asarray(piece.values) for piece in pieces])
+    unbounded = None
+    if any(piece.unbounded is not None for piece in pieces):
+        unbounded = np.concatenate(
+            [
+                np.zeros(piece.rows) if piece.unbounded is None else piece.unbounded
+                for piece in pieces
+            ]
+        )
+    return first.with_values(values, unbounded)
