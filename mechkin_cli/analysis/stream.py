@@ -7,17 +7,19 @@ many are taken at a time; what is said of the whole run is known when its rows h
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mechkin_cli.analysis.analysis import Analysis
 from mechkin_cli.arguments import a_text
+from mechkin_cli.assembly import rows_of_start
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.mechanism import LEDGER_KINDS
 from mechkin_cli.show import Named
 from mechkin_cli.sweep import Notes, RunVerdicts, has_parts
-from mechkin_cli.tables import Columns, TableColumn, Words, column_of
+from mechkin_cli.tables import Columns, RunParameter, column_of, joined_column, moving_input
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     from mechkin_cli.analysis.analysis import Solvable
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.sweep import Result, Sweep
-    from mechkin_cli.tables import TableLayout
+    from mechkin_cli.tables import TableColumn, TableLayout
 
 
 class Stream:
@@ -39,6 +41,7 @@ class Stream:
         layouts: of the tables that were asked for.
         rows: how many a block has, but for the last one.
         run_rows: how many the run has.
+        last_part: the rows that were solved last.
     """
 
     def __init__(
@@ -56,6 +59,7 @@ class Stream:
                 )
         self._verdicts = RunVerdicts()
         self._notes = Notes()
+        self.last_part: PartRows
 
     def __iter__(self) -> Iterator[Block]:
         """The blocks, in the order of the rows.
@@ -83,7 +87,8 @@ class Stream:
         for part in self.sweep.parts():
             self._verdicts.add(part.result, part.own)
             self._notes.add(part.result.row_states.diagnostics)
-            yield PartRows(self, part.result), part.own
+            self.last_part = PartRows(self, part.result)
+            yield self.last_part, part.own
 
     @property
     def verdicts(self) -> RunVerdicts:
@@ -95,6 +100,31 @@ class Stream:
         """What the run has to say of the rows that have been solved so far."""
         own = self.sweep.session.problem.diagnostics
         return (*own, *self.sweep.start.diagnostics, *self._notes.found())
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """Time, where there is one, and the inputs, by name."""
+        motion = self.sweep.session.problem.motion
+        names = tuple(item.name for item in motion.inputs)
+        return names if motion.time is None else ("time", *names)
+
+    @cached_property
+    def along(self) -> RunParameter | None:
+        """What the run goes along: with its values in some of the rows."""
+        motion = rows_of_start(self.sweep.session)[0].problem.motion
+        time = {} if motion.time is None else {"time": motion.time.written}
+        units, known = self.sweep.session.problem.units, self.sweep.session.problem.quantities()
+        return moving_input(
+            {**time, **{item.name: item.written for item in motion.inputs}},
+            lambda name: units.label(known[name].dimension),
+        )
+
+    def places(self, part: PartRows) -> NDArray[np.float64]:
+        """Where the rows of a part stand along the run; their numbers from 1, if nothing moves."""
+        result = part.analysis.result
+        if self.along is not None:
+            return result.inputs[self.along.name]
+        return np.arange(1.0, result.rows + 1) + result.row_states.span.first
 
     def __len__(self) -> int:
         """Number of blocks."""
@@ -175,33 +205,8 @@ class Block:
         )
 
     def _column(self, table: int, number: int) -> TableColumn:
-        pieces = [rows_of(piece.part.column(table, number), piece.rows) for piece in self._pieces]
-        return pieces[0] if len(pieces) == 1 else _joined(pieces)
+        pieces = [piece.part.column(table, number).between(piece.rows) for piece in self._pieces]
+        return joined_column(pieces)
 
     def __repr__(self) -> str:
         return f"rows {self.first + 1} to {self.first + self.rows}"
-
-
-def rows_of(column: TableColumn, rows: slice) -> TableColumn:
-    """Some neighbouring rows of a column, without copying them."""
-    values, unbounded = column.values, column.unbounded
-    if isinstance(values, Words):
-        return column.with_values(Words(values.codes[rows], values.words))
-    return column.with_values(values[rows], None if unbounded is None else unbounded[rows])
-
-
-def _joined(pieces: Sequence[TableColumn]) -> TableColumn:
-    first = pieces[0]
-    if isinstance(first.values, Words):
-        codes = np.concatenate([piece.values.codes for piece in pieces])  # type: ignore[union-attr]
-        return first.with_values(Words(codes, first.values.words))
-    values = np.concatenate([np.asarray(piece.values) for piece in pieces])
-    unbounded = None
-    if any(piece.unbounded is not None for piece in pieces):
-        unbounded = np.concatenate(
-            [
-                np.zeros(piece.rows) if piece.unbounded is None else piece.unbounded
-                for piece in pieces
-            ]
-        )
-    return first.with_values(values, unbounded)

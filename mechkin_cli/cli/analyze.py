@@ -42,10 +42,12 @@ from mechkin_cli.tables import (
     refuse_without_library,
     write_results,
 )
+from mechkin_cli.tolerances import LONG_RUN
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis
+    from mechkin_cli.cli.long_runs import StreamedRun
     from mechkin_cli.model import Model
 
 
@@ -54,8 +56,10 @@ def run_all(
     tables: Sequence[str] | None = None,
     mode: str | None = None,
     tell: Callable[[str], None] = lambda _: None,
+    *,
+    sweep: bool = True,
 ) -> list[Analysis]:
-    """Every run that has one of the tables wanted (None: all), the sweep first.
+    """Every run that has one of the tables wanted (None: all), the sweep first, if it is wanted.
 
     Args:
         tell: is called with words for the run that is under way.
@@ -64,7 +68,7 @@ def run_all(
         UsageError: no run has a table of a name.
         InvalidFile: a run cannot be solved as it is driven.
     """
-    runs = dict.fromkeys(model.runs)
+    runs = dict.fromkeys(run for run in model.runs if sweep or run != SWEEP)
     wanted = None if tables is None else {run: _of_run(model, tables, run) for run in runs}
     if wanted is not None:
         _refuse_unknown(model, tables or ())
@@ -135,6 +139,12 @@ class AnalyzeCommand(NamedTuple):
     messages: str | None = None
     json: bool = False
     quiet: bool = False
+    summary_only: bool = False
+
+    @property
+    def asked_formats(self) -> tuple[str, ...]:
+        """The formats that are asked for, as they are written."""
+        return tuple(dict.fromkeys(name for text in self.format or () for name in text.split(",")))
 
     @property
     def formats(self) -> tuple[str, ...]:
@@ -143,8 +153,8 @@ class AnalyzeCommand(NamedTuple):
         Raises:
             UsageError: one is not known, or needs a library that is not installed.
         """
-        asked = [name for text in self.format or () for name in text.split(",")]
-        formats = tuple(dict.fromkeys(asked or USUAL_FORMATS))
+        usual = USUAL_FORMATS[:1] if self.summary_only else USUAL_FORMATS
+        formats = self.asked_formats or usual
         for name in formats:
             if name not in WRITERS:
                 cure = f"; for messages write --messages {name}" if name in FORMS else ""
@@ -220,11 +230,13 @@ def _one(
         command = _with_labels(command, model)
         if command.errors:
             _refuse_own_errors(model, command.table)
-        analyses, notes, written, removed = _run(model, folder, command, tell)
+        done = _run(model, folder, command, tell)
     except (InvalidFile, UsageError) as error:
         return refusal(path, error)
-    diagnostics = dict.fromkeys(one for analysis in analyses for one in analysis.diagnostics)
-    say_diagnostics((*diagnostics, *notes), shown(path))
+    analyses, streamed = done.analyses, done.streamed
+    runs: list[Analysis | StreamedRun] = [*analyses, *streamed]
+    diagnostics = dict.fromkeys(one for run in runs for one in run.diagnostics)
+    say_diagnostics((*diagnostics, *done.notes), shown(path))
     record: Record = {}
     if command.json:
         results = [_results(analysis, command) for analysis in analyses]
@@ -235,23 +247,38 @@ def _one(
             texts = [explanation(analysis) for analysis in analyses]
             record["explanation"] = "\n".join(texts).split("\n")
     else:
-        _report(shown(path), analyses, folder, written, removed, command)
+        _report(shown(path), done, folder, command)
     enough = all(_is_enough(analysis, command) for analysis in analyses)
+    enough &= all(run.is_enough(strict=command.strict) for run in streamed)
     return ExitCode.OK if enough else ExitCode.ROWS_MISSING, record
 
 
-def _run(
-    model: Model, folder: Path, command: AnalyzeCommand, tell: Tell
-) -> tuple[list[Analysis], tuple[Diagnostic, ...], list[Path], list[str]]:
-    """The runs, notes on what is not proven or not removed, the files written and the names of
-    those removed: alone in their folder from before the work on, so that nothing is computed that
-    cannot be written."""
+class _Done(NamedTuple):
+    """The runs of a file, those whose rows are not held, notes on what is not proven or not
+    removed, the files written and the names of those removed."""
+
+    analyses: list[Analysis]
+    streamed: list[StreamedRun]
+    notes: tuple[Diagnostic, ...] = ()
+    written: Sequence[Path] = ()
+    removed: Sequence[str] = ()
+
+
+def _run(model: Model, folder: Path, command: AnalyzeCommand, tell: Tell) -> _Done:
+    """Runs a file and writes its tables: alone in their folder from before the work on, so that
+    nothing is computed that cannot be written."""
     with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
-        analyses = run_all(model, command.table, command.mode, tell)
+        streamed: list[StreamedRun] = []
+        if output is not None and (command.summary_only or _is_long(model)):
+            from mechkin_cli.cli.long_runs import is_streamed, stream_to
+
+            if is_streamed(model, command):
+                streamed.append(stream_to(model, command, output, tell))
+        analyses = run_all(model, command.table, command.mode, tell, sweep=not streamed)
         tell("proving rows" if command.certify else "evaluating tables")
         notes = certify_sweeps(analyses) if command.certify else ()
         if output is None:
-            return analyses, notes, [], []
+            return _Done(analyses, streamed, notes)
         tell("measuring true errors" if command.errors else "writing tables")
         results = [_results(analysis, command) for analysis in analyses]
         write_results(results, command.formats, output.begin)
@@ -260,7 +287,12 @@ def _run(
             output.add(view.PAGE_NAME, page)
             notes = (*notes, *left_out)
         written, removed, changed = output.write_run()
-        return analyses, (*notes, *_changed_notes(folder, changed)), written, removed
+        notes = (*notes, *_changed_notes(folder, changed))
+        return _Done(analyses, streamed, notes, written, removed)
+
+
+def _is_long(model: Model) -> bool:
+    return SWEEP in model.runs and model.problem.motion.rows > LONG_RUN
 
 
 def _changed_notes(folder: Path, names: Sequence[str]) -> list[Diagnostic]:
@@ -367,18 +399,14 @@ def _results(analysis: Analysis, command: AnalyzeCommand) -> Results:
     )
 
 
-def _report(
-    file: str,
-    analyses: list[Analysis],
-    folder: Path,
-    written: list[Path],
-    removed: list[str],
-    command: AnalyzeCommand,
-) -> None:
+def _report(file: str, done: _Done, folder: Path, command: AnalyzeCommand) -> None:
+    analyses = done.analyses
     if command.explain:
         from mechkin_cli.cli.show import explanation
     if not command.quiet:
         from mechkin_cli.cli.show import files_line, shown_tables, summary
+    for run in () if command.quiet else done.streamed:
+        run.report(file, folder)
     for analysis in analyses:
         if command.explain:
             put(f"{explanation(analysis)}\n")
@@ -390,4 +418,4 @@ def _report(
     for analysis in analyses:
         for line in summary(file, analysis, errors=command.errors):
             say(line)
-    say(files_line(folder, written, removed))
+    say(files_line(folder, done.written, done.removed))

@@ -138,6 +138,11 @@ ANALYZE = Command(
             repeated=True,
         ),
         Word(
+            "summary_only",
+            "Write no rows, only what the tables sum up: their summary:, or largest and smallest.",
+            ("--summary-only",),
+        ),
+        Word(
             "lanes",
             "Rows computed at a time: 2, 4 or 8; 0: the most the machine can.",
             ("--lanes",),

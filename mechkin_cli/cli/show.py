@@ -30,7 +30,9 @@ from mechkin_cli.mechanism import (
     quantities_read,
 )
 from mechkin_cli.plan import REACTION_KINDS, Demand
+from mechkin_cli.record import replace
 from mechkin_cli.structure import listed
+from mechkin_cli.sweep import RunVerdicts
 from mechkin_cli.tables import (
     ALL_COLUMNS,
     AT_DEAD_CENTRE,
@@ -40,12 +42,14 @@ from mechkin_cli.tables import (
     Words,
     column_texts,
     counted,
+    joined_column,
+    summary_table,
 )
 from mechkin_cli.units import TIME
 from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.analysis import Analysis, Stream
     from mechkin_cli.mechanism import Joint, Wanted
     from mechkin_cli.tables import ColumnErrors, Summary
 
@@ -65,21 +69,45 @@ GAP = "  "
 def shown_tables(tables: Iterable[Columns], rows: int, folder: Path) -> Iterator[str]:
     """Each table of a run as text that ends in an empty line; the files in `folder` hold all of
     its rows."""
-    width = shutil.get_terminal_size((80, 24)).columns
     chosen = _chosen_rows(rows)
     for table in tables:
-        title = _one_line(table.title)
-        heading = f"{table.name}: {title}" if title != table.name else table.name
-        lines = wrap(heading, width)
-        for group in _grouped(table, chosen, width):
-            lines += ["", *group]
-        left_out = rows - len(chosen)
-        if left_out:
-            lines.append(f"({left_out} of {rows} rows left out here; all are in {folder})")
-        if table.summary is not None:
-            notes = table.summary.written_notes(_one_line)
-            lines += [line for note in notes for line in wrap(f"({note})", width)]
-        yield "\n".join(lines) + "\n\n"
+        yield _shown(table, chosen, rows, folder)
+
+
+def shown_ends(first: Columns, last: Columns, rows: int, folder: Path) -> str:
+    """A table of which only the first and the last rows are held, as `shown_tables` has it."""
+    columns = [joined_column(both) for both in zip(first.columns, last.columns, strict=True)]
+    ends = replace(last, columns=tuple(columns))
+    return _shown(ends, _chosen_rows(rows), rows, folder, held=range(columns[0].rows))
+
+
+def shown_summary(name: str, title: str, summary: Summary) -> str:
+    """What stands below a table of which no rows are shown."""
+    below = summary_table(name, title, summary)
+    lines = [f"{below.name}: {_one_line(below.title)}", ""]
+    width = shutil.get_terminal_size((80, 24)).columns
+    notes = summary.written_notes(_one_line)
+    said = "\n".join(line for note in notes for line in wrap(f"({note})", width))
+    return "\n".join(lines) + shown_table(below, len(summary.lines)) + said + "\n\n"
+
+
+def _shown(
+    table: Columns, chosen: Sequence[int], rows: int, folder: Path, held: Sequence[int] = ()
+) -> str:
+    """Some rows of a table, which are its rows `held`, if it has not all of them."""
+    width = shutil.get_terminal_size((80, 24)).columns
+    title = _one_line(table.title)
+    heading = f"{table.name}: {title}" if title != table.name else table.name
+    lines = wrap(heading, width)
+    for group in _grouped(table, chosen, width, held):
+        lines += ["", *group]
+    left_out = rows - len(chosen)
+    if left_out:
+        lines.append(f"({left_out} of {rows} rows left out here; all are in {folder})")
+    if table.summary is not None:
+        notes = table.summary.written_notes(_one_line)
+        lines += [line for note in notes for line in wrap(f"({note})", width)]
+    return "\n".join(lines) + "\n\n"
 
 
 def shown_table(table: Columns, count: int) -> str:
@@ -89,9 +117,11 @@ def shown_table(table: Columns, count: int) -> str:
     return "\n\n".join("\n".join(group) for group in groups) + "\n"
 
 
-def _grouped(table: Columns, rows: Sequence[int], width: int) -> Iterator[list[str]]:
+def _grouped(
+    table: Columns, rows: Sequence[int], width: int, held: Sequence[int] = ()
+) -> Iterator[list[str]]:
     """The lines of the columns that fit side by side, group by group."""
-    columns = [_texts(column, rows) for column in table.columns]
+    columns = [_texts(column, held or rows) for column in table.columns]
     gaps = [k for k in range(1, len(rows)) if rows[k] != rows[k - 1] + 1]
     for gap in reversed(gaps):
         for number, cells in enumerate(columns):
@@ -165,7 +195,8 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     rows.append(("loops", _loops(analysis)))
     if result.mode:
         rows.append(("branch", _branch(analysis)))
-    rows += [("rows", _rows(analysis)), ("worst", _worst(analysis))]
+    verdicts = RunVerdicts.of(result)
+    rows += [("rows", _rows(verdicts)), ("worst", _worst(analysis, verdicts))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
     if analysis.run != SWEEP:
@@ -173,6 +204,16 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     if errors:
         rows.append(("errors", errors_line(analysis)))
     return [f"{name} ({file})", *(_line(*row) for row in rows)]
+
+
+def streamed_summary(file: str, stream: Stream) -> list[str]:
+    """The lines of `summary` for a sweep whose rows are not held."""
+    part = stream.last_part.analysis
+    verdicts = stream.verdicts
+    lines = [("driven", _driven(part)), ("loops", _loops(part))]
+    lines += [("branch", _branch(part))] if part.result.mode else []
+    lines += [("rows", _rows(verdicts)), ("worst", _worst(part, verdicts))]
+    return [f"{part.model.name} ({file})", *(_line(*line) for line in lines)]
 
 
 def files_line(folder: Path, written: Sequence[Path], removed: Sequence[str]) -> str:
@@ -270,32 +311,20 @@ def _loops(analysis: Analysis) -> str:
     return f"{mechanism.told_loops or 'none'}, {', '.join(filter(None, words))}; {unknowns}"
 
 
-def _rows(analysis: Analysis) -> str:
-    result = analysis.result
-    text = f"{np.count_nonzero(result.solved)} of {result.rows} solved"
-    codes, first, counts = np.unique(result.status, return_index=True, return_counts=True)
-    others = [
-        f"{counts[k]} {Status(int(codes[k])).label}"
-        for k in np.argsort(first)
-        if codes[k] != Status.ok
-    ]
+def _rows(verdicts: RunVerdicts) -> str:
+    text = f"{verdicts.solved} of {verdicts.rows} solved"
+    others = [f"{n} {one.label}" for one, n in verdicts.counts.items() if one != Status.ok]
     return f"{text} ({', '.join(others)})" if others else text
 
 
-def _worst(analysis: Analysis) -> str:
-    result = analysis.result
-    parts = []
-    measured = {
-        "residual": result.residual,
-        "power error": result.power_error,
-        "condition": result.condition,
-    }
+def _worst(analysis: Analysis, verdicts: RunVerdicts) -> str:
+    measured = dict(verdicts.worst)
     if analysis.run != SWEEP:
-        measured["energy error"] = np.asarray(result.quantity("row.energy_error").value)
-    for name, values in measured.items():
+        values = np.asarray(analysis.result.quantity("row.energy_error").value)
         finite = values[np.isfinite(values)]
         if finite.size:
-            parts.append(f"{name} {float(finite.max()):.1e}")
+            measured["energy error"] = float(finite.max())
+    parts = [f"{name} {value:.1e}" for name, value in measured.items()]
     return ", ".join(parts) or "nothing was solved"
 
 

@@ -287,6 +287,13 @@ class RunVerdicts:
         self.worst: dict[str, float] = {}
         self.complete = self.sound = True
 
+    @classmethod
+    def of(cls, result: Result) -> RunVerdicts:
+        """Of a run whose rows are held."""
+        found = cls()
+        found.add(result, slice(0, result.rows))
+        return found
+
     def add(self, result: Result, own: slice) -> None:
         """Adds the rows of a part."""
         status = result.status[own]

@@ -32,15 +32,15 @@ __getattr__, __dir__ = lazy_names(
     {
         "arrow": "ArrowTable parquet_blocks parquet_bytes pyarrow_for",
         "columns": "FloatArray RunParameter TableColumn Words column_of column_of_numbers "
-        "column_texts row_words run_parameter size_kinds size_of_rate solved_rows table_sizes "
-        "unique_cells words_of",
+        "column_texts joined_column moving_input row_words run_parameter size_kinds size_of_rate "
+        "solved_rows table_sizes unique_cells words_of",
         "compare": "compare_files read_committed report stale_in",
         "csv": "COMMITTED_DIGITS CsvStyle TextRoom csv_bytes",
         "errata": "MARK NAME OVERVIEW_PAGE OverviewRow PAGE PrintedTable against_print "
         "against_print_record counts disagreements_csv errata_page overview_page",
         "errors": "ALL_COLUMNS AT_DEAD_CENTRE ColumnErrors LOST ZERO clashing column_errors "
         "least_digits not_repeated worst_column",
-        "folder": "Claim OutputFolder write_files",
+        "folder": "Claim OutputFile OutputFolder write_files",
         "json": "json_text runs_record",
         "layout": "CoefficientsLayout ColumnLayout PrintedSource ROW_EVENT ROW_NUMBERS ROW_PROOF "
         "ROW_TEXTS Remark TableLayout chosen counted default_table effort_names row_texts",
@@ -49,8 +49,8 @@ __getattr__, __dir__ = lazy_names(
         "results": "Results",
         "stream": "TableHeading TableStream TableWriter heading_of metadata_of stream_of "
         "write_table",
-        "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction Statistics Summary mean "
-        "root_mean_square row_weights statistics summary_of",
+        "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction RunningSummary Statistics Summary "
+        "mean root_mean_square row_weights statistics summary_of",
         "table": "Columns Heading evaluate summary_table",
         "writers": "STREAM_FORMATS USUAL_FORMATS WRITERS refuse_without_library write_results "
         "written_files",

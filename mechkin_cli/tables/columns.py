@@ -293,10 +293,32 @@ class TableColumn:
         """The column with other rows."""
         return replace(self, values=values, unbounded=unbounded)
 
+    def between(self, rows: slice) -> TableColumn:
+        """Some neighbouring rows, without copying them."""
+        values, unbounded = self.values, self.unbounded
+        if isinstance(values, Words):
+            return self.with_values(Words(values.codes[rows], values.words))
+        return self.with_values(values[rows], None if unbounded is None else unbounded[rows])
+
     @property
     def rows(self) -> int:
         """Number of rows."""
         return self.values.rows if isinstance(self.values, Words) else self.values.size
+
+
+def joined_column(parts: Sequence[TableColumn]) -> TableColumn:
+    """The rows of a column of which these are the parts."""
+    first = parts[0]
+    if len(parts) == 1:
+        return first
+    if isinstance(first.values, Words):
+        codes = [part.values.codes for part in parts if isinstance(part.values, Words)]
+        return first.with_values(Words(np.concatenate(codes), first.values.words))
+    values = np.concatenate([part.values for part in parts if isinstance(part.values, np.ndarray)])
+    if all(part.unbounded is None for part in parts):
+        return first.with_values(values)
+    nothing = (np.zeros(part.rows) if part.unbounded is None else part.unbounded for part in parts)
+    return first.with_values(values, np.concatenate(list(nothing)))
 
 
 def column_of_numbers(
@@ -462,8 +484,16 @@ class RunParameter(NamedTuple):
 
 def run_parameter(source: TableSource) -> RunParameter | None:
     """Time where a run has one, else its first input that moves; None where nothing moves."""
-    for name, values in source.inputs.items():
+    return moving_input(
+        source.inputs, lambda name: source.units.label(source.quantity(name).dimension)
+    )
+
+
+def moving_input(
+    inputs: Mapping[str, FloatArray], unit: Callable[[str], str]
+) -> RunParameter | None:
+    """The first of some inputs that moves; `unit` is that of an input by its name."""
+    for name, values in inputs.items():
         if bool((values != values[0]).any()):
-            unit = source.units.label(source.quantity(name).dimension)
-            return RunParameter(name, values, unit)
+            return RunParameter(name, values, unit(name))
     return None

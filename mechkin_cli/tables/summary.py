@@ -16,7 +16,7 @@ Sums are added row by row, in order: their bits do not depend on the machine.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,8 +25,10 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.tables.columns import (
     AT,
     FloatArray,
+    RunParameter,
     TableColumn,
     TableSource,
+    Words,
     column_of_numbers,
     column_texts,
     run_parameter,
@@ -360,39 +362,102 @@ def summary_of(
         if isinstance(column.values, np.ndarray)
         and layout.expression.text.strip() not in source.inputs
     )
+    counts = {status: int(np.count_nonzero(source.status == status)) for status in Status}
+    return _summary(words, along, summed, source.rows, counts)
+
+
+def _summary(
+    words: tuple[str, ...],
+    along: RunParameter | None,
+    columns: tuple[SummaryColumn, ...],
+    rows: int,
+    counts: Mapping[Status, int],
+) -> Summary:
+    """The rows below a table of so many rows, of which so many have each status."""
     name, unit = (ROW_NUMBER, "") if along is None else (along.name, along.unit)
-    return Summary(words, name, unit, summed, tuple(_notes(words, summed, source)))
+    return Summary(words, name, unit, columns, tuple(_notes(words, columns, rows, counts)))
+
+
+class RunningSummary:
+    """The rows below a table whose rows come block by block: what `summary_of` finds of all of them
+    at once.
+
+    Args:
+        words: of `REDUCTIONS`.
+        layouts: of the table's columns.
+        along: what the run goes along.
+        inputs: names of what is not summed up: time and inputs.
+    """
+
+    def __init__(
+        self,
+        words: tuple[str, ...],
+        layouts: Sequence[ColumnLayout],
+        along: RunParameter | None,
+        inputs: Collection[str],
+    ) -> None:
+        self._words, self._along = words, along
+        self._summed = [
+            number
+            for number, layout in enumerate(layouts)
+            if layout.expression.text.strip() not in inputs
+        ]
+        self._sums: dict[int, RunningStatistics] = {}
+        self._columns: dict[int, TableColumn] = {}
+
+    def add(self, columns: Sequence[TableColumn], places: Floats) -> None:
+        """Adds rows: all columns of the table, and where the rows stand along the run."""
+        for number in self._summed:
+            column = columns[number]
+            if isinstance(column.values, Words):
+                continue
+            if number not in self._sums:
+                moves = self._along is not None
+                self._sums[number] = RunningStatistics(self._words, moves=moves)
+                self._columns[number] = column
+            self._sums[number].add(column.numbers, places)
+
+    def found(self, rows: int, counts: Mapping[Status, int]) -> Summary:
+        """The rows below; of so many rows so many have each status."""
+        summed = tuple(
+            SummaryColumn(number, column.label, column.unit, column.decimals, sums.found())
+            for (number, column), sums in zip(
+                self._columns.items(), self._sums.values(), strict=True
+            )
+        )
+        return _summary(self._words, self._along, summed, rows, counts)
 
 
 def _notes(
-    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
+    words: tuple[str, ...],
+    columns: Sequence[SummaryColumn],
+    rows: int,
+    counts: Mapping[Status, int],
 ) -> list[str]:
     found = []
-    missing = {c.label: source.rows - c.statistics.rows for c in columns}
+    missing = {c.label: rows - c.statistics.rows for c in columns}
     missing = {label: count for label, count in missing.items() if count}
     if len(missing) == len(columns) and len(set(missing.values())) == 1:
         missing = {"any column": max(missing.values())}
     for label, count in missing.items():
         have, do = ("has", "does") if count == 1 else ("have", "do")
-        found.append(f"{count} of {source.rows} rows {have} no cell of {label} and {do} not count")
-    found += _infinite(words, columns, source)
+        found.append(f"{count} of {rows} rows {have} no cell of {label} and {do} not count")
+    found += _infinite(words, columns, rows)
     for status in Status:
-        count = int(np.count_nonzero(source.status == status))
+        count = counts.get(status, 0)
         if status is not Status.ok and status.has_solution and count:
             found.append(f"{count} of the rows {'is' if count == 1 else 'are'} {status.label}")
     return found
 
 
-def _infinite(
-    words: tuple[str, ...], columns: Sequence[SummaryColumn], source: TableSource
-) -> list[str]:
+def _infinite(words: tuple[str, ...], columns: Sequence[SummaryColumn], all_rows: int) -> list[str]:
     means = " and ".join(word for word in ("mean", "rms") if word in words)
     counts = {c.label: c.statistics.infinite for c in columns if means}
     found = []
     for count in sorted({*counts.values()} - {0}):
         labels = ", ".join(label for label, each in counts.items() if each == count)
         are, do = ("is", "does") if count == 1 else ("are", "do")
-        rows = f"{count} of {source.rows} rows {are} infinite in {labels}"
+        rows = f"{count} of {all_rows} rows {are} infinite in {labels}"
         found.append(f"{rows} and {do} not count for {means}")
     return found
 

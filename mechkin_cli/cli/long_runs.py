@@ -1,0 +1,230 @@
+"""What `mechkin analyze` does with a sweep whose rows are not held: each part of them is written
+and summed up, and forgotten."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli.analysis import stream_sweep
+from mechkin_cli.cli.messages import put, say
+from mechkin_cli.cli.progress import clock
+from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
+from mechkin_cli.diagnostics import UsageError
+from mechkin_cli.mechanism import LongRun
+from mechkin_cli.record import replace
+from mechkin_cli.tables import (
+    STREAM_FORMATS,
+    Columns,
+    CsvStyle,
+    OutputFolder,
+    RunningSummary,
+    TableWriter,
+    TextRoom,
+    heading_of,
+    rows_table,
+    stream_of,
+    summary_table,
+    write_table,
+)
+from mechkin_cli.verdict import SWEEP
+
+if TYPE_CHECKING:
+    from mechkin_cli.analysis import Stream
+    from mechkin_cli.analysis.stream import PartRows
+    from mechkin_cli.cli.analyze import AnalyzeCommand
+    from mechkin_cli.cli.progress import Tell
+    from mechkin_cli.model import Model
+    from mechkin_cli.tables import OutputFile, Summary, TableHeading, TableLayout
+
+USUAL_WORDS = ("max", "min")
+"""What is found of a table whose rows are not written, where it does not say."""
+
+
+def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
+    """Whether the rows of the model's sweep are not held: they are not wanted, or many, and nothing
+    is asked for that needs them all at once.
+
+    Raises:
+        UsageError: they are not to be written, but something that needs them is asked for.
+    """
+    needing = [
+        option
+        for option, given in (
+            ("--certify", command.certify),
+            ("--errors", command.errors),
+            ("--view", command.view),
+            ("--explain", command.explain),
+            ("--json", command.json),
+            *((f"--format {name}", name not in STREAM_FORMATS) for name in command.asked_formats),
+        )
+        if given
+    ]
+    if command.summary_only:
+        if needing:
+            raise UsageError(f"--summary-only keeps no rows, and {needing[0]} needs them")
+        return SWEEP in model.runs
+    if SWEEP not in model.runs or not isinstance(model.problem.motion, LongRun):
+        return False
+    return bool(command.asked_formats) and not needing
+
+
+class StreamedRun:
+    """A sweep whose rows were not held: what is said of it afterwards."""
+
+    def __init__(self, stream: Stream, tables: Sequence[_Table], *, summary_only: bool) -> None:
+        self.stream = stream
+        self.diagnostics = stream.diagnostics
+        self._tables, self._summary_only = tables, summary_only
+
+    def is_enough(self, *, strict: bool) -> bool:
+        """Whether every row has a solution, and where that is asked for is `ok`."""
+        verdicts = self.stream.verdicts
+        return verdicts.complete and (verdicts.sound or not strict)
+
+    def report(self, file: str, folder: Path) -> None:
+        """Prints the first and the last rows of the tables, and what stands below them."""
+        for table in self._tables:
+            put(table.shown(self.stream, folder, rows=not self._summary_only))
+        for line in streamed_summary(file, self.stream):
+            say(line)
+
+
+def stream_to(
+    model: Model, command: AnalyzeCommand, output: OutputFolder, tell: Tell
+) -> StreamedRun:
+    """Runs the sweep of a model, and writes its tables and the verdicts on its rows part by part.
+
+    Raises:
+        UsageError: a file cannot be written, or a quantity needs all rows at once.
+    """
+    packing = command.lanes, command.threads
+    stream = stream_sweep(model, None, 1, command.table, command.mode, *packing)
+    tables = [_Table(layout, command, stream) for layout in stream.layouts]
+    style = CsvStyle(
+        threads=command.threads, units=command.units, decimal_comma=command.decimal_comma
+    )
+    files = _Files(() if command.summary_only else command.formats, output, style)
+    progress = _progress(tell, stream.run_rows)
+    for part, own in stream.parts():
+        for place, table in enumerate(tables):
+            found = table.add(part, own, place)
+            files.write(found)
+        if not command.summary_only:
+            files.write(_verdicts(part, own), whole=("row",))
+        span = part.analysis.result.row_states.span
+        progress(span.first + span.rows)
+    files.end()
+    for table in tables:
+        summary = table.summary(stream)
+        if summary is not None:
+            below = summary_table(table.layout.name, table.layout.title, summary)
+            for name in command.formats:
+                with output.begin(f"{below.name}.{name}") as file:
+                    write_table(stream_of(below), name, file, style)
+    return StreamedRun(stream, tables, summary_only=command.summary_only)
+
+
+def _progress(tell: Tell, rows: int) -> Callable[[int], None]:
+    """Tells how many rows are done, how fast, and how long the others take."""
+    begun = monotonic()
+
+    def told(done: int) -> None:
+        rate = done / max(monotonic() - begun, 1e-9)
+        left = clock((rows - done) / rate)
+        tell(f"{done:,} of {rows:,} rows, {rate:,.0f} a second, {left} left")
+
+    return told
+
+
+def _verdicts(part: PartRows, own: slice) -> Columns:
+    """The part's own rows of the table of verdicts."""
+    result = part.analysis.result
+    table = rows_table(result, SWEEP)
+    first, *others = (column.between(own) for column in table.columns)
+    numbers = first.with_values(np.asarray(first.values) + result.row_states.span.first)
+    return Columns(table.name, table.title, (numbers, *others))
+
+
+class _Files:
+    """The files of some tables in some formats, which are begun with their first rows."""
+
+    def __init__(self, formats: Sequence[str], output: OutputFolder, style: CsvStyle) -> None:
+        self._formats, self._output, self._style = formats, output, style
+        self._room = TextRoom()
+        self._writers: dict[str, list[tuple[TableWriter, OutputFile]]] = {}
+
+    def write(self, table: Columns, whole: Sequence[str] = ()) -> None:
+        """Adds rows to the files of a table; columns of the labels `whole` hold whole numbers."""
+        if table.name not in self._writers:
+            heading = heading_of(table, whole)
+            self._writers[table.name] = [self._begun(heading, name) for name in self._formats]
+        for writer, _ in self._writers[table.name]:
+            writer.write(table.columns)
+
+    def _begun(self, heading: TableHeading, format: str) -> tuple[TableWriter, OutputFile]:
+        file = self._output.begin(f"{heading.name}.{format}")
+        return TableWriter(heading, format, file, self._style, self._room), file
+
+    def end(self) -> None:
+        """Ends all files."""
+        for writers in self._writers.values():
+            for writer, file in writers:
+                writer.end()
+                file.close()
+
+
+ENDS = 30
+"""Rows at the beginning of a table, and as many at its end, that are printed."""
+
+
+class _Table:
+    """A table while its rows pass by: its sums, its first and its last rows."""
+
+    def __init__(self, layout: TableLayout, command: AnalyzeCommand, stream: Stream) -> None:
+        self.layout, self._stream, self._labels = layout, stream, command.columns
+        words = layout.summary or (USUAL_WORDS if command.summary_only else ())
+        self._sums: RunningSummary | None = None
+        if words:
+            self._sums = RunningSummary(words, layout.columns, stream.along, stream.inputs)
+        self._first: Columns | None = None
+        self._last: Columns | None = None
+
+    def add(self, part: PartRows, own: slice, place: int) -> Columns:
+        """The part's own rows of the table."""
+        numbers = range(len(self.layout.columns))
+        columns = tuple(part.column(place, number).between(own) for number in numbers)
+        if self._sums is not None:
+            self._sums.add(columns, self._stream.places(part)[own])
+        table = Columns(self.layout.name, self.layout.title, columns)
+        table = table if self._labels is None else table.chosen(self._labels)
+        if self._first is None:
+            self._first = _rows(table, slice(0, ENDS))
+        self._last = _rows(table, slice(-ENDS, None))
+        return table
+
+    def shown(self, stream: Stream, folder: Path, *, rows: bool) -> str:
+        """The first rows of the table and the last ones, and what stands below it, as text."""
+        summary = self.summary(stream)
+        if not rows:
+            assert summary is not None
+            return shown_summary(self.layout.name, self.layout.title, summary)
+        assert self._first is not None
+        assert self._last is not None
+        last = replace(self._last, summary=summary)
+        return shown_ends(self._first, last, stream.run_rows, folder)
+
+    def summary(self, stream: Stream) -> Summary | None:
+        """What stands below the table."""
+        if self._sums is None:
+            return None
+        return self._sums.found(stream.run_rows, stream.verdicts.counts)
+
+
+def _rows(table: Columns, rows: slice) -> Columns:
+    columns = (column.between(rows).part(np.arange(ENDS)) for column in table.columns)
+    return replace(table, columns=tuple(columns))
