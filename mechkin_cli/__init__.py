@@ -9,6 +9,7 @@ r = m.analyze()                        an Analysis: the sweep; m.respond("NAME")
 Of a model
     m.parameters                       values by name in the file's units; m.parameters.unit("P1")
     m.analyze()  m.respond()           the runs; m.analyses(): all of the file
+    m.stream(rows=4096)                the sweep block by block, in constant memory
     m.modes()                          the ways to assemble it
     m.ranges()                         how far an input can go: dead centres, circuits
     m.cam("K")                         the cam of a coupling with a follower: profile, undercut
@@ -46,7 +47,7 @@ TYPE_CHECKING = False  # typing is not loaded for its flag alone
 if TYPE_CHECKING:
     from typing import Any
 
-    from mechkin_cli.analysis import Analysis
+    from mechkin_cli.analysis import Analysis, Stream
     from mechkin_cli.diagnostics import Diagnostic, InvalidFile, MechkinError, UsageError
     from mechkin_cli.expressions import ExpressionError
     from mechkin_cli.model import Model, load, loads
@@ -61,6 +62,7 @@ _PLACES = {
     "MechkinError": "diagnostics",
     "Model": "model",
     "Status": "verdict",
+    "Stream": "analysis",
     "UsageError": "diagnostics",
     "__version__": "verdict",
     "load": "model",
@@ -75,6 +77,7 @@ __all__ = [
     "MechkinError",
     "Model",
     "Status",
+    "Stream",
     "UsageError",
     "load",
     "loads",

@@ -129,6 +129,7 @@ class AnalyzeCommand(NamedTuple):
     mode: str | None = None
     table: list[str] | None = None
     columns: list[str] | None = None
+    summary_only: bool = False
     lanes: int = 0
     threads: int = 0
     certify: bool = False
@@ -139,7 +140,6 @@ class AnalyzeCommand(NamedTuple):
     messages: str | None = None
     json: bool = False
     quiet: bool = False
-    summary_only: bool = False
 
     @property
     def asked_formats(self) -> tuple[str, ...]:

@@ -49,7 +49,8 @@ __getattr__, __dir__ = lazy_names(
         "results": "Results",
         "stream": "TableHeading TableStream TableWriter heading_of metadata_of stream_of "
         "write_table",
-        "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction RunningSummary Statistics Summary "
+        "summary": "Extreme OVER_THE_WAY REDUCTIONS Reduction RunningStatistics RunningSummary "
+        "Statistics Summary "
         "mean root_mean_square row_weights statistics summary_of",
         "table": "Columns Heading evaluate summary_table",
         "writers": "STREAM_FORMATS USUAL_FORMATS WRITERS refuse_without_library write_results "

@@ -14,20 +14,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from references import FILE_OF, SWEPT
+from sweep.cut import cut
 
 import mechkin_cli as mk
-from mechkin_cli import tolerances
-from mechkin_cli.building import spacing
 from mechkin_cli.sweep import parts
 
 TIMES = int(os.environ.get("MECHKIN_RANDOM", "1"))
-
-
-def cut(monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
-    """Lets runs have parts of so many rows, and files make their numbers part by part."""
-    monkeypatch.setattr(tolerances, "PART_ROWS", rows)
-    monkeypatch.setattr(tolerances, "LEAST_PART_ROWS", rows)
-    monkeypatch.setattr(spacing, "LONG_RUN", rows + 1)
 
 
 def cells(analysis: mk.Analysis) -> dict[str, np.ndarray]:

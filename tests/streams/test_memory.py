@@ -1,0 +1,65 @@
+"""A run of ten million rows takes the memory of one of a few parts."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FOUR_BAR = """format: 1
+plane: xy
+units: {{length: m, angle: deg}}
+links: {{crank: {{}}, coupler: {{}}, rocker: {{}}}}
+joints:
+  A: {{type: R, links: [ground, crank], point: [0, 0]}}
+  B: {{type: R, links: [crank, coupler], point: [0, 1]}}
+  C: {{type: R, links: [coupler, rocker], point: [4, 3]}}
+  D: {{type: R, links: [ground, rocker], point: [4, 0]}}
+motion: {{inputs: {{A.theta: {{from: 0, to: 3600, count: {count}}}}}}}
+tables:
+  - {{name: t, columns: [D.theta], summary: [max, mean]}}
+"""
+CHILD = """
+import resource, sys
+limit = int(sys.argv[1])
+if limit:
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+from mechkin_cli.__main__ import main
+sys.argv[1:] = sys.argv[2:]
+try:
+    main()
+except SystemExit as exit:
+    assert not exit.code, exit.code
+print([line.split()[1] for line in open("/proc/self/status") if line.startswith("VmPeak")][0])
+"""
+
+
+def peak_of(folder: Path, count: int, limit: int = 0) -> int:
+    """Peak of the address space in bytes of a process that writes so many rows."""
+    path = folder / f"{count}.yaml"
+    path.write_text(FOUR_BAR.format(count=count))
+    options = ["--summary-only", "--quiet", "--threads", "1", "--out", str(folder / "out")]
+    found = subprocess.run(
+        [sys.executable, "-c", CHILD, str(limit), "analyze", str(path), *options],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert found.returncode == 0, found.stderr[-2000:]
+    return 1024 * int(found.stdout.split()[-1])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_ten_million_rows_need_the_memory_of_a_part(tmp_path: Path) -> None:
+    few = peak_of(tmp_path, 200_000)
+    # states of ten million rows alone would take 240 MB
+    peak_of(tmp_path, 10_000_000, few + 20_000_000)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_the_limit_is_one(tmp_path: Path) -> None:
+    few = peak_of(tmp_path, 200_000)
+    with pytest.raises(AssertionError):
+        peak_of(tmp_path, 200_000, few - 40_000_000)
