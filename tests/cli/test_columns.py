@@ -56,7 +56,11 @@ def test_a_label_with_a_comma_and_one_with_spaces_around(mechkin, write, folder)
 
 @pytest.mark.parametrize(
     ("label", "words"),
-    [("thta4", "did you mean theta4 or "), ("nothing at all", "columns are "), ("", "columns are ")],
+    [
+        ("thta4", "did you mean theta4 or "),
+        ("nothing at all", "columns are "),
+        ("", "columns are "),
+    ],
 )
 def test_an_unknown_label_is_refused_with_the_nearest(mechkin, folder, label, words) -> None:
     run = mechkin("analyze", RCSR, "--columns", f"s2,{label}", "--out", "here")
