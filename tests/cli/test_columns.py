@@ -84,7 +84,11 @@ def test_summaries_keep_the_chosen_columns(mechkin, write, folder) -> None:
     assert run.code == 0
     whole, some = (columns_of(folder / each / "tip.summary.csv") for each in ("all", "some"))
     assert some == {"summary": whole["summary"], "x": whole["x"]}
-    assert "theta" not in (folder / "some/tip.md").read_text(encoding="utf-8").partition("at:")[0]
+    # the words in a column of their own, and below x what is summed up of it
+    lines = (folder / "some/tip.md").read_text(encoding="utf-8").splitlines()
+    (below,) = (line.split("|")[1:-1] for line in lines if line.startswith("| max "))
+    assert [cell.strip() for cell in below] == ["max", "2.00"]
+    assert ["max", "2.00"] in [line.split() for line in run.out.splitlines()]
 
 
 def test_json_and_errors_have_the_chosen_columns(mechkin, write, folder) -> None:
