@@ -117,6 +117,10 @@ DECIMAL_MARKS = ("point", "comma")
 """What `--decimal` takes."""
 
 
+MOST_LABELS = 30
+"""Labels that are listed where none is like the one asked for."""
+
+
 class AnalyzeCommand(NamedTuple):
     """The options of the command, as `commands` declares them."""
 
@@ -336,14 +340,13 @@ def _with_labels(command: AnalyzeCommand, model: Model) -> AnalyzeCommand:
     asked: list[str] = []
     for text in command.columns:
         # as the header of CSV is written, since a label may have a comma
-        asked += [text] if text in known else next(csv.reader([text], skipinitialspace=True), [])
+        cells = [text] if text in known else next(csv.reader([text], skipinitialspace=True), [])
+        asked += [cell if cell in known else cell.strip() for cell in cells]
     for label in asked:
         if label not in known:
-            hint = nearest_hint(label, known)
-            raise UsageError(
-                f"--columns: no table has a column {label[:LONGEST_NAME]}"
-                + (f"; {hint}" if hint else "")
-            )
+            some = [*list(known)[:MOST_LABELS], *(["..."] if len(known) > MOST_LABELS else [])]
+            hint = nearest_hint(label, known) or f"columns are {', '.join(some)}"
+            raise UsageError(f"--columns: no table has a column {label[:LONGEST_NAME]}; {hint}")
     tables = [name for name, own in labels.items() if set(own).intersection(asked)]
     return command._replace(columns=list(dict.fromkeys(asked)), table=tables)
 

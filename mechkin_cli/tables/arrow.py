@@ -149,8 +149,8 @@ class ArrowTable:
 class _Numbers:
     """Rows of a column of numbers, until there are enough for a group."""
 
-    def __init__(self) -> None:
-        self._held = np.empty(ROW_GROUP)
+    def __init__(self, is_whole: bool) -> None:
+        self._held, self._is_whole = np.empty(ROW_GROUP), is_whole
 
     def take(self, column: TableColumn, start: int, at: int, count: int) -> None:
         values, unbounded = column.values, column.unbounded
@@ -163,12 +163,12 @@ class _Numbers:
 
     def array(self, arrow: Any, rows: int, kind: Any) -> Any:
         held = self._held[:rows]
-        missing = np.isnan(held)
-        if arrow.types.is_int64(kind):
-            # where there is none stands zero, and not what a cast makes of it on some machine
-            return arrow.array(np.where(missing, 0.0, held).astype(np.int64), kind, mask=missing)
-        held[missing] = 0.0
-        return arrow.array(held, kind, mask=missing)
+        missing: NDArray[np.bool_] | None = np.isnan(held)
+        if missing is not None and missing.any():
+            held[missing] = 0.0  # in place of bits that differ from machine to machine
+        else:
+            missing = None
+        return arrow.array(held.astype(np.int64) if self._is_whole else held, kind, mask=missing)
 
 
 class _KnownTexts:
@@ -212,7 +212,7 @@ class _Texts:
 
 def _held_column(heading: Heading) -> _Numbers | _KnownTexts | _Texts:
     if heading.kind != "text":
-        return _Numbers()
+        return _Numbers(heading.kind == "whole")
     return _KnownTexts(heading.texts) if heading.texts else _Texts()
 
 

@@ -210,7 +210,7 @@ class OutputFile(io.RawIOBase):
             begin: makes the attempt's folder, and says where there the file of a name is.
         """
         self.target = target
-        self.held: bytes | bytearray | None = bytearray()
+        self.held: bytearray | None = bytearray()
         self._begin = begin
         self._stream: io.FileIO | None = None
         self._checksum = self._size = 0
@@ -226,8 +226,8 @@ class OutputFile(io.RawIOBase):
         return True
 
     def write(self, data: Any) -> int:
-        """Adds bytes, all of them. After an error nothing more is written, nor refused: what packs
-        or frames a file may still write its end when it goes.
+        """Adds bytes, all of them. After an error, of its own or of the run, nothing more is
+        written, nor refused: what packs or frames a file may still write its end when it goes.
 
         Raises:
             OSError: they cannot be written.
@@ -237,7 +237,7 @@ class OutputFile(io.RawIOBase):
             return view.nbytes
         self._checksum = crc32(view, self._checksum)
         self._size += view.nbytes
-        if isinstance(self.held, bytearray) and self._size <= HELD_BYTES:
+        if self.held is not None and self._size <= HELD_BYTES:
             self.held += view
             return view.nbytes
         try:
@@ -251,6 +251,15 @@ class OutputFile(io.RawIOBase):
             raise
         return view.nbytes
 
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._has_failed = self._has_failed or kind is not None
+        self.close()
+
     def close(self) -> None:
         """Ends it."""
         if self._stream is not None:
@@ -258,7 +267,7 @@ class OutputFile(io.RawIOBase):
         super().close()
 
 
-def _write_all(stream: io.FileIO, data: bytes | bytearray | memoryview) -> None:
+def _write_all(stream: io.FileIO, data: bytearray | memoryview) -> None:
     view = memoryview(data)
     while view:
         view = view[stream.write(view) or 0 :]

@@ -146,6 +146,26 @@ def test_a_full_disk_is_told_with_the_rows_that_were_written(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("format", STREAM_FORMATS)
+@pytest.mark.filterwarnings("error::pytest.PytestUnraisableExceptionWarning")
+def test_an_error_between_blocks_ends_the_file_without_a_word(tmp_path: Path, format: str) -> None:
+    pytest.importorskip("pyarrow")
+    table = random_table(100_000)
+
+    def blocks():
+        yield table.columns
+        raise ZeroDivisionError
+
+    def fails() -> None:
+        with OutputFolder(tmp_path / "out") as output, output.begin(f"t.{format}") as file:
+            write_table(TableStream(heading_of(table), blocks()), format, file)
+
+    with pytest.raises(ZeroDivisionError):
+        fails()
+    gc.collect()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_memory_of_a_stream_is_that_of_a_block(tmp_path: Path) -> None:
     """While a file ten times as large as what is held is written."""
     import tracemalloc

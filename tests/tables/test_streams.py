@@ -86,6 +86,18 @@ def test_a_table_without_rows_has_its_columns(name: str) -> None:
     assert written(empty, name) == written(empty, name, 7)  # one block without rows, and no block
 
 
+@pytest.mark.parametrize("name", ["parquet", "arrow"])
+def test_missing_numbers_have_no_bits_of_their_own(name: str) -> None:
+    """Which not-a-number a machine computes differs in sign and payload."""
+    pytest.importorskip("pyarrow")
+    files = set()
+    for nan in (0x7FF8000000000000, 0xFFF8000000000000, 0x7FF8000000000123):
+        values = np.array([1.5, 0.0, -2.5])
+        values[1:2] = np.array([nan], np.uint64).view(np.float64)
+        files.add(written(Columns("t", "", (TableColumn("x", "", values),)), name))
+    assert len(files) == 1
+
+
 def test_lines_of_json_are_the_rows() -> None:
     table = random_table(2000, seed=2)
     texts = written(table, "jsonl", 300, whole=["row"]).decode().splitlines()

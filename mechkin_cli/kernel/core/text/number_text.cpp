@@ -54,16 +54,19 @@ int digit_count(std::uint64_t number) {
   return below + (number >= POWERS_OF_TEN.of[below]);
 }
 
-// The digits of a number from 1 to below 10^17 at `out` (24 characters); returns how many.
-int put_digits(std::uint64_t number, char* out) {
-  char text[24 + MOST_DIGITS];
-  const std::uint64_t high = number / 100000000;
-  text[7] = (char)('0' + high / 100000000);
-  put_eight((std::uint32_t)(high % 100000000), text + 8);
-  put_eight((std::uint32_t)(number % 100000000), text + 16);
-  const int count = digit_count(number);
-  std::memcpy(out, text + 24 - count, MOST_DIGITS);
-  return count;
+// All MOST_DIGITS places of a number with `count` digits, from the first one on; behind its digits are zeros.
+void put_digits(std::uint64_t number, int count, char* out) {
+  const std::uint64_t places = number * POWERS_OF_TEN.of[MOST_DIGITS - count];
+  const std::uint64_t high = places / 100000000;
+  *out = (char)('0' + high / 100000000);
+  put_eight((std::uint32_t)(high % 100000000), out + 1);
+  put_eight((std::uint32_t)(places % 100000000), out + 9);
+}
+
+// A point behind some of the digits at `out`.
+void put_point(char* out, int digits) {
+  std::memmove(out + digits + 1, out + digits, MOST_DIGITS - 1);
+  out[digits] = '.';
 }
 
 // Without the zeros that end it.
@@ -74,33 +77,27 @@ DecimalNumber trimmed(DecimalNumber decimal) {
   return decimal;
 }
 
-std::size_t put_plain(const char* digits, int count, int exponent, char* out) {
-  const int whole = count + exponent;  // digits before the point
-  if (exponent >= 0) {
-    std::memcpy(out, digits, MOST_DIGITS);
-    std::memset(out + count, '0', (std::size_t)exponent);
-    return (std::size_t)whole;
+std::size_t put_plain(const DecimalNumber& decimal, int count, char* out) {
+  const int whole = count + decimal.exponent;  // digits before the point
+  if (whole <= 0) {
+    std::memcpy(out, "0.000000", 8);  // no plain number has more than four zeros behind its point
+    put_digits(decimal.digits, count, out + 2 - whole);
+    return (std::size_t)(2 - whole + count);
   }
-  if (whole > 0) {
-    std::memcpy(out, digits, MOST_DIGITS);
-    std::memcpy(out + whole + 1, digits + whole, (std::size_t)(count - whole));
-    out[whole] = '.';
-    return (std::size_t)count + 1;
-  }
-  std::memcpy(out, "0.000000", 8);  // no plain number has more than four zeros behind its point
-  std::memcpy(out + 2 - whole, digits, MOST_DIGITS);
-  return (std::size_t)(2 - whole + count);
+  put_digits(decimal.digits, count, out);
+  if (decimal.exponent >= 0) return (std::size_t)whole;
+  put_point(out, whole);
+  return (std::size_t)count + 1;
 }
 
-std::size_t put_scientific(const char* digits, int count, int exponent, char* out) {
-  char* at = out;
-  *at++ = digits[0];
+std::size_t put_scientific(const DecimalNumber& decimal, int count, char* out) {
+  put_digits(decimal.digits, count, out);
+  char* at = out + count;
   if (count > 1) {
-    *at++ = '.';
-    std::memcpy(at, digits + 1, (std::size_t)(count - 1));
-    at += count - 1;
+    put_point(out, 1);
+    ++at;
   }
-  const int power = count - 1 + exponent;
+  const int power = count - 1 + decimal.exponent;
   *at++ = 'e';
   *at++ = power < 0 ? '-' : '+';
   const auto size = (std::uint32_t)(power < 0 ? -power : power);
@@ -117,12 +114,11 @@ std::size_t shortest(double x, double least, char* out) {
     return 1;
   }
   const DecimalNumber decimal = trimmed(shortest_decimal(magnitude));
-  char digits[24 + MOST_DIGITS];
-  const int count = put_digits(decimal.digits, digits);
+  const int count = digit_count(decimal.digits);
   const bool sign = x < 0;
   *out = '-';
   const bool plain = magnitude >= least && magnitude < 1e16;
-  return (plain ? put_plain : put_scientific)(digits, count, decimal.exponent, out + sign) + sign;
+  return (plain ? put_plain : put_scientific)(decimal, count, out + sign) + sign;
 }
 
 }  // namespace

@@ -66,11 +66,30 @@ struct PowerTable {
 
 constexpr PowerTable POWERS;
 
-// The upper part of a product of 192 bits, whose last bit is set where anything lies below it.
-std::uint64_t rounded_to_odd(const Power& power, std::uint64_t factor) {
+// A product of 192 bits with a power of ten.
+struct Product {
+  Wide upper;
+  std::uint64_t lowest;
+
+  // The highest 64 bits, the last of them set where anything lies below.
+  std::uint64_t rounded_to_odd() const { return (std::uint64_t)(upper >> 64) | ((std::uint64_t)upper > 1); }
+  Product plus(const Product& other) const {
+    const std::uint64_t sum = lowest + other.lowest;
+    return {upper + other.upper + (sum < lowest), sum};
+  }
+  Product minus(const Product& other) const {
+    return {upper - other.upper - (lowest < other.lowest), lowest - other.lowest};
+  }
+};
+
+Product product(const Power& power, std::uint64_t factor) {
   const Wide below = (Wide)power.low * factor;
-  const Wide product = (Wide)power.high * factor + (std::uint64_t)(below >> 64);
-  return (std::uint64_t)(product >> 64) | ((std::uint64_t)product > 1);
+  return {(Wide)power.high * factor + (std::uint64_t)(below >> 64), (std::uint64_t)below};
+}
+
+// With 2^shift, from 1 on.
+Product shifted(const Power& power, int shift) {
+  return {(Wide)power.high << shift | power.low >> (64 - shift), power.low << shift};
 }
 
 // Exact for all exponents of doubles.
@@ -93,9 +112,10 @@ DecimalNumber shortest_decimal(double magnitude) {
   const int k = is_near_below ? floor_log10_of_three_quarters(q) : floor_log10_of_power_of_two(q);
   const int h = q + floor_log2_of_power_of_ten(-k) + 1;
   const Power& power = POWERS.of[-k - LEAST_POWER];
-  const std::uint64_t value = rounded_to_odd(power, 4 * c << h), odd = c & 1;  // the ends belong to even ones
-  const std::uint64_t lower = rounded_to_odd(power, (4 * c - 2 + is_near_below) << h) + odd;
-  const std::uint64_t upper = rounded_to_odd(power, (4 * c + 2) << h) - odd;
+  const Product at = product(power, 4 * c << h);
+  const std::uint64_t value = at.rounded_to_odd(), odd = c & 1;  // the ends belong to even ones
+  const std::uint64_t lower = at.minus(shifted(power, h + !is_near_below)).rounded_to_odd() + odd;
+  const std::uint64_t upper = at.plus(shifted(power, h + 1)).rounded_to_odd() - odd;
   // with a digit less, where one of its two neighbours alone lies inside; chosen without a branch, which would be
   // guessed wrong for every third number
   const std::uint64_t s = value / 4, tenth = s / 10, middle = 4 * s + 2;
