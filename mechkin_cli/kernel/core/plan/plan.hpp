@@ -106,6 +106,15 @@ struct Block {
   int charts;                    // the last of its rows are those of a chart (chart.hpp)
   bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
   bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
+  int band_entries;              // of its Jacobian as a band and a border; 0: it is a full matrix
+};
+
+// Where the entries of one unknown of a banded block are (rows/band.hpp).
+struct BandRow {
+  int begin, end;  // equations of its part of the band
+  int at;          // its first entry among the block's: of the band, then of the chart's equations
+  int reach;       // one more than the last unknown that the equation of the same number may hold
+  int swaps;       // exchanges of rows up to the pivot of that equation
 };
 
 template <class Number>
@@ -231,6 +240,7 @@ struct PlanShape {
   const Block* block;
   const int* order;
   const int* unknown;        // columns solved for, grouped by block
+  const BandRow* band;       // unknowns: of blocks with a band
   const int* rest;           // tree joints that no block places
   int rest_count;
   const int* input_column;   // inputs

@@ -67,8 +67,7 @@ bool ChartedMotion::look_at(int lane, const Line& line, double s, const std::vec
   evaluate(place_.data(), rate_.data(), &looked_, bend_.data());
   if (looked_.flags[lane] & STAGE_NOT_CLOSED) return false;
   found->s = s;
-  found->jacobian = Matrix(plan_.block[0].rows, plan_.block[0].size);
-  for (long e = 0; e < entries_; ++e) found->jacobian.a[e] = at(looked_.jacobian, e, lane);
+  found->jacobian = jacobian_of(looked_.jacobian, lane);
   if (guess.empty() && s == 0.0 && !is_joined(lane, found->jacobian)) return false;
   const auto column = [&](const Packed& from, int count, std::vector<double>* to) {
     to->resize(count);
@@ -82,9 +81,7 @@ bool ChartedMotion::look_at(int lane, const Line& line, double s, const std::vec
 
 // Whether a Jacobian is told to be that of a place on the origin's side.
 bool ChartedMotion::is_joined(int lane, const Matrix& jacobian) const {
-  Matrix origin(jacobian.rows, jacobian.columns);
-  for (long e = 0; e < entries_; ++e) origin.a[e] = at(jacobian_, e, lane);
-  Matrix e = LeastSquares(jacobian).solve(origin);
+  Matrix e = LeastSquares(jacobian).solve(jacobian_of(jacobian_, lane));
   subtract_identity(&e);
   return spectral_radius_within(e, limits_.radius);
 }

@@ -208,6 +208,8 @@ class ChartedMotion : public Motion {
   void write_switches(const Stage& found, int lane, double time, double* switches);
   void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);
+  long jacobian_place(const Block& block, int equation, int unknown) const;
+  Matrix jacobian_of(const Packed& entries, int lane) const;
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
 

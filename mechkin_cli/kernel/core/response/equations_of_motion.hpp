@@ -10,6 +10,9 @@
 
 namespace {
 
+// Of an entry along the way from the origin (regular.hpp).
+constexpr int NUMBERS_ON_SEGMENT = 5;
+
 // Beside the kernel's workspace: directions are those of the chart, then those of the driven inputs.
 struct ReducedMotion {
   Pack* tangent;   // directions x columns: rates of the columns
@@ -17,7 +20,7 @@ struct ReducedMotion {
   Pack* inertia;   // directions x charts: V_d . I V_j
   Pack* force;     // directions: r_d
   Pack* factor;    // charts x charts: Cholesky's
-  Pack* radius;    // two matrices of the largest block
+  Pack* radius;    // what is_regular wants: two matrices of the largest block, or a number along the way for each entry
 };
 
 inline int directions(const Plan& p) { return p.charts + p.inputs; }
@@ -30,7 +33,13 @@ inline long lay_out_motion(const Plan& p, char* at, ReducedMotion* m) {
   m->inertia = room.take<Pack>(d * p.charts);
   m->force = room.take<Pack>(d);
   m->factor = room.take<Pack>(p.charts * p.charts);
-  m->radius = room.take<Pack>(2 * p.largest_block * p.largest_block);
+  long wanted = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const long entries = p.block[b].band_entries, square = 2L * p.block[b].rows * p.block[b].size;
+    const long own = entries ? NUMBERS_ON_SEGMENT * entries : square;
+    if (own > wanted) wanted = own;
+  }
+  m->radius = room.take<Pack>(wanted);
   return room.used;
 }
 
