@@ -8,6 +8,7 @@
 // own with the same structure, or a number of two parts (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
+#include "arithmetic/band_row.hpp"
 #include "plan/friction_records.hpp"
 #include "plan/functions.hpp"
 #include "plan/program.hpp"
@@ -106,15 +107,7 @@ struct Block {
   int charts;                    // the last of its rows are those of a chart (chart.hpp)
   bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
   bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
-  int band_entries;              // of its Jacobian as a band and a border; 0: it is a full matrix
-};
-
-// Where the entries of one unknown of a banded block are (rows/band.hpp).
-struct BandRow {
-  int begin, end;  // equations of its part of the band
-  int at;          // its first entry among the block's: of the band, then of the chart's equations
-  int reach;       // one more than the last unknown that the equation of the same number may hold
-  int swaps;       // exchanges of rows up to the pivot of that equation
+  int band_entries;              // of its Jacobian as a band, with a border of charts (arithmetic/band.hpp); 0: a full matrix
 };
 
 template <class Number>

@@ -217,7 +217,7 @@ void PlanBuilder::find_band(Block* block) {
   }
   long entries = 0;
   for (int u = 0; u < n; ++u) {
-    row[u].at = (int)entries;
+    row[u].at = (int)entries, row[u].last = end[u];
     entries += row[u].end - row[u].begin + block->charts;
   }
   if (2 * entries <= (long)n * n) block->band_entries = (int)entries;

@@ -305,25 +305,23 @@ void ChartedMotion::lay_chart(int lane) {
   }
 }
 
-// Where an equation's derivative by an unknown stands among a block's entries; -1 where it is zero.
+// Where an equation's derivative by an unknown stands among a block's entries.
 long ChartedMotion::jacobian_place(const Block& block, int equation, int unknown) const {
   if (!block.band_entries) return (long)equation * block.size + unknown;
-  const BandRow& row = plan_.band[block.column_begin + unknown];
-  const int inner = block.rows - block.charts;
-  if (equation >= inner) return row.at + row.end - row.begin + equation - inner;
-  return equation >= row.begin && equation < row.end ? row.at + equation - row.begin : -1;
+  return place_in_band(plan_.band[block.column_begin + unknown], equation, block.rows - block.charts);
 }
 
-// A lane's Jacobian of the block that has the chart, as a full matrix.
-Matrix ChartedMotion::jacobian_of(const Packed& entries, int lane) const {
+// A lane's Jacobian of the block that has the chart.
+ChartMatrix ChartedMotion::jacobian_of(const Packed& entries, int lane) const {
   const Block& block = plan_.block[0];
+  if (block.band_entries) {
+    std::vector<double> band((std::size_t)block.band_entries);
+    for (int e = 0; e < block.band_entries; ++e) band[e] = at(entries, e, lane);
+    return ChartMatrix(std::move(band), plan_.band + block.column_begin, block.size, block.charts);
+  }
   Matrix full(block.rows, block.size);
-  for (int i = 0; i < block.rows; ++i)
-    for (int u = 0; u < block.size; ++u) {
-      const long place = jacobian_place(block, i, u);
-      if (place >= 0) full(i, u) = at(entries, place, lane);
-    }
-  return full;
+  for (long e = 0; e < entries_; ++e) full.a[e] = at(entries, e, lane);
+  return ChartMatrix(std::move(full));
 }
 
 // Angles within half a turn of those before, orientations of their sign.

@@ -43,9 +43,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 double largest(const std::vector<double>& a) { return largest_difference(a, std::vector<double>(a.size(), 0.0)); }
 
-// 1 / |J^+|: goes to zero where J becomes singular, as the distance where the pole is of first order.
-double regularity(const Matrix& j) { return LeastSquares(j).least_singular_bound(); }
-
 double node_at(int k) { return k < HALF ? -NODE[k] : NODE[NODES - 1 - k]; }
 
 // Barycentric interpolation at x of values(k) at the nodes (Berrut and Trefethen 2004, 4.2).
@@ -114,9 +111,7 @@ double CrossingCurve::distance_ahead(const LookAt& look, double probe) {
     for (const CurvePlace& place : known) all.push_back(&place);
     CurvePlace found;
     if (!look(s, step ? guess(s, all) : std::vector<double>(), &found)) return HUGE_VAL;
-    Matrix e = LeastSquares(found.jacobian).solve(origin_.jacobian);
-    subtract_identity(&e);
-    const double radius = spectral_radius_bound(e);
+    const double radius = found.jacobian.largest_change(origin_.jacobian);
     const double seen = s * (1.0 + radius) / radius;
     if (!(seen >= NEAREST_PLACE && seen <= FARTHEST_PLACE)) return HUGE_VAL;
     if (step == 4) return std::fabs(seen - distance) <= MISSED_GUESS * seen ? seen : HUGE_VAL;
@@ -151,7 +146,7 @@ bool CrossingCurve::interpolate(const LookAt& look, double ahead, double width) 
 bool CrossingCurve::locate() {
   regular_.clear();
   for (int k = 0; k < NODES; ++k)
-    regular_.push_back((k < HALF ? -1.0 : 1.0) * regularity(nodes_[k].jacobian));
+    regular_.push_back((k < HALF ? -1.0 : 1.0) * nodes_[k].jacobian.regularity());
   const auto value = [&](int k) { return regular_[k]; };
   double low = -NODE[HALF - 1], high = NODE[HALF - 1];
   for (int i = 0; i < 60; ++i) {
@@ -174,14 +169,14 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
   const double place_size = std::fmax(1.0, largest(nodes_[HALF].state));
   const double size = place_size * std::fmax(1.0, largest(nodes_[HALF].tangent));
   const double second_size = size * std::fmax(pace, largest(nodes_[HALF].bend));
-  const double loops = std::fmax(1.0, origin_.jacobian.columns / FEW_UNKNOWNS);
+  const double loops = std::fmax(1.0, origin_.jacobian.unknowns() / FEW_UNKNOWNS);
   double most = 0.0;
   for (double m : regular_) most = std::fmax(most, std::fabs(m));
   for (double x : BETWEEN) {
     const double s = middle_ + width_ * x;
     place(s, told.state.data(), told.tangent.data(), told.bend.data());
     if (!look(s, told.state, &seen)) return false;
-    const double regular = (x < 0.0 ? -1.0 : 1.0) * regularity(seen.jacobian);
+    const double regular = (x < 0.0 ? -1.0 : 1.0) * seen.jacobian.regularity();
     const double expected = between_nodes(x, [&](int k) { return regular_[k]; });
     const bool same = largest_difference(told.state, seen.state) <= loops * SAME_STATE * place_size &&
                       largest_difference(told.tangent, seen.tangent) <= loops * SAME_FIRST * size &&

@@ -7,11 +7,9 @@
 #pragma once
 
 #include "forces/energy.hpp"
+#include "response/regular_band.hpp"
 
 namespace {
-
-// Of an entry along the way from the origin (regular.hpp).
-constexpr int NUMBERS_ON_SEGMENT = 5;
 
 // Beside the kernel's workspace: directions are those of the chart, then those of the driven inputs.
 struct ReducedMotion {
@@ -20,7 +18,8 @@ struct ReducedMotion {
   Pack* inertia;   // directions x charts: V_d . I V_j
   Pack* force;     // directions: r_d
   Pack* factor;    // charts x charts: Cholesky's
-  Pack* radius;    // what is_regular wants: two matrices of the largest block, or a number along the way for each entry
+  Pack* radius;    // two matrices of the largest full block
+  SegmentRoom segment;  // of a block with a band
 };
 
 inline int directions(const Plan& p) { return p.charts + p.inputs; }
@@ -33,13 +32,15 @@ inline long lay_out_motion(const Plan& p, char* at, ReducedMotion* m) {
   m->inertia = room.take<Pack>(d * p.charts);
   m->force = room.take<Pack>(d);
   m->factor = room.take<Pack>(p.charts * p.charts);
-  long wanted = 0;
+  int largest = 0;
   for (int b = 0; b < p.blocks; ++b) {
-    const long entries = p.block[b].band_entries, square = 2L * p.block[b].rows * p.block[b].size;
-    const long own = entries ? NUMBERS_ON_SEGMENT * entries : square;
-    if (own > wanted) wanted = own;
+    const Block& at = p.block[b];
+    if (!at.band_entries && at.rows > largest) largest = at.rows;
+    if (!at.band_entries) continue;  // of one block, that with the chart
+    const long used = lay_out_segment(p.band + at.column_begin, at.size, at.band_entries, nullptr, &m->segment);
+    lay_out_segment(p.band + at.column_begin, at.size, at.band_entries, room.take<char>((int)used), &m->segment);
   }
-  m->radius = room.take<Pack>(wanted);
+  m->radius = room.take<Pack>(2 * largest * largest);
   return room.used;
 }
 

@@ -131,7 +131,7 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
 // Whether a block's Jacobian, `here` and factored, is joined with that of the origin by regular ones.
 inline Mask is_joined(const Plan& p, Workspace& w, int block, const BlockMatrices& at, const Pack* here, const Pack* origin,
                       double limit, const ReducedMotion& m) {
-  if (at.row) return is_regular_band(at, here, origin, limit, reinterpret_cast<OnSegment*>(m.radius));
+  if (at.row) return is_regular_band(at.band(), at.entries, here, origin, limit, m.segment);
   return is_regular(p, w, block, origin, limit, m.radius);
 }
 

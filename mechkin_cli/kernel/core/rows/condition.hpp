@@ -6,6 +6,7 @@
 #pragma once
 
 #include "rows/condition_estimate.hpp"
+#include "rows/inverse_norm.hpp"
 #include "rows/position.hpp"
 
 namespace {
@@ -28,27 +29,13 @@ inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) 
   for (int i = b.rows - b.charts; i < b.rows; ++i) weight[i] = 1.0;
 }
 
-// As those of full matrices, of a block with a band.
-inline Pack estimate_of_band(const Plan& p, Workspace& w, int index) {
-  const Block& b = p.block[index];
-  const BlockMatrices at = matrices_of(p, w, index);
-  const int n = b.size;
-  Pack *const c = w.scratch, *const x = c + n * n;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) x[i] = 0.0;
-    x[j] = w.right[j];
-    at.solve_equations(x);
-    for (int i = 0; i < n; ++i) c[i * n + j] = x[i] / Pack(p.column_weight[p.unknown[b.column_begin + i]]);
-  }
-  return largest_singular_value(c, n);
-}
-
 // To 1 % from the factors of the packs that go together.
 inline void estimate_conditions(const Plan& p, int index, Judged* pack, int count) {
   const Block& b = p.block[index];
   for (int k = 0; k < count && b.band_entries; ++k) {
-    per_row(p, b, 1.0 / p.row_weight, pack[k].w.right);
-    pack[k].condition = estimate_of_band(p, pack[k].w, index);
+    Workspace& w = pack[k].w;
+    per_row(p, b, 1.0 / p.row_weight, w.right);
+    pack[k].condition = inverse_norm(matrices_of(p, w, index), w.right, p.column_weight, p.unknown + b.column_begin, w.scratch);
   }
   if (b.band_entries) return;
   InverseNorm norm[PACKS_OF_ESTIMATE];

@@ -138,17 +138,13 @@ MECHKIN_INLINE void estimate_together(InverseNorm* pack, int count, const double
   for (int k = 0; k < count; ++k) pack[k].value = sqrt(half_of(value, k) * trace[k]);
 }
 
-// The largest singular value of a matrix c (n x n) with room for two more behind it.
-inline Pack largest_singular_value(Pack* c, int n) {
-  Pack* const g = c + n * n;
+inline void estimate_alone(InverseNorm& pack, const double* column_weight, const int* unknown) {
+  const int n = pack.f.n;
+  Pack *const c = pack.scratch, *const g = c + n * n;
+  weighted_inverse<0>(pack.f, n, pack.inverse_weight, column_weight, unknown, c);
   const Pack trace = gram<0>(&c->v, n, &g->v), inverse = Pack(1.0) / trace;
   for (int e = 0; e < n * n; ++e) g[n * n + e] = g[e] * inverse;
-  return sqrt(Pack(largest_eigenvalue<0>(&g[n * n].v, &c->v, n)) * trace);
-}
-
-inline void estimate_alone(InverseNorm& pack, const double* column_weight, const int* unknown) {
-  weighted_inverse<0>(pack.f, pack.f.n, pack.inverse_weight, column_weight, unknown, pack.scratch);
-  pack.value = largest_singular_value(pack.scratch, pack.f.n);
+  pack.value = sqrt(Pack(largest_eigenvalue<0>(&g[n * n].v, &c->v, n)) * trace);
 }
 
 inline void find_inverse_norms(InverseNorm* pack, int count, const double* column_weight, const int* unknown) {

@@ -86,7 +86,8 @@ struct BlockMatrices {
   }
   // Of the Jacobian that is not factored.
   Pack entry(int equation, int unknown) const {
-    return row ? band_entry(band(), equation, unknown) : jacobian[equation * n + unknown];
+    const int place = row ? place_in_band(row[unknown], equation, m - charts) : equation * n + unknown;
+    return place < 0 ? Pack(0.0) : jacobian[place];
   }
   // The unknowns from the equations' right-hand sides, in place.
   MECHKIN_INLINE void solve_equations(Pack* b) const {
