@@ -19,10 +19,9 @@ Passed = Sequence[Sequence[int]]
 
 def in_order(passed: Passed, unknowns: int) -> tuple[list[int], list[int]]:
     """Loops and unknowns in the order of the narrower band: as they are, or by King's method."""
-    given = list(range(len(passed)))
-    found = _king(passed, unknowns)
-    choices = [(loops, _unknowns_of(loops, passed, unknowns)) for loops in (given, found)]
-    return min(choices, key=lambda choice: _work(*choice, passed))
+    orders = list(range(len(passed))), _king(passed, unknowns)
+    choices = [(loops, _unknowns_of(loops, passed, unknowns)) for loops in orders]
+    return min(choices, key=lambda choice: _work(choice[0], choice[1], passed))
 
 
 def _loops_of(passed: Passed, unknowns: int) -> list[list[int]]:

@@ -124,7 +124,8 @@ class FourBars:
             return f"[{(-1 if mirrored else 1) * place.real!r}, {place.imag!r}]"
 
         def rod(length: float, centre: complex) -> str:
-            return f"{{mass: {length!r}, center_of_mass: {at(centre)}, inertia: {ROUND * length**3!r}}}"
+            inertia = ROUND * length**3
+            return f"{{mass: {length!r}, center_of_mass: {at(centre)}, inertia: {inertia!r}}}"
 
         def joint(name: str, first: str, second: str, place: complex) -> str:
             return f"  {name}: {{type: R, links: [{first}, {second}], point: {at(place)}}}"

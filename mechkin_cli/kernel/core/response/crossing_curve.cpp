@@ -22,8 +22,10 @@ constexpr double FARTHEST_PLACE = 0.25, NEAREST_PLACE = 1e-6;
 constexpr double WIDTHS[5] = {0.25, 0.1, 0.03, 0.01, 0.003};
 // What polynomial and closed places may differ by, which is a rounding over the distance: states, their derivatives, and
 // what goes to zero. Angles after many turns round by more, in parts of the largest; loops in a row by the sum of
-// theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them.
+// theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them. Beyond these more loops
+// have larger errors each, too, which they take over from those before: four times what was measured for 320.
 constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3, FEW_UNKNOWNS = 5.0;
+constexpr double MANY_UNKNOWNS = 80.0;
 // Of the way to the branch point: how far a place may lie from its guess. Another branch lies off by about all of it.
 constexpr double MISSED_GUESS = 0.1;
 // Least slope of what goes to zero, at the nodes next to it, in parts of that at the others: a tenth where the pole is of
@@ -169,7 +171,8 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
   const double place_size = std::fmax(1.0, largest(nodes_[HALF].state));
   const double size = place_size * std::fmax(1.0, largest(nodes_[HALF].tangent));
   const double second_size = size * std::fmax(pace, largest(nodes_[HALF].bend));
-  const double loops = std::fmax(1.0, origin_.jacobian.unknowns() / FEW_UNKNOWNS);
+  const int unknowns = origin_.jacobian.unknowns();
+  const double loops = std::fmax(1.0, unknowns / FEW_UNKNOWNS) * std::fmax(1.0, unknowns / MANY_UNKNOWNS);
   double most = 0.0;
   for (double m : regular_) most = std::fmax(most, std::fabs(m));
   for (double x : BETWEEN) {
