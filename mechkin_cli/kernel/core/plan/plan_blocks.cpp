@@ -189,7 +189,7 @@ void PlanBuilder::find_relations() {
   }
 }
 
-// Where the entries of a block with a chart are, which has all loops in it, if most of its matrix is zeros.
+// Where the entries of a block with a chart are, which has all loops in it, if most of its matrix is zeros. It is the last.
 void PlanBuilder::find_band(Block* block) {
   const int n = block->size, inner = block->rows - block->charts;
   if (!block->charts || block->rows != n || n <= SMALL_BLOCK) return;
@@ -238,7 +238,7 @@ Result<FrozenPlan> PlanBuilder::finish() {
   find_turns();
   find_relations();
   band_.assign(unknown_.size(), {});
-  for (Block& b : block_) find_band(&b);
+  if (!block_.empty()) find_band(&block_.back());
   REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);

@@ -114,7 +114,7 @@ inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
   if (at.band_entries) r.row = p.band + at.column_begin, r.entries = at.band_entries;
   for (int b = 0; b < block; ++b) {
     const int m = p.block[b].rows, n = p.block[b].size;
-    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;
+    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;  // a band is the last
   }
   return r;
 }

@@ -47,8 +47,7 @@ inline void damped_step(Workspace& w, const BlockMatrices& at, Pack damping) {
 // Runs one pack of starts in w.q to the end; returns the residuals.
 inline Pack search_block(const Plan& p, Workspace& w, int index, int iterations, double accept) {
   const Block& b = p.block[index];
-  BlockMatrices at = matrices_of(p, w, index);
-  at.row = nullptr;  // the matrix of normal equations is full
+  const BlockMatrices at = matrices_of(p, w, index);
   const SearchScales scale;
   Pack damping = scale.start, residual = 0.0;
   for (int iteration = 0; iteration < iterations; ++iteration) {
