@@ -8,7 +8,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
-from response.four_bar_rows import FourBars, misses, unequal
+from response.four_bar_rows import GRAVITY, FourBars, misses, unequal
 from response.parallel_cranks import CompoundPendulum
 
 import mechkin_cli as mk
@@ -138,6 +138,32 @@ def test_variants_in_lanes_are_as_alone() -> None:
     for row, value in zip(together, masses, strict=True):
         alone = mk.loads(text.replace(f"{{m: {mass}}}", f"{{m: {value}}}")).respond("run")
         assert row.tobytes() == alone["A9.theta"].tobytes()
+
+
+def test_rows_beside_each_other_move_as_alone() -> None:
+    """Three freedoms in one matrix, two of them of rows of loops."""
+    first, second = unequal(7, 21), unequal(5, 22)
+    names = range(50, 56)
+    texts = [
+        first.text(*lines("A0"), "tolerance: 1e-12"),
+        second.text(*lines("A50", -0.4), "tolerance: 1e-12", names=names),
+    ]
+    alone = [mk.loads(text).respond("run") for text in texts]
+    parts = [text.partition("joints:\n") for text in texts]
+    links = "".join(part[0].partition("links:\n")[2] for part in parts)
+    joints = "".join(part[2].partition("loads:")[0] for part in parts)
+    head, end = texts[0].partition("links:\n")[0], texts[0].partition("loads:")[2]
+    weight = "  weight: {mass: 1, center_of_mass: [0, 1]}\n"
+    slide = "  S: {type: P, links: [ground, weight], point: [0, 0], axis: [0, 1]}\n"
+    both = f"{head}links:\n{links}{weight}joints:\n{joints}{slide}loads:{end}"
+    start = "S.s: 0, S.s_dot: 1 m/s, A50.theta: 0, A50.theta_dot: -0.4 rad/s, A0.theta: 0,"
+    found = mk.loads(both.replace("start: {A0.theta: 0,", f"start: {{{start}")).respond("run")
+    assert set(found["row.status"]) == {"ok"}
+    for run, numbers in zip(alone, (range(8), names), strict=True):
+        for k in numbers:
+            assert np.max(np.abs(found[f"A{k}.theta"] - run[f"A{k}.theta"])) < 1e-11
+    time = found["time"]
+    assert np.max(np.abs(found["S.s"] - (time - 0.5 * GRAVITY * time**2))) < 1e-12
 
 
 @pytest.mark.parametrize("loops", [1, 10, 20])

@@ -3,7 +3,7 @@
 //
 // Powers of J^-1 J_0 - I, as of small blocks (regular.hpp), would be full, and the longer a row of loops the higher the power
 // that says anything: what one loop's change does to all behind it is no eigenvalue. Pivots stand loop by loop, each
-// with its own unknowns, and the last with the direction of the whole motion.
+// with its own unknowns, and the last with the direction of the whole motion. They need not be those of the factors.
 #pragma once
 
 #include "plan/room.hpp"
