@@ -18,6 +18,7 @@ from mechkin_cli.diagnostics import Diagnostic, MechkinError
 from mechkin_cli.mechanism import Constraint, Joint, Mechanism, PairConstraint
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure.assur import Undriven
+from mechkin_cli.structure.loop_order import in_order
 from mechkin_cli.structure.network import Connection, reduce
 
 
@@ -190,17 +191,40 @@ def structure_of(graph: SolverGraph) -> object:
     return edges, closings, graph.loops, graph.blocks, graph.inputs
 
 
+SMALL_BLOCK = 12
+"""Unknowns up to which all entries of a matrix are kept, whatever their order
+(kernel/core/plan/plan_blocks.cpp)."""
+
+
 def charted(graph: SolverGraph, free: Container[tuple[str, str]]) -> SolverGraph:
-    """The same tree and cut joints with the inputs `free` (joint, coordinate) undriven."""
+    """The same tree and cut joints with the inputs `free` (joint, coordinate) undriven; the cut
+    joints of many loops in the order of their neighbourhood (`in_order`)."""
     pairs = list(zip(graph.inputs, graph.driven, strict=True))
     freed = [at for at, name in pairs if name in free]
     driven = [(at, name) for at, name in pairs if name not in free]
     closings = tuple(c for block in graph.blocks for c in block.closings)
     unknowns = (*freed, *(at for block in graph.blocks for at in block.unknowns))
     equations = sum(block.equations for block in graph.blocks) + len(freed)
-    block = Block(closings, unknowns, equations, len(freed))
     inputs, names = tuple(at for at, _ in driven), tuple(name for _, name in driven)
-    return graph._replace(blocks=(block,), inputs=inputs, driven=names)
+    free_graph = graph._replace(inputs=inputs, driven=names)
+    if len(unknowns) > SMALL_BLOCK:
+        number = {at: k for k, at in enumerate(unknowns)}
+        of_edge: dict[int, list[int]] = {}
+        for at, k in number.items():
+            of_edge.setdefault(at[0], []).append(k)
+        passed = [
+            sorted({k for edge, _ in graph.loops[c] for k in of_edge.get(edge, ())})
+            for c in closings
+        ]
+        order, columns = in_order(passed, len(unknowns))
+        unknowns = tuple(unknowns[k] for k in columns)
+        free_graph = free_graph._replace(
+            closings=tuple(graph.closings[closings[k]] for k in order),
+            loops=tuple(graph.loops[closings[k]] for k in order),
+        )
+        closings = tuple(range(len(order)))
+    block = Block(closings, unknowns, equations, len(freed))
+    return free_graph._replace(blocks=(block,))
 
 
 def holding(

@@ -53,7 +53,7 @@ integrator/march_start.cpp integrator/sides.cpp integrator/crossing_search.cpp
 response/driven_laws.cpp response/charted_friction.cpp response/slip_trial.cpp response/response.cpp
 response/sign_vectors.cpp response/charted_sizes.cpp response/charted_ways.cpp
 response/charted_sticking.cpp response/charted_crossings.cpp response/crossing_curve.cpp
-response/varied_response.cpp
+response/chart_matrix.cpp response/varied_response.cpp
 text/plan_text.cpp text/table_text.cpp ../c/mechkin.cpp ../wasm/room.cpp""".split()
 EXPORTED = """mechkin_plan_create mechkin_plan_free mechkin_page_sizes mechkin_page_run
 mechkin_page_respond mechkin_tape_create mechkin_tape_free mechkin_tape_run mechkin_tape_outputs

@@ -18,6 +18,14 @@ struct Factors {
   int n;
 };
 
+// Whether a factor is zero in all lanes, so that what it multiplies need not be looked at. Large matrices, of many loops,
+// are mostly zeros; in small ones asking takes as long as the product.
+template <int N>
+MECHKIN_INLINE bool is_passed_over(const Pack& factor) {
+  if constexpr (N == 0 && PARTS == 1) return all(factor == Pack(0.0));
+  return false;
+}
+
 template <int N>
 MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
   // short rows are exchanged in less time than a branch takes that is guessed wrong
@@ -40,6 +48,7 @@ MECHKIN_INLINE void factor_sized(Factors f, int runtime) {
     for (int i = k + 1; i < n; ++i) {
       const Pack l = f.a[i * n + k] * inverse;
       f.a[i * n + k] = l;
+      if (is_passed_over<N>(l)) continue;
       for (int j = k + 1; j < n; ++j) subtract_product(f.a[i * n + j], l, f.a[k * n + j]);
     }
   }
@@ -117,6 +126,33 @@ inline void solve(Factors f, Pack* b) { MECHKIN_SIZED(solve_sized, MECHKIN_AND_B
 inline void solve_transposed(Factors f, Pack* b) { MECHKIN_SIZED(solve_transposed_sized, MECHKIN_AND_B) }
 #undef MECHKIN_AND_B
 #undef MECHKIN_SIZED
+
+// B := A^-1 B, of n x n entries: as `solve` each of its columns, entry for entry.
+inline void solve_columns(Factors f, Pack* b) {
+  const int n = f.n;
+  int s = 0;
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) {
+      const Mask c = f.swap[s++];
+      if (!any(c)) continue;
+      for (int j = 0; j < n; ++j) {
+        const Pack x = b[k * n + j], y = b[i * n + j];
+        b[k * n + j] = select(c, y, x);
+        b[i * n + j] = select(c, x, y);
+      }
+    }
+  const auto subtract_row = [&](int i, int k) {
+    const Pack factor = f.a[i * n + k];
+    if (is_passed_over<0>(factor)) return;
+    for (int j = 0; j < n; ++j) subtract_product(b[i * n + j], factor, b[k * n + j]);
+  };
+  for (int k = 0; k < n; ++k)
+    for (int i = k + 1; i < n; ++i) subtract_row(i, k);
+  for (int k = n - 1; k >= 0; --k) {
+    for (int i = k + 1; i < n; ++i) subtract_row(k, i);
+    for (int j = 0; j < n; ++j) b[k * n + j] *= f.a[k * n + k];
+  }
+}
 
 inline Pack column_square(const Pack* a, int m, int n, int column) {
   Pack sum = 0.0;

@@ -31,6 +31,7 @@ void each_array(Plan& p, const Visit& visit) {
   visit(ARRAY_BLOCK, p.block, p.blocks);
   visit(ARRAY_ORDER, p.order, p.order_count);
   visit(ARRAY_UNKNOWN, p.unknown, p.unknowns);
+  visit(ARRAY_BAND, p.band, p.unknowns);
   visit(ARRAY_REST, p.rest, p.rest_count);
   visit(ARRAY_INPUT_COLUMN, p.input_column, p.inputs);
   visit(ARRAY_COLUMN_STATE, p.column_state, p.columns);

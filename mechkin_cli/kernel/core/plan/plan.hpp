@@ -8,6 +8,7 @@
 // own with the same structure, or a number of two parts (wide_plan.hpp). `Plan`, `Frame` ... are those of the constants of this compiled unit.
 #pragma once
 
+#include "arithmetic/band_row.hpp"
 #include "plan/friction_records.hpp"
 #include "plan/functions.hpp"
 #include "plan/program.hpp"
@@ -106,6 +107,7 @@ struct Block {
   int charts;                    // the last of its rows are those of a chart (chart.hpp)
   bool placeless;                // as many relations between coordinates as unknowns, which do not go by places
   bool is_explicit;              // one such whose unknown is no function's argument, so that it gives the unknown
+  int band_entries;              // of its Jacobian as a band, with a border of charts (arithmetic/band.hpp); 0: a full matrix
 };
 
 template <class Number>
@@ -231,6 +233,7 @@ struct PlanShape {
   const Block* block;
   const int* order;
   const int* unknown;        // columns solved for, grouped by block
+  const BandRow* band;       // unknowns: of blocks with a band
   const int* rest;           // tree joints that no block places
   int rest_count;
   const int* input_column;   // inputs

@@ -1,5 +1,8 @@
 // The order of a plan's parts: blocks, what they place and solve for, and the finish.
 #include "plan/plan_builder.hpp"
+
+#include <algorithm>
+
 #include "rows/units.hpp"
 #include "stepping/stepper.hpp"
 
@@ -7,6 +10,9 @@ namespace {
 
 // Entries of a block's matrices are counted in int; its Jacobian would take 128 MB a lane.
 constexpr int MOST_BLOCK_ROWS = 4096;
+
+// Unknowns up to which full matrices are as fast as bands.
+constexpr int SMALL_BLOCK = 12;
 
 int equations(const ClosingJoint& j) { return kernel_unit()->pair_types[j.type].equations; }
 
@@ -39,7 +45,7 @@ Refusal PlanBuilder::add_block(int closing_joints, const std::vector<int>& joint
   REQUIRE(closing_joints + charts > 0 && closing_joints >= 0 &&
               closing_joints <= (int)closing_.size() - closing_begin, "block of unknown joints");
   REQUIRE(!rest_set_, "blocks come before the rest");
-  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts, false, false};
+  Block b = {(int)order_.size(), 0, closing_begin, closing_begin + closing_joints, (int)unknown_.size(), 0, 0, 0, charts, false, false, 0};
   long rows = charts;
   for (int c = b.closing_begin; c < b.closing_end; ++c)
     rows += equations(closing_[c]);
@@ -183,6 +189,40 @@ void PlanBuilder::find_relations() {
   }
 }
 
+// Where the entries of a block with a chart are, which has all loops in it, if most of its matrix is zeros. It is the last.
+void PlanBuilder::find_band(Block* block) {
+  const int n = block->size, inner = block->rows - block->charts;
+  if (!block->charts || block->rows != n || n <= SMALL_BLOCK) return;
+  std::vector<int> first(n, inner), end(n, 0);
+  for (int c = block->closing_begin; c < block->closing_end; ++c) {
+    const ClosingJoint& j = closing_[c];
+    for (int l = j.loop_begin; l < j.loop_end; ++l)
+      for (int u = 0; u < n; ++u) {
+        if (column_joint_[unknown_[block->column_begin + u]] != loop_[l].joint) continue;
+        first[u] = std::min(first[u], j.row), end[u] = std::max(end[u], j.row + equations(j));
+      }
+  }
+  // unknowns before `reach` may hold an equation, and any of those not yet gone holds what one of them does
+  BandRow* const row = &band_[block->column_begin];
+  int reach = 0, last = 0, swaps = 0;
+  for (int k = 0; k < n; ++k) {
+    const int before = reach;
+    for (int u = reach; u < n; ++u)
+      if (k >= inner || first[u] <= k) reach = u + 1;
+    reach = std::max(reach, k + 1);
+    for (int u = before; u < reach; ++u) last = std::max(last, end[u]), row[u].begin = std::min(k, inner);
+    last = std::min(std::max(last, k + 1), inner);
+    swaps += reach - k - 1;
+    row[k].end = last, row[k].reach = reach, row[k].swaps = swaps;
+  }
+  long entries = 0;
+  for (int u = 0; u < n; ++u) {
+    row[u].at = (int)entries, row[u].last = end[u];
+    entries += row[u].end - row[u].begin + block->charts;
+  }
+  if (2 * entries <= (long)n * n) block->band_entries = (int)entries;
+}
+
 Result<FrozenPlan> PlanBuilder::finish() {
   CHECK(open());
   // a tree whose states are given whole: only its poses are asked for
@@ -197,6 +237,8 @@ Result<FrozenPlan> PlanBuilder::finish() {
   sort_drives();
   find_turns();
   find_relations();
+  band_.assign(unknown_.size(), {});
+  if (!block_.empty()) find_band(&block_.back());
   REQUIRE(program_.view().outputs >= plan_.load_values, "one output of the load program for each value that varies");
   program_.find_turns(arrays());
   FrozenPlan plan(arrays(), constants_, repeated_);
@@ -232,7 +274,7 @@ Plan PlanBuilder::arrays() const {
   p.joints = joints_.data(), p.closing = closing_.data(), p.hung = hung_.data();
   p.place = place_.data(), p.axis = axis_.data(), p.drive = drive_.data(), p.free = free_.data();
   p.loop = loop_.data(), p.term = term_.data(), p.block = block_.data();
-  p.order = order_.data(), p.unknown = unknown_.data(), p.rest = rest_.data();
+  p.order = order_.data(), p.unknown = unknown_.data(), p.band = band_.data(), p.rest = rest_.data();
   p.input_column = input_column_.data();
   p.column_state = column_state_.data(), p.column_joint = column_joint_.data();
   p.column_block = column_block_.data(), p.column_place = column_place_.data();

@@ -116,6 +116,7 @@ class PlanBuilder {
   void sort_drives();
   void find_turns();
   void find_relations();
+  void find_band(Block* block);
   Plan arrays() const;
 
   Plan plan_{};
@@ -133,6 +134,7 @@ class PlanBuilder {
   std::vector<Term> term_;
   std::vector<Block> block_;
   std::vector<int> order_, unknown_, rest_, input_column_;
+  std::vector<BandRow> band_;   // unknowns
   std::vector<int> column_state_, column_joint_, column_block_, column_place_;
   std::vector<int> placed_by_;  // tree joint -> block, NOT_PLACED, or REST
   std::vector<double> column_weight_;

@@ -11,6 +11,7 @@
 
 #include "arithmetic/pack.hpp"
 #include "plan/plan.hpp"
+#include "plan/room.hpp"
 
 #ifndef MECHKIN_WIDE_PLAN
 #error "MECHKIN_WIDE_PLAN must be defined before plan.hpp is read"
@@ -51,18 +52,6 @@ inline void gather_knots(const Constants& from, KnotOf<PlanNumber>* to, int coun
     to[k] = {field(&Knot::x), field(&Knot::y), field(&Knot::b), field(&Knot::c), field(&Knot::d)};
   }
 }
-
-// Hands out memory, aligned for packs; without memory it only counts.
-struct Room {
-  char* memory;
-  long used = 0;
-  template <class T>
-  T* take(int count) {
-    char* const here = memory ? memory + used : nullptr;
-    used += ((long)count * (long)sizeof(T) + 63) / 64 * 64;
-    return reinterpret_cast<T*>(here);
-  }
-};
 
 template <class Constants>
 inline void widen_joints(const LanePlan& first, const Constants& lanes, Plan* w, Room& room) {

@@ -67,8 +67,7 @@ bool ChartedMotion::look_at(int lane, const Line& line, double s, const std::vec
   evaluate(place_.data(), rate_.data(), &looked_, bend_.data());
   if (looked_.flags[lane] & STAGE_NOT_CLOSED) return false;
   found->s = s;
-  found->jacobian = Matrix(plan_.block[0].rows, plan_.block[0].size);
-  for (long e = 0; e < entries_; ++e) found->jacobian.a[e] = at(looked_.jacobian, e, lane);
+  found->jacobian = jacobian_of(looked_.jacobian, lane);
   if (guess.empty() && s == 0.0 && !is_joined(lane, found->jacobian)) return false;
   const auto column = [&](const Packed& from, int count, std::vector<double>* to) {
     to->resize(count);
@@ -80,13 +79,10 @@ bool ChartedMotion::look_at(int lane, const Line& line, double s, const std::vec
   return true;
 }
 
-// Whether a Jacobian is told to be that of a place on the origin's side.
-bool ChartedMotion::is_joined(int lane, const Matrix& jacobian) const {
-  Matrix origin(jacobian.rows, jacobian.columns);
-  for (long e = 0; e < entries_; ++e) origin.a[e] = at(jacobian_, e, lane);
-  Matrix e = LeastSquares(jacobian).solve(origin);
-  subtract_identity(&e);
-  return spectral_radius_within(e, limits_.radius);
+// Whether the Jacobian of a place just looked at is told to be on the origin's side.
+bool ChartedMotion::is_joined(int lane, const ChartMatrix& jacobian) const {
+  if (plan_.block[0].band_entries) return !(looked_.flags[lane] & STAGE_OFF_BRANCH);
+  return jacobian.is_joined(jacobian_of(jacobian_, lane), limits_.radius);
 }
 
 // The way in which regularity is lost fastest, by differences.
@@ -101,7 +97,7 @@ bool ChartedMotion::find_way(int lane, const Line& line, double probe) {
     Line off = line;
     if (i) off.base[i - 1] += probe;
     if (!look_at(lane, off, 0.0, {}, &place)) break;
-    const double regular = LeastSquares(place.jacobian).least_singular_bound();
+    const double regular = place.jacobian.regularity();
     if (!i) least = regular;
     if (i) slope[i - 1] = least - regular, square += slope[i - 1] * slope[i - 1];
     if (i == size && square > 0.0) way = slope;

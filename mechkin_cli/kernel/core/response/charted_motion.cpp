@@ -23,6 +23,8 @@ std::vector<char, AlignedAllocator<char>> wide_plan(const MotionUnit& unit, cons
   return memory;
 }
 
+long entries_of(const Block& b) { return b.band_entries ? b.band_entries : (long)b.rows * b.size; }
+
 int slots_of(const std::vector<ClosingTurn>& turns) {
   int slots = 0;
   for (const ClosingTurn& t : turns) slots += t.width;
@@ -37,7 +39,7 @@ ChartedMotion::ChartedMotion(const MotionUnit& unit, const std::vector<MotionSta
     : unit_(unit), starts_(starts), lanes_(unit.lanes), plan_(*starts[0].plan), limits_(limits), rows_(rows),
       turns_(closing_turns(plan_, *kernel_unit(2))), turn_slots_(slots_of(turns_)), wide_(wide_plan(unit, starts)),
       workspace_((std::size_t)unit.workspace_size(wide_.data())), stops_(stops), driven_(driven) {
-  for (int b = 0; b < plan_.blocks; ++b) entries_ += (long)plan_.block[b].rows * plan_.block[b].size;
+  for (int b = 0; b < plan_.blocks; ++b) entries_ += entries_of(plan_.block[b]);
   const auto make = [&](Packed& a, long count) { a.assign((std::size_t)(count * lanes_), 0.0); };
   make(origin_, plan_.states), make(origin_first_, plan_.columns), make(origin_second_, plan_.columns);
   make(direction_, (long)plan_.charts * plan_.columns), make(jacobian_, entries_), make(turn_, turn_slots_);
@@ -297,10 +299,29 @@ void ChartedMotion::lay_chart(int lane) {
     const Block& block = plan_.block[b];
     for (int i = 0; i < block.charts; ++i)
       for (int u = 0; u < block.size; ++u)
-        jacobian_[(base + (long)(block.rows - block.charts + i) * block.size + u) * lanes_ + lane] =
+        jacobian_[(base + jacobian_place(block, block.rows - block.charts + i, u)) * lanes_ + lane] =
             entry(i, plan_.unknown[block.column_begin + u]);
-    base += (long)block.rows * block.size;
+    base += entries_of(block);
   }
+}
+
+// Where an equation's derivative by an unknown stands among a block's entries.
+long ChartedMotion::jacobian_place(const Block& block, int equation, int unknown) const {
+  if (!block.band_entries) return (long)equation * block.size + unknown;
+  return place_in_band(plan_.band[block.column_begin + unknown], equation, block.rows - block.charts);
+}
+
+// A lane's Jacobian of the block that has the chart.
+ChartMatrix ChartedMotion::jacobian_of(const Packed& entries, int lane) const {
+  const Block& block = plan_.block[0];
+  if (block.band_entries) {
+    std::vector<double> band((std::size_t)block.band_entries);
+    for (int e = 0; e < block.band_entries; ++e) band[e] = at(entries, e, lane);
+    return ChartMatrix(std::move(band), plan_.band + block.column_begin, block.size, block.charts);
+  }
+  Matrix full(block.rows, block.size);
+  for (long e = 0; e < entries_; ++e) full.a[e] = at(entries, e, lane);
+  return ChartMatrix(std::move(full));
 }
 
 // Angles within half a turn of those before, orientations of their sign.

@@ -208,6 +208,8 @@ class ChartedMotion : public Motion {
   void write_switches(const Stage& found, int lane, double time, double* switches);
   void keep_miss(int lane, const Stage& found);
   void lay_chart(int lane);
+  long jacobian_place(const Block& block, int equation, int unknown) const;
+  ChartMatrix jacobian_of(const Packed& entries, int lane) const;
   void continue_turns(int lane, const Packed& found);
   void write_row(int lane, long row, const Stage& at, const double* done);
 
@@ -238,7 +240,7 @@ class ChartedMotion : public Motion {
   void put_on_curve(int lane);
   void put_guess(int lane, std::vector<double> guess);
   bool look_at(int lane, const Line& line, double s, const std::vector<double>& guess, CurvePlace* found);
-  bool is_joined(int lane, const Matrix& jacobian) const;
+  bool is_joined(int lane, const ChartMatrix& jacobian) const;
   bool find_way(int lane, const Line& line, double probe);
   bool find_curve(int lane, const Line& line, double probe, CrossingCurve* curve);
   void look_ahead(int lane);

@@ -22,8 +22,10 @@ constexpr double FARTHEST_PLACE = 0.25, NEAREST_PLACE = 1e-6;
 constexpr double WIDTHS[5] = {0.25, 0.1, 0.03, 0.01, 0.003};
 // What polynomial and closed places may differ by, which is a rounding over the distance: states, their derivatives, and
 // what goes to zero. Angles after many turns round by more, in parts of the largest; loops in a row by the sum of
-// theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them.
+// theirs: two to six times what was measured for every five unknowns, from 20 to 80 of them. Beyond these more loops
+// have larger errors each, too, which they take over from those before: four times what was measured for 320.
 constexpr double SAME_STATE = 1e-12, SAME_FIRST = 1e-11, SAME_SECOND = 1e-8, SAME_REGULAR = 1e-3, FEW_UNKNOWNS = 5.0;
+constexpr double MANY_UNKNOWNS = 80.0;
 // Of the way to the branch point: how far a place may lie from its guess. Another branch lies off by about all of it.
 constexpr double MISSED_GUESS = 0.1;
 // Least slope of what goes to zero, at the nodes next to it, in parts of that at the others: a tenth where the pole is of
@@ -42,9 +44,6 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 double largest(const std::vector<double>& a) { return largest_difference(a, std::vector<double>(a.size(), 0.0)); }
-
-// 1 / |J^+|: goes to zero where J becomes singular, as the distance where the pole is of first order.
-double regularity(const Matrix& j) { return LeastSquares(j).least_singular_bound(); }
 
 double node_at(int k) { return k < HALF ? -NODE[k] : NODE[NODES - 1 - k]; }
 
@@ -114,9 +113,7 @@ double CrossingCurve::distance_ahead(const LookAt& look, double probe) {
     for (const CurvePlace& place : known) all.push_back(&place);
     CurvePlace found;
     if (!look(s, step ? guess(s, all) : std::vector<double>(), &found)) return HUGE_VAL;
-    Matrix e = LeastSquares(found.jacobian).solve(origin_.jacobian);
-    subtract_identity(&e);
-    const double radius = spectral_radius_bound(e);
+    const double radius = found.jacobian.largest_change(origin_.jacobian);
     const double seen = s * (1.0 + radius) / radius;
     if (!(seen >= NEAREST_PLACE && seen <= FARTHEST_PLACE)) return HUGE_VAL;
     if (step == 4) return std::fabs(seen - distance) <= MISSED_GUESS * seen ? seen : HUGE_VAL;
@@ -151,7 +148,7 @@ bool CrossingCurve::interpolate(const LookAt& look, double ahead, double width) 
 bool CrossingCurve::locate() {
   regular_.clear();
   for (int k = 0; k < NODES; ++k)
-    regular_.push_back((k < HALF ? -1.0 : 1.0) * regularity(nodes_[k].jacobian));
+    regular_.push_back((k < HALF ? -1.0 : 1.0) * nodes_[k].jacobian.regularity());
   const auto value = [&](int k) { return regular_[k]; };
   double low = -NODE[HALF - 1], high = NODE[HALF - 1];
   for (int i = 0; i < 60; ++i) {
@@ -174,14 +171,15 @@ bool CrossingCurve::holds_between(const LookAt& look, double pace) const {
   const double place_size = std::fmax(1.0, largest(nodes_[HALF].state));
   const double size = place_size * std::fmax(1.0, largest(nodes_[HALF].tangent));
   const double second_size = size * std::fmax(pace, largest(nodes_[HALF].bend));
-  const double loops = std::fmax(1.0, origin_.jacobian.columns / FEW_UNKNOWNS);
+  const int unknowns = origin_.jacobian.unknowns();
+  const double loops = std::fmax(1.0, unknowns / FEW_UNKNOWNS) * std::fmax(1.0, unknowns / MANY_UNKNOWNS);
   double most = 0.0;
   for (double m : regular_) most = std::fmax(most, std::fabs(m));
   for (double x : BETWEEN) {
     const double s = middle_ + width_ * x;
     place(s, told.state.data(), told.tangent.data(), told.bend.data());
     if (!look(s, told.state, &seen)) return false;
-    const double regular = (x < 0.0 ? -1.0 : 1.0) * regularity(seen.jacobian);
+    const double regular = (x < 0.0 ? -1.0 : 1.0) * seen.jacobian.regularity();
     const double expected = between_nodes(x, [&](int k) { return regular_[k]; });
     const bool same = largest_difference(told.state, seen.state) <= loops * SAME_STATE * place_size &&
                       largest_difference(told.tangent, seen.tangent) <= loops * SAME_FIRST * size &&

@@ -12,13 +12,13 @@
 #include <functional>
 #include <vector>
 
-#include "arithmetic/dense.hpp"
+#include "response/chart_matrix.hpp"
 
 // A closed place of the line; `tangent` and `bend` as in StageFound.
 struct CurvePlace {
   double s = 0.0;
   std::vector<double> state, tangent, bend;
-  Matrix jacobian;
+  ChartMatrix jacobian;
 };
 
 // Closes a place of the line from a guess of its states, of the chart's own where empty; false if it does not close.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "forces/energy.hpp"
+#include "response/regular_band.hpp"
 
 namespace {
 
@@ -17,7 +18,8 @@ struct ReducedMotion {
   Pack* inertia;   // directions x charts: V_d . I V_j
   Pack* force;     // directions: r_d
   Pack* factor;    // charts x charts: Cholesky's
-  Pack* radius;    // two matrices of the largest block
+  Pack* radius;    // two matrices of the largest full block
+  SegmentRoom segment;  // of a block with a band
 };
 
 inline int directions(const Plan& p) { return p.charts + p.inputs; }
@@ -30,7 +32,15 @@ inline long lay_out_motion(const Plan& p, char* at, ReducedMotion* m) {
   m->inertia = room.take<Pack>(d * p.charts);
   m->force = room.take<Pack>(d);
   m->factor = room.take<Pack>(p.charts * p.charts);
-  m->radius = room.take<Pack>(2 * p.largest_block * p.largest_block);
+  int largest = 0;
+  for (int b = 0; b < p.blocks; ++b) {
+    const Block& at = p.block[b];
+    if (!at.band_entries && at.rows > largest) largest = at.rows;
+    if (!at.band_entries) continue;  // of one block, that with the chart
+    const long used = lay_out_segment(p.band + at.column_begin, at.size, at.band_entries, nullptr, &m->segment);
+    lay_out_segment(p.band + at.column_begin, at.size, at.band_entries, room.take<char>((int)used), &m->segment);
+  }
+  m->radius = room.take<Pack>(2 * largest * largest);
   return room.used;
 }
 

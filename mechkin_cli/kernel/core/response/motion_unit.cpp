@@ -128,6 +128,13 @@ inline void place_accelerations(const Plan& p, Workspace& w, const StageGiven& g
   accelerate_rest(p, w);
 }
 
+// Whether a block's Jacobian, `here` and factored, is joined with that of the origin by regular ones.
+inline Mask is_joined(const Plan& p, Workspace& w, int block, const BlockMatrices& at, const Pack* here, const Pack* origin,
+                      double limit, const ReducedMotion& m) {
+  if (at.row) return is_regular_band(at.band(), at.entries, here, origin, limit, m.segment);
+  return is_regular(p, w, block, origin, limit, m.radius);
+}
+
 // Kept apart as is_regular is.
 __attribute__((noinline)) Closed close_in_chart(const Plan& p, Workspace& w, int block, const Request& limits) {
   return close_block<true>(p, w, block, limits);
@@ -147,15 +154,15 @@ inline Placed close_stage(const Plan& p, Workspace& w, ReducedMotion& m, const S
     Closed closed = close_in_chart(p, w, b, limits);
     if (any(fixed)) place_again(p, w, b, given, fixed, &closed);
     const BlockMatrices at = matrices_of(p, w, b);
-    const int size = at.m * at.n;
     block_screws(p, w, p.block[b]);
-    block_jacobian(p, w, b, at.jacobian);
-    copy(at.jacobian, size, packs(found.jacobian) + entries);
+    find_jacobian(p, w, b, at);
+    copy(at.jacobian, at.entries, packs(found.jacobian) + entries);
     at.factor_jacobian();
     placed.closed = placed.closed & closed.converged & closed.side;
     placed.on_branch = placed.on_branch & (closed.correction <= room + Pack(given.coarse)) &
-                       is_regular(p, w, b, packs(given.origin_jacobian) + entries, given.radius, m.radius);
-    entries += size;
+                       is_joined(p, w, b, at, packs(found.jacobian) + entries, packs(given.origin_jacobian) + entries,
+                                 given.radius, m);
+    entries += at.entries;
   }
   placed.on_branch = placed.on_branch | fixed;
   for (int k = 0; k < p.rest_count; ++k) {

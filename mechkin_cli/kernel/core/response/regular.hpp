@@ -30,17 +30,25 @@ inline Mask radius_within(Pack* e, Pack* square, int n, Pack limit) {
   return within;
 }
 
+// Unknowns of blocks whose sizes the compiler knows: they are solved for column after column.
+constexpr int MOST_BY_COLUMNS = 6;
+
 // Of a factored block against its Jacobian at the origin (rows x size); `room` for two square matrices.
 // Kept apart: inlined into its caller GCC 12 fails on it (internal error in gimple_expand_vec_cond_expr) with two lanes.
 __attribute__((noinline)) Mask is_regular(const Plan& p, Workspace& w, int block, const Pack* origin, double limit, Pack* room) {
   const BlockMatrices at = matrices_of(p, w, block);
   const int n = at.n;
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < at.m; ++i) w.right[i] = origin[i * n + j];
-    at.solve_equations(w.right);
-    for (int i = 0; i < n; ++i) room[i * n + j] = w.right[i];
-    room[j * n + j] -= Pack(1.0);
+  if (n > MOST_BY_COLUMNS && at.m == n) {
+    for (int e = 0; e < n * n; ++e) room[e] = origin[e];
+    solve_columns(at.lu(), room);
+  } else {
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < at.m; ++i) w.right[i] = origin[i * n + j];
+      at.solve_equations(w.right);
+      for (int i = 0; i < n; ++i) room[i * n + j] = w.right[i];
+    }
   }
+  for (int j = 0; j < n; ++j) room[j * n + j] -= Pack(1.0);
   return radius_within(room, room + n * n, n, Pack(limit));
 }
 

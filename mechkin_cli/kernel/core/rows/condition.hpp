@@ -6,6 +6,7 @@
 #pragma once
 
 #include "rows/condition_estimate.hpp"
+#include "rows/inverse_norm.hpp"
 #include "rows/position.hpp"
 
 namespace {
@@ -31,6 +32,12 @@ inline void per_row(const Plan& p, const Block& b, double length, Pack* weight) 
 // To 1 % from the factors of the packs that go together.
 inline void estimate_conditions(const Plan& p, int index, Judged* pack, int count) {
   const Block& b = p.block[index];
+  for (int k = 0; k < count && b.band_entries; ++k) {
+    Workspace& w = pack[k].w;
+    per_row(p, b, 1.0 / p.row_weight, w.right);
+    pack[k].condition = inverse_norm(matrices_of(p, w, index), w.right, p.column_weight, p.unknown + b.column_begin, w.scratch);
+  }
+  if (b.band_entries) return;
   InverseNorm norm[PACKS_OF_ESTIMATE];
   for (int k = 0; k < count; ++k) {
     Workspace& w = pack[k].w;
@@ -59,7 +66,7 @@ template <class F>
 inline void factor_closed(const Plan& p, Workspace& w, int index, F&& keep_jacobian) {
   const BlockMatrices at = matrices_of(p, w, index);
   block_screws(p, w, p.block[index]);
-  block_jacobian(p, w, index, at.jacobian);
+  find_jacobian(p, w, index, at);
   keep_jacobian(at);
   at.factor_jacobian();
 }
@@ -70,9 +77,7 @@ template <class F>
 inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pack, int count, F&& keep_jacobian) {
   const bool square = p.block[index].rows == p.block[index].size;
   const bool by_newton = square && r.demand == DEMAND_CONDITION && !r.pivot && !r.jacobian;
-  const auto side_of = [&](const Judged& j) {
-    return square ? determinant_sign(matrices_of(p, j.w, index).lu()) : Pack(1.0);
-  };
+  const auto side_of = [&](const Judged& j) { return matrices_of(p, j.w, index).side(); };
   for (int k = 0; k < count; ++k) {
     if (!by_newton) factor_closed(p, pack[k].w, index, [&](const BlockMatrices& at) { keep_jacobian(k, at); });
     pack[k].side = side_of(pack[k]), pack[k].condition = Pack(0.0);
@@ -89,7 +94,7 @@ inline void judge_blocks(const Plan& p, int index, const Request& r, Judged* pac
     j->condition = select(serves, j->condition, exact_condition(p, j->w, index));
     if (!by_newton) continue;
     const BlockMatrices at = matrices_of(p, j->w, index);
-    block_jacobian(p, j->w, index, at.jacobian);
+    find_jacobian(p, j->w, index, at);
     at.factor_jacobian();
     j->side = select(serves, j->side, side_of(*j));
   }

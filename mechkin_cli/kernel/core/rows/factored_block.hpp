@@ -12,10 +12,10 @@ inline void judge_blocks(const Plan& p, int index, const Request&, Judged* pack,
     Workspace& w = pack[k].w;
     const BlockMatrices at = matrices_of(p, w, index);
     block_screws(p, w, p.block[index]);
-    block_jacobian(p, w, index, at.jacobian);
+    find_jacobian(p, w, index, at);
     keep_jacobian(k, at);
     at.factor_jacobian();
-    pack[k].side = at.m == at.n ? determinant_sign(at.lu()) : Pack(1.0);
+    pack[k].side = at.side();
     pack[k].condition = Pack(__builtin_nan(""));
   }
 }

@@ -26,19 +26,19 @@ inline Residual hold_block(const Plan& p, Workspace& w, int index, Out&& equatio
   const Residual residual = block_residual(p, w, b);
   for (int i = 0; i < b.rows; ++i) equations.put(i, w.right[i]);
   block_screws(p, w, b);
-  block_jacobian(p, w, index, matrices_of(p, w, index).jacobian);
+  find_jacobian(p, w, index, matrices_of(p, w, index));
   return residual;
 }
 
 template <class In, class Out>
 inline void hold_velocities(const Plan& p, Workspace& w, int index, In&& rate, Out&& first) {
   const Block& b = p.block[index];
-  const Pack* const jacobian = matrices_of(p, w, index).jacobian;
+  const BlockMatrices at = matrices_of(p, w, index);
   known_rates(p, w, index, w.right);
   for (int u = 0; u < b.size; ++u) w.rate[p.unknown[b.column_begin + u]] = rate(u);
   for (int i = 0; i < b.rows; ++i) {
     Pack sum = -w.right[i];
-    for (int u = 0; u < b.size; ++u) sum += jacobian[i * b.size + u] * w.rate[p.unknown[b.column_begin + u]];
+    for (int u = 0; u < b.size; ++u) sum += at.entry(i, u) * w.rate[p.unknown[b.column_begin + u]];
     first.put(i, sum);
   }
   move_block(p, w, b);

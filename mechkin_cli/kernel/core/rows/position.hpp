@@ -6,6 +6,7 @@
 #pragma once
 
 #include "rows/advance.hpp"
+#include "rows/band.hpp"
 #include "rows/factors.hpp"
 #include "rows/placing.hpp"
 
@@ -63,17 +64,38 @@ struct BlockMatrices {
   Pack *jacobian, *multiplier, *reflector;
   Mask* swap;
   int m, n;
+  const BandRow* row;  // null: a full matrix
+  int charts, entries;
 
   MECHKIN_INLINE Factors lu() const { return {jacobian, swap, n}; }
   MECHKIN_INLINE Reflectors qr() const { return {jacobian, reflector, reflector + n, m, n}; }
-  void factor_jacobian() const { m == n ? factor(lu()) : reflect(qr()); }
-  Pack least() const { return m == n ? least_pivot(lu()) : least_pivot(qr()); }
+  MECHKIN_INLINE Band band() const { return {jacobian, swap, row, n, charts}; }
+  int swaps() const { return row ? row[n - 1].swaps : n * (n - 1) / 2; }
+  void factor_jacobian() const {
+    if (row) return factor(band());
+    m == n ? factor(lu()) : reflect(qr());
+  }
+  Pack least() const {
+    if (row) return least_pivot(band());
+    return m == n ? least_pivot(lu()) : least_pivot(qr());
+  }
+  // The sign of the determinant, 1 where there are more equations than unknowns.
+  Pack side() const {
+    if (row) return determinant_sign(band());
+    return m == n ? determinant_sign(lu()) : Pack(1.0);
+  }
+  // Of the Jacobian that is not factored.
+  Pack entry(int equation, int unknown) const {
+    const int place = row ? place_in_band(row[unknown], equation, m - charts) : equation * n + unknown;
+    return place < 0 ? Pack(0.0) : jacobian[place];
+  }
   // The unknowns from the equations' right-hand sides, in place.
   MECHKIN_INLINE void solve_equations(Pack* b) const {
     if (m == 1 && n == 1) {
       *b *= *jacobian;
       return;
     }
+    if (row) return solve(band(), b);
     m == n ? solve(lu(), b) : solve(qr(), b);
   }
   // The equations' multipliers from the unknowns' generalised forces, in place.
@@ -82,16 +104,50 @@ struct BlockMatrices {
       *b *= *jacobian;
       return;
     }
+    if (row) return solve_transposed(band(), b);
     m == n ? solve_transposed(lu(), b) : solve_transposed(qr(), b, shift, level);
   }
 };
 inline BlockMatrices matrices_of(const Plan& p, const Workspace& w, int block) {
-  BlockMatrices r = {w.jacobian, w.multiplier, w.reflector, w.swap, p.block[block].rows, p.block[block].size};
+  const Block& at = p.block[block];
+  BlockMatrices r = {w.jacobian, w.multiplier, w.reflector, w.swap, at.rows, at.size, nullptr, at.charts, at.rows * at.size};
+  if (at.band_entries) r.row = p.band + at.column_begin, r.entries = at.band_entries;
   for (int b = 0; b < block; ++b) {
     const int m = p.block[b].rows, n = p.block[b].size;
-    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;
+    r.jacobian += m * n, r.swap += n * (n - 1) / 2, r.multiplier += m, r.reflector += 2 * n;  // a band is the last
   }
   return r;
+}
+
+// The Jacobian of a block with a band.
+inline void band_jacobian(const Plan& p, Workspace& w, int index, const BlockMatrices& at) {
+  const Block& b = p.block[index];
+  const Band band = at.band();
+  for (int e = 0; e < at.entries; ++e) at.jacobian[e] = 0.0;
+  for (int c = b.closing_begin; c < b.closing_end; ++c) {
+    const ClosingJoint& j = p.closing[c];
+    const Closure& k = w.closure[c];
+    with_closing_joint(j.type, [&](auto entry) __attribute__((always_inline)) {
+      for (int l = j.loop_begin; l < j.loop_end; ++l) {
+        const TreeJoint& t = p.joints[p.loop[l].joint];
+        for (int f = 0; f < freedoms_of(t.type); ++f) {
+          const int u = unknown_index(p, index, t.column + f);
+          if (u < 0) continue;
+          Pack column[entry.equations];
+          closing_column(p, w.curve, k, p.loop[l], f, w.screw[t.column + f], entry, column);
+          for (int i = 0; i < entry.equations; ++i) *band.in_column(u, j.row + i) = column[i];
+        }
+      }
+    });
+  }
+  chart_rows(p, b, w.chart(), w.q, [&](int i, int column, Pack x) {
+    const int u = unknown_index(p, index, column);
+    if (u >= 0) *band.in_column(u, band.inner() + i) = x;
+  });
+}
+// A block's Jacobian where its factors will be.
+inline void find_jacobian(const Plan& p, Workspace& w, int index, const BlockMatrices& at) {
+  at.row ? band_jacobian(p, w, index, at) : block_jacobian(p, w, index, at.jacobian);
 }
 
 // The joints that Newton moves, which are placed anew in each of its steps; inputs and what they carry stand still.
@@ -203,12 +259,12 @@ struct Judged {
 };
 
 inline void keep_factors(Workspace& w, const BlockMatrices& at) {
-  for (int e = 0; e < at.n * at.n; ++e) w.kept[e] = at.jacobian[e];
-  for (int s = 0; s < at.n * (at.n - 1) / 2; ++s) w.kept_swap[s] = at.swap[s];
+  for (int e = 0; e < at.entries; ++e) w.kept[e] = at.jacobian[e];
+  for (int s = 0; s < at.swaps(); ++s) w.kept_swap[s] = at.swap[s];
 }
 inline void take_back_factors(const Workspace& w, const BlockMatrices& at, Mask done) {
-  for (int e = 0; e < at.n * at.n; ++e) at.jacobian[e] = select(done, w.kept[e], at.jacobian[e]);
-  for (int s = 0; s < at.n * (at.n - 1) / 2; ++s)
+  for (int e = 0; e < at.entries; ++e) at.jacobian[e] = select(done, w.kept[e], at.jacobian[e]);
+  for (int s = 0; s < at.swaps(); ++s)
     at.swap[s] = (done & w.kept_swap[s]) | (~done & at.swap[s]);
 }
 
@@ -264,7 +320,7 @@ inline void step_unplaced(const Plan& p, Closing& c, int index, const Request& r
   Workspace& w = c.w;
   const BlockMatrices at = matrices_of(p, w, index);
   closing_equations(p, w, p.block[index], [](auto, const Pack*) {});
-  block_jacobian(p, w, index, at.jacobian);
+  find_jacobian(p, w, index, at);
   at.factor_jacobian();
   at.solve_equations(w.right);
   c.residual.test = __builtin_inf();
@@ -304,7 +360,7 @@ inline void close_packs(const Plan& p, Closing* pack, int count, int index, cons
       moving_screws(p, c.w, b);
       const bool keep = keeps_factors && iteration > 0 && any(c.done);
       if (keep) keep_factors(c.w, at);
-      block_jacobian(p, c.w, index, at.jacobian);
+      find_jacobian(p, c.w, index, at);
       at.factor_jacobian();
       at.solve_equations(c.w.right);
       if (keep) take_back_factors(c.w, at, c.done);

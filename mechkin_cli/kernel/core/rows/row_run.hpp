@@ -145,7 +145,9 @@ struct RowPack {
   }
   void write_jacobian(const BlockMatrices& at) const {
     if (!r.jacobian) return;
-    for (long e = 0; e < at.m * at.n; ++e) writer(r.jacobian).put(at.jacobian - w.jacobian + e, at.jacobian[e]);
+    const long first = at.jacobian - w.jacobian;
+    for (int e = 0; !at.row && e < at.m * at.n; ++e) writer(r.jacobian).put(first + e, at.jacobian[e]);
+    for (int e = 0; at.row && e < at.m * at.n; ++e) writer(r.jacobian).put(first + e, at.entry(e / at.n, e % at.n));
   }
 
   void hold(int b) {

@@ -23,19 +23,19 @@ struct Workspace {
   Closure* closure;               // closing joints
   unsigned char* placed;          // closing joints: axes that the closure has
   Wrench* reaction;               // closing joints: on the second link
-  Pack* jacobian;                 // per block rows x size, factored in place
+  Pack* jacobian;                 // per block rows x size, or a band's entries, factored in place
   Mask* swap;
   Pack* reflector;                // per block 2 x size: pivots and betas of a QR
   Pack* multiplier;               // closing rows
   Pack* right;                    // largest block
-  Pack* scratch;                  // three times the largest block squared
+  Pack* scratch;                  // three times the largest full block squared, one with a band squared
   Pack* effort;                   // inputs
   Actuation actuation;
   Rubbing rubbing;
   Vec3* across;                   // hung bodies: what its end needs across its line
   Pack* holding;                  // hung bodies: couple about its line
   Pack* saved;                    // states before a trial step
-  Pack* kept;                     // largest block squared: factors of lanes that are done
+  Pack* kept;                     // largest Jacobian: factors of lanes that are done
   Mask* kept_swap;
   Pack* load;                     // load values: of loads that vary
   Pack* law;                      // registers of Plan::law
@@ -59,10 +59,14 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
     used += (bytes + 63) / 64 * 64;
     return here;
   };
-  long squares = 0, pairs = 0, rows = 0, unknowns = 0;
+  long squares = 0, pairs = 0, rows = 0, unknowns = 0, scratch = 0, kept = 0;
+  const auto raise = [](long& most, long x) { most = x > most ? x : most; };
   for (int b = 0; b < p.blocks; ++b) {
-    const long n = p.block[b].size, m = p.block[b].rows;
-    squares += m * n, pairs += n * (n - 1) / 2, rows += m, unknowns += n;
+    const Block& block = p.block[b];
+    const long n = block.size, m = block.rows, entries = block.band_entries;
+    squares += entries ? entries : m * n, pairs += entries ? p.band[block.column_end - 1].swaps : n * (n - 1) / 2;
+    rows += m, unknowns += n;
+    raise(scratch, entries ? m * n : 3 * m * m), raise(kept, entries ? entries : m * m);
   }
   const long pack = sizeof(Pack), largest = p.largest_block;
   w->q = (Pack*)take(p.states * pack);
@@ -83,9 +87,9 @@ inline long lay_out(const Plan& p, char* at, Workspace* w) {
   w->reflector = (Pack*)take(2 * unknowns * pack);
   w->multiplier = (Pack*)take(rows * pack);
   w->right = (Pack*)take((largest + MAX_CLOSING_ROWS) * pack);
-  w->scratch = (Pack*)take(3 * largest * largest * pack);
-  w->kept = (Pack*)take(largest * largest * pack);
-  w->kept_swap = (Mask*)take(largest * largest * sizeof(Mask));
+  w->scratch = (Pack*)take(scratch * pack);
+  w->kept = (Pack*)take(kept * pack);
+  w->kept_swap = (Mask*)take(kept * sizeof(Mask));
   w->moves = (bool*)take(p.links * sizeof(bool));
   w->stands = (bool*)take(p.links * sizeof(bool));
   w->frame = (Pose*)take(p.links * sizeof(Pose));
