@@ -330,6 +330,24 @@ def _graph(
     return graph if check_blocks(fields, graph) else None
 
 
+def graph_as_built(problem: Problem, alike: Sequence[LockedFreedom] = ()) -> SolverGraph | None:
+    """The solver graph that `build` finds of a problem that has no errors; None where it would say
+    something of it, or hold other freedoms. `alike` as in `build`."""
+    held = held_of(problem)
+    if held != problem.held:
+        problem = replace(problem, held=held)
+    try:
+        graph = solver_graph(problem.solved_mechanism, problem.driven)
+    except UnsolvableGraph:
+        return None
+    if any(block.equations > MOST_EQUATIONS for block in graph.blocks):
+        return None
+    if is_home_singular(Session.of(problem, graph)):
+        own = mobility.held_to_family(problem, alike)
+        return None if own != problem.held else graph
+    return graph
+
+
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:
     """Whether every block is small enough, since the work grows with the cube of the equations to
     solve together; the first that is not is noted."""

@@ -15,9 +15,10 @@ point; in the drawing they are not zero.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
-from math import floor, isfinite, pi, prod
+from functools import partial
+from math import floor, inf, isfinite, pi, prod
 from typing import Final
 
 import numpy as np
@@ -70,7 +71,7 @@ from mechkin_cli.schema import (
 )
 from mechkin_cli.show import Floats
 from mechkin_cli.tables import default_table
-from mechkin_cli.tape import differ, of_numbers, with_rates, within
+from mechkin_cli.tape import Traced, as_recorded, differ, of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER, LARGEST_TURNS, MOST_NUMBERS
 from mechkin_cli.units import ANGLE, TIME, Dimension
 from mechkin_cli.verdict import SWEEP
@@ -170,7 +171,7 @@ def spaced(
         at = (*path, "count")
         if fields.error_count > errors or has_too_many_rows(fields, at, section.count, per_row):
             return np.array([first])
-        return by_count(first, last, section.count)
+        return _computed(path, section, partial(_counted, section.count), first, last)
     assert section.step is not None  # the schema wants one of the two
     step = abs(fields.written((*path, "step"), section.step, dimension))
     if fields.error_count > errors:
@@ -180,11 +181,34 @@ def spaced(
             hint = "give the distance of rows"
             fields.error("zero-step", (*path, "step"), "the step is zero", hint)
         return np.array([first])
-    ratio = abs(last - first) / step + tolerances.LAST_ROW
+    ratio = as_recorded(abs(last - first) / step) + tolerances.LAST_ROW
     rows = floor(ratio) + 1 if isfinite(ratio) else ratio
     if has_too_many_rows(fields, (*path, "step"), rows, per_row):
         return np.array([first])
+    return _computed(path, section, _stepped, first, last, step)
+
+
+def _stepped(first: float, last: float, step: float) -> Floats:
+    """The values from `first` to `last` a positive step apart; none where they are without end."""
+    ratio = abs(last - first) / step + tolerances.LAST_ROW if step else inf
+    if not ratio < MOST_NUMBERS:
+        return np.empty(0)
     return by_step(first, step if last >= first else -step, int(ratio) + 1)
+
+
+def _counted(count: int, first: float, last: float) -> Floats:
+    return by_count(first, last, count) if isfinite(last - first) else np.empty(0)
+
+
+def _computed(
+    path: Path, section: SweptInput | TimeSection, compute: Callable[..., Floats], *numbers: float
+) -> Floats:
+    """Values that go by decimals, which no operation of a tape has: of recorded numbers they are
+    inputs of its own."""
+    recorder = next((n.recorder for n in numbers if isinstance(n, Traced)), None)
+    if recorder is None or not isinstance(section, SweptInput):
+        return compute(*numbers)
+    return recorder.take(".".join(map(str, path)), compute, *numbers)
 
 
 _RATES = ("rate", "acceleration", "jerk")

@@ -129,8 +129,6 @@ class _SweepRun:
     def _native(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
         """The kernel's variants of what is read; None where the rows take more than its run."""
         problem = self.problem
-        inputs = {driven.name for driven in problem.motion.inputs}
-        inputs |= {name for driven in problem.motion.inputs for name in driven.orders}
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
@@ -139,7 +137,6 @@ class _SweepRun:
             or self._led_by_rates()
             or variation.moves_limits
             or self.problem.mechanism.has_arcs
-            or (variation.moving_inputs and inputs & {q.name for q in self._read_or_judged()})
         ):
             return None
         reading = variation.reading(self._computed())
@@ -169,7 +166,7 @@ class _SweepRun:
 
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts but on friction, and no inputs."""
-        inputs = self.prescribed()
+        inputs = self._prescribed()
         every = self._read_or_judged()
         computed = [q for q in every if q.owner != "row" and q.name not in inputs]
         if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
@@ -180,13 +177,11 @@ class _SweepRun:
             computed += [q._replace(name=q.name + REST) for q in computed if has_turns(q)]
         return computed
 
-    def prescribed(self) -> dict[str, Floats]:
-        """Time, inputs and their rates over the rows, in SI."""
+    def _prescribed(self) -> set[str]:
+        """Time, inputs and their rates."""
         motion = self.problem.motion
-        values = {} if motion.time is None else {"time": motion.time.values}
-        for driven in motion.inputs:
-            values |= {name: in_si for name, (in_si, _) in driven.orders.items()}
-        return values
+        names = {name for driven in motion.inputs for name in driven.orders}
+        return names if motion.time is None else {"time", *names}
 
     def _chunk_values(
         self,
@@ -203,7 +198,7 @@ class _SweepRun:
         else:
             reading, kernel = native
             threads = threads_for(count * self.rows, self.packing.threads)
-            runs = run_variants(kernel, values, self.packing.lanes, threads)
+            runs = run_variants(kernel, variation.inputs_of(values), self.packing.lanes, threads)
             frictions = friction_states(self.problem.mechanism)
             states = [reading.slots[q.name].start for q in frictions if q.name in reading.slots]
             strands = [q.name for q in slack_quantities(self.problem) if q.name in reading.slots]
@@ -241,7 +236,7 @@ class _SweepRun:
         resolve = _Resolver(self, variation, reading, runs, values, codes)
         found = {}
         for text, expression in self.asked.items():
-            written = self._written(text)
+            written = resolve.written(text)
             if written is not None:
                 found[text] = np.broadcast_to(written, (count, self.rows))
                 continue
@@ -254,16 +249,6 @@ class _SweepRun:
                 columns.append(in_units.reshape(count, self.rows))
             found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
         return found
-
-    def _written(self, text: str) -> Floats | None:
-        """An input's values, or time, exactly as written."""
-        motion = self.problem.motion
-        if text == "time" and motion.time is not None:
-            return motion.time.written
-        for driven in motion.inputs:
-            if text == driven.name:
-                return driven.written
-        return None
 
     def _alone(
         self,
@@ -278,14 +263,13 @@ class _SweepRun:
         for text in self.asked:
             if not found[text].flags.writeable:
                 found[text] = found[text].copy()
+        variation = self.base.variation(self.names)
         try:
-            model = self.model.of(VariedDesign(self.base, named))
+            if variation is not None:
+                self._check_rows(variation.other_rows(values) or self.rows, number)
+            model = self.model.of(VariedDesign(self.base, named, warned=False))
             analysis = model.analyze(self.read, tables=[], lanes=self.packing.lanes)
-            if analysis.rows != self.rows:
-                raise UsageError(
-                    f"variant {number} has {analysis.rows} rows, the file has {self.rows}; vary "
-                    "parameters that keep their number, or take with_parameters for each"
-                )
+            self._check_rows(analysis.rows, number)
             codes[number] = analysis.result.status
             for text in self.asked:
                 found[text][place] = analysis[text]
@@ -294,6 +278,13 @@ class _SweepRun:
             codes[number] = int(Status.not_assembled)
             for text in self.asked:
                 found[text][place] = np.nan
+
+    def _check_rows(self, rows: int, number: int) -> None:
+        if rows != self.rows:
+            raise UsageError(
+                f"variant {number} has {rows} rows, the file has {self.rows}; vary parameters that "
+                "keep their number, or take with_parameters for each"
+            )
 
     def _empty(self, expression: Expression, count: int) -> Floats:
         value = expression.evaluate(sample_of(self.problem), self.problem.units).value
@@ -316,7 +307,10 @@ class _Resolver:
         self.run, self.reading, self.runs = run, reading, runs
         self.count, self.rows = values.shape[1], run.rows
         self.known = run.problem.quantities()
-        self.prescribed = run.prescribed()
+        motion = run.problem.motion
+        self.orders = variation.orders(values)
+        if motion.time is not None:
+            self.orders["time"] = motion.time.values, motion.time.written
         self.unclear = codes == int(Status.rank_unclear)
         self.solved = runs.end == int(VariantEnd.COMPLETE)
         parameters = variation.parameters(values)
@@ -334,8 +328,10 @@ class _Resolver:
         if wanted.owner == "row" and name != "time":
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)
-        if name in self.prescribed:
-            rest = input_rest(self.reading.variation.base, name)
+        if name in self.orders:
+            variation = self.reading.variation
+            # inputs that move with the parameters have no whole turns here
+            rest = None if variation.moving_inputs else input_rest(variation.base, name)
             if rest is not None:
                 rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
             return Quantity(self._over_rows(name), wanted.dimension, rest)
@@ -347,8 +343,13 @@ class _Resolver:
         within = None if place is None else self._column(wanted, place.start)
         return Quantity(columns[0], wanted.dimension, within)
 
+    def written(self, text: str) -> Floats | None:
+        """An input's values, or time, exactly as written: (rows,) or (variants, rows)."""
+        names = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
+        return self.orders[text][1] if text in names and text in self.orders else None
+
     def _over_rows(self, name: str) -> Floats:
-        rows = np.broadcast_to(self.prescribed[name], (self.count, self.rows))
+        rows = np.broadcast_to(self.orders[name][0], (self.count, self.rows))
         values = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
         if name not in values:
             rows = np.where(self.solved[:, None], rows, np.nan)
