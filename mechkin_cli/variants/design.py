@@ -336,6 +336,9 @@ class _Line(Between):
         """As `Between.plan`; by a replay where a recording holds, as in every continuation of
         variants."""
         values = self._values(place)
+        if not values:  # the file's own, wherever on the line
+            own = self.base.design.session
+            return (own.derived(self.make) if self.make else own).measured_in(length).structure.plan
         recording = self._recording(values, length)
         if recording is not None and structure_of(recording.base.graph) == structure:
             constants = recording.plan_constants(np.array(list(values.values())))
@@ -381,7 +384,8 @@ class VariedDesign(Design):
         if self._recording is None:
             verdict = self._record_again()
         self._advised = warned and verdict == Verdict.OTHER_ADVICE
-        built = base.built(values) if self._recording is None else base.design.built
+        anew = self._recording is None and self._values
+        built = base.built(values) if anew else base.design.built
         super().__init__(built, base.design.stem, base.given(values))
 
     def _record_again(self) -> Verdict:
