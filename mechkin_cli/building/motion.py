@@ -71,7 +71,7 @@ from mechkin_cli.schema import (
 )
 from mechkin_cli.show import Floats
 from mechkin_cli.tables import default_table
-from mechkin_cli.tape import Traced, as_recorded, differ, of_numbers, with_rates, within
+from mechkin_cli.tape import Recorder, Traced, as_recorded, differ, of_numbers, with_rates, within
 from mechkin_cli.tolerances import LARGEST_NUMBER, LARGEST_TURNS, MOST_NUMBERS
 from mechkin_cli.units import ANGLE, TIME, Dimension
 from mechkin_cli.verdict import SWEEP
@@ -205,10 +205,11 @@ def _computed(
 ) -> Floats:
     """Values that go by decimals, which no operation of a tape has: of recorded numbers they are
     inputs of its own."""
-    recorder = next((n.recorder for n in numbers if isinstance(n, Traced)), None)
-    if recorder is None or not isinstance(section, SweptInput):
-        return compute(*numbers)
-    return recorder.take(".".join(map(str, path)), compute, *numbers)
+    for number in numbers:
+        if isinstance(number, Traced) and isinstance(section, SweptInput):
+            recorder: Recorder = number.recorder
+            return recorder.take(".".join(map(str, path)), compute, *numbers)
+    return compute(*numbers)
 
 
 _RATES = ("rate", "acceleration", "jerk")

@@ -24,15 +24,15 @@ from mechkin_cli.tape.tape import ARITY, Operation, Tape, meaning
 Instruction = tuple[Operation, int, int, int]
 
 
-class Source(NamedTuple):
+class GivenRows(NamedTuple):
     """Inputs of a tape that no operation gives: a function of floats computes them from recorded
-    `numbers`, and is to give `count` of them again; `first` is the place of the first among the
+    `numbers`, and is to give as many `rows` again; `first` is the place of the first among the
     inputs."""
 
     compute: Callable[..., Floats]
     numbers: tuple[Any, ...]
     first: int
-    count: int
+    rows: int
 
 
 class Recorder:
@@ -40,7 +40,7 @@ class Recorder:
 
     Attributes:
         values: of every register, when it was recorded.
-        sources: of inputs that follow from others in a way that no operation has.
+        given_rows: inputs that follow from others in a way that no operation has.
         is_settled: whether no other values will replace its inputs.
         holds_others: whether numbers of other recordings are constants of this one.
     """
@@ -51,8 +51,8 @@ class Recorder:
     def __init__(self, inputs: Sequence[str], values: Sequence[float]) -> None:
         self.inputs = tuple(inputs)
         self.values: list[float] = list(values)
-        self.sources: list[Source] = []
-        self._given = list(range(len(self.inputs)))
+        self.given_rows: list[GivenRows] = []
+        self._inputs_at = list(range(len(self.inputs)))
         self._constants: dict[tuple[float, float], int] = {}
         self._instructions: dict[Instruction, int] = {}
         self._written: dict[int, Instruction] = {}
@@ -79,16 +79,16 @@ class Recorder:
     def take(self, name: str, compute: Callable[..., Floats], *numbers: Any) -> Floats:
         """What a function of floats gives of recorded numbers, each a further input `name`."""
         found = compute(*map(as_recorded, numbers))
-        self.sources.append(Source(compute, numbers, len(self.inputs), found.size))
+        self.given_rows.append(GivenRows(compute, numbers, len(self.inputs), found.size))
         self.inputs += tuple(f"{name}[{row}]" for row in range(found.size))
         registers = [self._register(value) for value in found.tolist()]
-        self._given += registers
+        self._inputs_at += registers
         return of_numbers(map(self.number, registers))
 
     @property
     def values_given(self) -> list[float]:
         """The values of the inputs when they were recorded."""
-        return [self.values[register] for register in self._given]
+        return [self.values[register] for register in self._inputs_at]
 
     def number(self, register: int) -> Traced:
         """The number in a register."""
@@ -114,10 +114,10 @@ class Recorder:
         outputs = list(outputs)
         guards = self._guards if guarded else {}
         needed = self._needed([*outputs, *(r for g in guards for r in g[1:3])])
-        given = set(self._given)
+        given = set(self._inputs_at)
         constants = [r for r in needed if r not in given and r not in self._written]
         values = [self.values[r] for r in constants]
-        leaves = [*self._given, *constants]
+        leaves = [*self._inputs_at, *constants]
         return self._tape(self.inputs, leaves, values, needed, outputs, guards)
 
     def _tape(

@@ -441,8 +441,8 @@ class VariedDesign(Design):
         varied = varied_session(self._variation, self._row, self.problem)
         if varied.first is not None and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
-            graph = graph_as_built(self.problem, self.base.design.built.problem.stopped)
-            if graph is not None and structure_of(graph) == structure_of(varied.graph):
+            own_graph = graph_as_built(self.problem, self.base.design.built.problem.stopped)
+            if own_graph is not None and structure_of(own_graph) == structure_of(varied.graph):
                 return varied.reading(lambda: self.precise)
             fresh = self.base.built(self._values)
             if isinstance(fresh.graph, Diagnostic):

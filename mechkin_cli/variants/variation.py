@@ -35,8 +35,8 @@ from mechkin_cli.session import (
 from mechkin_cli.structure import graph_of, structure_of
 from mechkin_cli.tape import (
     Filling,
+    GivenRows,
     Recorder,
-    Source,
     Tape,
     Verdict,
     compiled,
@@ -208,7 +208,7 @@ class Recording:
         self.recorder = recorder
         self.recorded = problem
         self.values = np.array(recorder.values_given)
-        self.count = len(self.values) - sum(source.count for source in recorder.sources)
+        self.count = len(self.values) - sum(given.rows for given in recorder.given_rows)
         self.layout = Layout(
             problem.laid_mechanism,
             graph_of(problem.solved_mechanism, base.graph),
@@ -247,18 +247,18 @@ class Recording:
     def inputs_of(self, values: Floats) -> Floats:
         """The tape's inputs (inputs, variants) with some parameters; nan, which no guard passes,
         where there are not as many rows as were recorded."""
-        if not self.recorder.sources:
+        if not self.recorder.given_rows:
             return values
         found = self._with_recorded_rows(values)
-        for source, tape in self._source_tapes:
+        for given, tape in self._row_tapes:
             numbers = replay(tape, found)[0]
-            rows = found[source.first : source.first + source.count]
+            rows = found[given.first : given.first + given.rows]
             known: dict[bytes, Floats] = {}
-            for column, given in enumerate(numbers):
-                key = given.tobytes()
+            for column, own in enumerate(numbers):
+                key = own.tobytes()
                 if key not in known:
-                    known[key] = source.compute(*given.tolist())
-                fits = known[key].size == source.count
+                    known[key] = given.compute(*own.tolist())
+                fits = known[key].size == given.rows
                 rows[:, column] = known[key] if fits else np.nan
         return found
 
@@ -267,12 +267,12 @@ class Recording:
         else is as recorded; None where it has as many, or this does not tell."""
         own = self.base.problem.motion
         moving = [one for one in own.inputs if np.ptp(one.written) > 0.0]
-        if len(moving) != len(self.recorder.sources) or self.plan_constants(values) is None:
+        if len(moving) != len(self.recorder.given_rows) or self.plan_constants(values) is None:
             return None
         found = self._with_recorded_rows(values[:, None])
         counts = {
-            source.compute(*replay(tape, found)[0][0].tolist()).size
-            for source, tape in self._source_tapes
+            given.compute(*replay(tape, found)[0][0].tolist()).size
+            for given, tape in self._row_tapes
         }
         count = counts.pop() if len(counts) == 1 else 0
         return count if count not in (0, own.rows) else None
@@ -282,11 +282,11 @@ class Recording:
         return np.vstack([values, rows])
 
     @cached_property
-    def _source_tapes(self) -> list[tuple[Source, _kernel.Tape]]:
+    def _row_tapes(self) -> list[tuple[GivenRows, _kernel.Tape]]:
         found = []
-        for source in self.recorder.sources:
-            numbers = [register(self.recorder, number) for number in source.numbers]
-            found.append((source, compiled(self.recorder.tape(numbers, guarded=False))))
+        for given in self.recorder.given_rows:
+            numbers = [register(self.recorder, number) for number in given.numbers]
+            found.append((given, compiled(self.recorder.tape(numbers, guarded=False))))
         return found
 
     def verdicts(self, values: Floats) -> NDArray[np.uint8]:
@@ -301,7 +301,7 @@ class Recording:
         """The plan's constants with the parameters of one variant, however many rows it has; None
         where a guard fails."""
         inputs = values[:, None]
-        if self.recorder.sources:
+        if self.recorder.given_rows:
             inputs = self._with_recorded_rows(inputs)
         numbers, verdicts = replay(self._plan_tape, inputs)
         holds = verdicts[0] != Verdict.OTHER_WAY

@@ -150,10 +150,10 @@ def test_rows_that_depend_on_a_parameter(fields: dict[str, str], values: list[fl
     """They go by decimals, which no operation has: inputs of the tape, computed before it runs."""
     base = build(*open_text(crank(**fields), "text"))
     recorder, problem = record(base, ["p"])
-    (source,) = recorder.sources
+    (given,) = recorder.given_rows
     tape = compiled(recorder.tape(register(recorder, x) for x in problem.motion.inputs[0].written))
     for value in values:
-        rows = source.compute(*(_replayed_number(recorder, n, value) for n in source.numbers))
+        rows = given.compute(*(_replayed_number(recorder, n, value) for n in given.numbers))
         outputs, verdicts = replay(tape, np.array([[value], *rows[:, None]]))
         fresh = built_anew(base, {"p": value}).problem.motion.inputs[0].written
         assert verdicts[0] == Verdict.SAME
