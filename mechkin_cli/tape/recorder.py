@@ -11,6 +11,7 @@ import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from threading import RLock
 from types import MappingProxyType
 from typing import Any, NoReturn
 
@@ -42,6 +43,7 @@ class Recorder:
         values: of every register, when it was recorded.
         given_rows: inputs that follow from others in a way that no operation has.
         is_settled: whether no other values will replace its inputs.
+        lock: of threads that share what is recorded, and go on recording.
         holds_others: whether numbers of other recordings are constants of this one.
     """
 
@@ -51,6 +53,7 @@ class Recorder:
     def __init__(self, inputs: Sequence[str], values: Sequence[float]) -> None:
         self.inputs = tuple(inputs)
         self.values: list[float] = list(values)
+        self.lock = RLock()
         self.given_rows: list[GivenRows] = []
         self._inputs_at = list(range(len(self.inputs)))
         self._constants: dict[tuple[float, float], int] = {}

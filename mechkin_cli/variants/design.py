@@ -15,6 +15,7 @@ import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property, partial
+from threading import RLock
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -178,6 +179,7 @@ class Base:
 
     def __init__(self, design: Design) -> None:
         self.design = design
+        self._lock = RLock()  # threads that share a design record it once
         self._recordings: dict[tuple[str, ...], list[Recording | None]] = {}
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
         self._responses: dict[tuple[str, ...], SessionVariation | None] = {}
@@ -198,9 +200,10 @@ class Base:
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
         """How the design depends on some parameters; None where each variant is built by itself."""
         key = tuple(names)
-        if key not in self._variations:
-            self._variations[key] = self._recorded(key)
-        return self._variations[key]
+        with self._lock:
+            if key not in self._variations:
+                self._variations[key] = self._recorded(key)
+            return self._variations[key]
 
     def _recorded(self, names: tuple[str, ...]) -> SessionVariation | None:
         if self._assembled is None:
@@ -221,17 +224,19 @@ class Base:
         names = tuple(values)
         if not names:
             return None
-        if names not in self._recordings:
-            own = self.variation(names)
-            self._recordings[names] = [] if own is None else [own]
-        kept, row = self._recordings[names], np.array(list(values.values()))
-        for one in kept:
-            if one is not None and one.plan_constants(row) is not None:
-                return one
-        if None in kept or len(kept) >= MOST_RECORDINGS:
-            return None
-        kept.append(self._recorded_at(names, values))
-        return kept[-1]
+        row = np.array(list(values.values()))
+        with self._lock:
+            if names not in self._recordings:
+                own = self.variation(names)
+                self._recordings[names] = [] if own is None else [own]
+            kept = self._recordings[names]
+            for one in kept:
+                if one is not None and one.plan_constants(row) is not None:
+                    return one
+            if None in kept or len(kept) >= MOST_RECORDINGS:
+                return None
+            kept.append(self._recorded_at(names, values))
+            return kept[-1]
 
     def _recorded_at(self, names: tuple[str, ...], values: Mapping[str, float]) -> Recording | None:
         own = self.design.session
@@ -251,9 +256,10 @@ class Base:
         """How the first moment of a response depends on some parameters; None where each variant
         chooses its assembly by itself."""
         key = (run, *names)
-        if key not in self._responses:
-            self._responses[key] = self._recorded_response(tuple(names), run)
-        return self._responses[key]
+        with self._lock:
+            if key not in self._responses:
+                self._responses[key] = self._recorded_response(tuple(names), run)
+            return self._responses[key]
 
     def _recorded_response(self, names: tuple[str, ...], run: str) -> SessionVariation | None:
         session, start = first_assembly(self.design.session_of(run))

@@ -38,6 +38,7 @@ from mechkin_cli.variants.result import (
     Reduce,
     Reductions,
     Variants,
+    Verdicts,
     expressions_of,
     need_places,
     read_by,
@@ -95,21 +96,27 @@ class _SweepRun:
         self.wanted = tuple(known[name] for name in self.read)
         self.errors: dict[int, MechkinError] = {}
 
-    def run(
-        self, values: Floats
-    ) -> tuple[dict[str, Floats], NDArray[np.int8], dict[int, MechkinError]]:
+    def run(self, values: Floats) -> tuple[dict[str, Floats], Verdicts, dict[int, MechkinError]]:
         """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
         count = values.shape[1]
-        codes = np.empty((count, self.rows), dtype=np.int8)
+        verdicts = []
         parts: dict[str, list[Floats]] = {text: [] for text in self.texts}
         variation = self.base.variation(self.names)
         native = self._native(variation) if variation is not None else None
         chunk = self._chunk()
         for begin in range(0, max(count, 1), chunk):
             part = values[:, begin : begin + chunk]
+            codes = np.empty((part.shape[1], self.rows), dtype=np.int8)
             for text, array in self._chunk_values(variation, native, part, begin, codes).items():
                 parts[text].append(array)
-        return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
+            verdicts.append(Verdicts.of(codes))
+        found = {}
+        for text in self.texts:
+            arrays = parts.pop(text)
+            # what is the same in all variants is a view that nobody may write to
+            whole = len(arrays) == 1 and arrays[0].flags.writeable
+            found[text] = arrays[0] if whole else np.concatenate(arrays)
+        return found, Verdicts.joined(verdicts), self.errors
 
     def numbers_returned(self) -> int:
         """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
@@ -203,10 +210,9 @@ class _SweepRun:
             states = [reading.slots[q.name].start for q in frictions if q.name in reading.slots]
             strands = [q.name for q in slack_quantities(self.problem) if q.name in reading.slots]
             slots = [reading.slots[name].start for name in strands]
-            codes[begin : begin + count] = _verdicts(runs, states, slots)
-            own = codes[begin : begin + count]
-            self._judge_limits(_Resolver(self, variation, reading, runs, values, own), own)
-            found = self._evaluated(variation, reading, runs, values, own)
+            codes[:] = _verdicts(runs, states, slots)
+            self._judge_limits(_Resolver(self, variation, reading, runs, values, codes), codes)
+            found = self._evaluated(variation, reading, runs, values, codes)
             # what may stand at a dead centre is judged as in a run of its own
             alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | _doubtful(runs))
         for number in alone:
@@ -270,12 +276,12 @@ class _SweepRun:
             model = self.model.of(VariedDesign(self.base, named, warned=False))
             analysis = model.analyze(self.read, tables=[], lanes=self.packing.lanes)
             self._check_rows(analysis.rows, number)
-            codes[number] = analysis.result.status
+            codes[place] = analysis.result.status
             for text in self.asked:
                 found[text][place] = analysis[text]
         except MechkinError as error:
             self.errors[number] = error
-            codes[number] = int(Status.not_assembled)
+            codes[place] = int(Status.not_assembled)
             for text in self.asked:
                 found[text][place] = np.nan
 
@@ -515,4 +521,4 @@ def _vary_response(
     call = _ResponseRun(model, names, list(read), run, packing)
     rows = call.run(values)
     results = {text: reduced(text, rows[text], reductions[text], rows.get(TIME)) for text in asked}
-    return Variants(varied, results, call.codes, call.errors)
+    return Variants(varied, results, Verdicts.of(call.codes), call.errors)

@@ -228,13 +228,14 @@ class Recording:
         Raises:
             TraceLost: as above.
         """
-        problem = make(replace(self.base, problem=self.recorded))
-        mechanism = problem.mechanism
-        key = tuple(mechanism.joints), tuple(mechanism.links), length
-        if key not in self._parts:
-            base = self.base.derived(make).measured_in(length)
-            self._parts[key] = Recording(base, self.recorder, problem, moves=self.moves)
-        return self._parts[key]
+        with self.recorder.lock:
+            problem = make(replace(self.base, problem=self.recorded))
+            mechanism = problem.mechanism
+            key = tuple(mechanism.joints), tuple(mechanism.links), length
+            if key not in self._parts:
+                base = self.base.derived(make).measured_in(length)
+                self._parts[key] = Recording(base, self.recorder, problem, moves=self.moves)
+            return self._parts[key]
 
     def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
         """The tape from the inputs to some numbers of the recording."""
@@ -242,7 +243,8 @@ class Recording:
 
     def recorded_tape(self, numbers: Iterable[Any]) -> Tape:
         """The same as plain data."""
-        return self.recorder.tape(register(self.recorder, n) for n in numbers)
+        with self.recorder.lock:
+            return self.recorder.tape(register(self.recorder, n) for n in numbers)
 
     def inputs_of(self, values: Floats) -> Floats:
         """The tape's inputs (inputs, variants) with some parameters; nan, which no guard passes,
@@ -284,9 +286,10 @@ class Recording:
     @cached_property
     def _row_tapes(self) -> list[tuple[GivenRows, _kernel.Tape]]:
         found = []
-        for given in self.recorder.given_rows:
-            numbers = [register(self.recorder, number) for number in given.numbers]
-            found.append((given, compiled(self.recorder.tape(numbers, guarded=False))))
+        with self.recorder.lock:
+            for given in self.recorder.given_rows:
+                numbers = [register(self.recorder, number) for number in given.numbers]
+                found.append((given, compiled(self.recorder.tape(numbers, guarded=False))))
         return found
 
     def verdicts(self, values: Floats) -> NDArray[np.uint8]:
@@ -421,9 +424,10 @@ class SessionVariation(Recording):
         """The reading of some quantities."""
         wanted = tuple(wanted)
         key = tuple(quantity.name for quantity in wanted)
-        if key not in self._readings:
-            self._readings[key] = VariantReadout(self, wanted)
-        return self._readings[key]
+        with self.recorder.lock:
+            if key not in self._readings:
+                self._readings[key] = VariantReadout(self, wanted)
+            return self._readings[key]
 
 
 def run_variants(
