@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,11 +48,20 @@ def a_packing(lanes: object, threads: object) -> Packing:
     Raises:
         UsageError: no numbers, or a width that the machine lacks.
     """
+    # what is asked again and again was right before; True is no number
+    known = type(lanes) is int and type(threads) is int
+    return _known_packing(lanes, threads) if known else _packing(lanes, threads)
+
+
+def _packing(lanes: object, threads: object) -> Packing:
     lanes = a_whole_number("lanes", lanes, "rows at a time")
     threads = a_whole_number("threads", threads, "threads")
     check_width(lanes)
     check_threads(threads)
     return Packing(lanes, threads)
+
+
+_known_packing = cache(_packing)
 
 
 def run_name(runs: Sequence[str], name: str | None) -> str:
