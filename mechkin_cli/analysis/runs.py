@@ -150,6 +150,8 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
     Raises:
         UsageError: the run has no such table.
     """
+    if isinstance(names, list | tuple) and not names:
+        return ()
     own = built.tables_of(run)
     if names is None:
         return own
@@ -257,8 +259,9 @@ def run_sweep(
     refuse_loaded_spin(session, names)
     # the table of a file that has none shows rates, too
     own = tuple(table for table in layouts if table.name == SWEEP)
-    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
-    result = analyze(session.packed(packing), names, unasked=unasked)
+    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named} if own else set()
+    packed = session if packing == session.packing else session.packed(packing)
+    result = analyze(packed, names, unasked=unasked)
     systems = chosen(model.built.coefficients, tables)
     analysis = Analysis(model, layouts, result, SWEEP, systems, balances, asked)
     analysis = analysis if mode is None else known_mode(analysis)
