@@ -284,7 +284,17 @@ class Session:
         if self.base is None:
             return other
         base, between = self.base
-        return other.continuing(base.derived(make), between.derived(make))
+        return other.continuing(base._derived_once(make), between.derived(make))
+
+    def _derived_once(self, make: Callable[[Session], Problem]) -> Session:
+        """As `derived`, one session for the same joints and links: many continue its assembly."""
+        problem = make(self)
+        mechanism = problem.mechanism
+        key = Session.derived, tuple(mechanism.joints), tuple(mechanism.links)
+        if key not in self.memo:
+            self.memo[key] = self.derived(lambda session: problem)
+        found: Session = self.memo[key]
+        return found
 
     def continuing(self, base: Session, between: Between) -> Session:
         """This session with its first assembly, and its length unit, from those of a base."""
