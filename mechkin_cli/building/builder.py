@@ -78,7 +78,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.schema import MechanismFile
+from mechkin_cli.schema import Flanks, MechanismFile
 from mechkin_cli.session import Session, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
@@ -328,6 +328,23 @@ def _graph(
                 path = ("chain", i, "joint")
         return error.diagnostic._replace(place=fields.document.place(path))
     return graph if check_blocks(fields, graph) else None
+
+
+def motion_as_built(
+    built: Built, problem: Problem, given: Mapping[str, Quantity]
+) -> MotionInputs | None:
+    """The motion that `build` finds with `given` parameters, for a problem that has all but that;
+    None where it would say something of it, or where more than the inputs goes by it."""
+    file = built.file
+    sections = file.couplings.values()
+    plays = any(isinstance(one, Flanks) and one.backlash is not None for one in sections)
+    if plays or problem.has_idle:
+        return None
+    fields = read_fields(file, built.document, given, datum=problem.mechanism.datum)
+    said = len(fields.diagnostics)
+    joints = problem.mechanism.joints
+    motion = build_motion(fields, file.motion, joints, numbers_per_row(file, joints))
+    return None if len(fields.diagnostics) > said else motion
 
 
 def graph_as_built(problem: Problem, alike: Sequence[LockedFreedom] = ()) -> SolverGraph | None:

@@ -26,6 +26,7 @@ from mechkin_cli.building import (
     build,
     graph_as_built,
     is_tiny_length,
+    motion_as_built,
     record,
     record_response,
 )
@@ -51,6 +52,7 @@ from mechkin_cli.verdict import SWEEP
 if TYPE_CHECKING:
     from mechkin_cli.building import Built, ViewSettings
     from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism import MotionInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension, UnitSystem
 
@@ -387,6 +389,7 @@ class VariedDesign(Design):
         self._variation = None if verdict == Verdict.OTHER_WAY else variation
         self._recording: Recording | None = self._variation
         self._graph: SolverGraph | None = None
+        self._motion: MotionInputs | None = None
         if self._recording is None:
             verdict = self._record_again()
         self._advised = warned and verdict == Verdict.OTHER_ADVICE
@@ -400,12 +403,19 @@ class VariedDesign(Design):
         if isinstance(design.built.graph, Diagnostic):
             return Verdict.OTHER_WAY
         recording = self.base.recording(self._values)
-        if recording is None or not recording.moves:
+        if recording is None:
             return Verdict.OTHER_WAY
         verdict = Verdict(recording.verdicts(self._row[:, None])[0])
         if verdict == Verdict.OTHER_WAY:  # other rows
             return verdict
-        self._graph = graph_as_built(recording.problem(self._row), design.built.problem.stopped)
+        problem = recording.problem(self._row)
+        if not recording.moves:
+            given = self.base.given(self._values)
+            self._motion = motion_as_built(design.built, problem, given)
+            if self._motion is None:
+                return Verdict.OTHER_WAY
+            problem = replace(problem, motion=self._motion)
+        self._graph = graph_as_built(problem, design.built.problem.stopped)
         if self._graph is None:
             return Verdict.OTHER_WAY
         self._recording = recording
@@ -428,6 +438,9 @@ class VariedDesign(Design):
         if self._recording is None:
             return self.built.problem
         problem = self._recording.problem(self._row)
+        if self._motion is not None:
+            problem = replace(problem, motion=self._motion)
+            problem = problem.with_quantities_of(self.base.design.problem)
         if self._advised:
             fresh = self.base.built(self._values).problem
             problem = replace(problem, diagnostics=fresh.diagnostics)

@@ -249,8 +249,11 @@ def test_places_between_are_replayed_where_a_law_of_time_is_built(
     text = ROWS.replace(line, law)
     given = {"first": [40.0, 41.0, 39.0], "b": [100.0, 102.0, 99.0]}
     result = mk.loads(text, "rows").vary(given, ["D.theta"])
-    # but for the file's own each once, one once more to record the mechanism alone
-    assert len(builds) == 3
+    # one, to record the mechanism alone
+    assert len(builds) == 1
+    wrong = mk.loads(text, "rows").vary({"first": [1e20], "b": [101.0]}, ["D.theta"])
     without_recordings(monkeypatch)
     fresh = mk.loads(text, "rows").vary(given, ["D.theta"])
     assert result["D.theta"].tobytes() == fresh["D.theta"].tobytes()
+    refused = mk.loads(text, "rows").vary({"first": [1e20], "b": [101.0]}, ["D.theta"])
+    assert str(wrong.errors[0]) == str(refused.errors[0])
