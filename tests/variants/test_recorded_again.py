@@ -127,14 +127,19 @@ def test_no_more_recordings_than_they_are_worth(
 
 
 def test_warnings_are_those_of_the_values() -> None:
-    """Not those with which another variant was recorded: here of a tensor of no real body, with its
-    eigenvalues."""
-    tensor = ", inertia: {xx: m * 1 kg*mm^2, yy: 9 kg*mm^2, zz: b * 1 kg*mm}"
+    """Not those of the values with which the file, or another variant, was recorded: here of a
+    tensor of no real body, with its eigenvalues."""
+    tensor = ", inertia: {xx: 60 kg*mm^2, yy: 50 kg*mm^2, zz: b * 1 kg*mm}"
     model = mk.loads(with_a_mass(tensor), "file")
-    for m, b in ((0.0, 101.0), (0.0, 104.0), (1.0, 99.0), (0.0, 3.0)):
+    warned = []
+    for m, b in ((0.0, 101.0), (0.0, 140.0), (1.0, 150.0), (0.0, 104.0), (2.0, 99.0)):
         varied = model.with_parameters({"m": m, "b": b})
         fresh = mk.loads(with_a_mass(tensor), "file", {"m": repr(m), "b": f"{b!r} mm"})
-        assert [str(d) for d in varied.diagnostics] == [str(d) for d in fresh.diagnostics]
+        told = [str(d) for d in varied.diagnostics]
+        assert told == [str(d) for d in fresh.diagnostics]
+        warned.append(any("belongs to no real body" in text for text in told))
+    assert warned == [False, True, True, False, False]
+    assert len(base_of(model.design)._recordings["m", "b"]) == 2
 
 
 def test_the_axis_beside_another_is_chosen_on_the_tape() -> None:
