@@ -33,7 +33,7 @@ from mechkin_cli.building import (
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
-from mechkin_cli.memo import remembered
+from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.record import replace
 from mechkin_cli.session import Between, Session
 from mechkin_cli.structure import SolverGraph, structure_of
@@ -181,6 +181,7 @@ class Base:
 
     def __init__(self, design: Design) -> None:
         self.design = design
+        self.memo: Memo = {}
         self._lock = RLock()  # threads that share a design record it once
         self._recordings: dict[tuple[str, ...], list[Recording | None]] = {}
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}

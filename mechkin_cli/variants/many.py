@@ -33,7 +33,7 @@ from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
 from mechkin_cli.sweep import has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
-from mechkin_cli.variants.design import VariedDesign, base_of
+from mechkin_cli.variants.design import Base, VariedDesign, base_of
 from mechkin_cli.variants.result import (
     Reduce,
     Reductions,
@@ -102,7 +102,7 @@ class _SweepRun:
         verdicts = []
         parts: dict[str, list[Floats]] = {text: [] for text in self.texts}
         variation = self.base.variation(self.names)
-        native = self._native(variation) if variation is not None else None
+        native = self._native_once(variation) if variation is not None else None
         chunk = self._chunk()
         for begin in range(0, max(count, 1), chunk):
             part = values[:, begin : begin + chunk]
@@ -132,6 +132,14 @@ class _SweepRun:
     def _chunk(self) -> int:
         width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
         return max(1, CHUNK_NUMBERS // (self.rows * width))
+
+    def _native_once(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
+        """`_native`, found once for the pieces of a study."""
+        memo, key = self.base.memo, (_SweepRun._native, self.names, tuple(self.asked))
+        if key not in memo:
+            memo[key] = self._native(variation)
+        found: tuple[VariantReadout, Any] | None = memo[key]
+        return found
 
     def _native(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
         """The kernel's variants of what is read; None where the rows take more than its run."""
@@ -485,9 +493,10 @@ def vary(
             f"{model.name} has no sweep to vary; vary a response one by one: "
             f'with_parameters({{...}}).respond("{model.runs[0]}")'
         )
-    problem = base_of(model.design).design.problem
+    base = base_of(model.design)
+    problem = base.design.problem
     varied, names, values = varied_parameters(problem, parameters, model.design.values)
-    asked = expressions_of(quantities, problem)
+    asked = _expressions_once(base, quantities)
     call = _SweepRun(model, names, asked, reductions_of(asked, reduce), packing)
     numbers = values.shape[1] * call.numbers_returned()
     if numbers > MOST_KEPT:
@@ -496,6 +505,18 @@ def vary(
             "ask for less, reduce over the rows, or take fewer variants at a time"
         )
     return Variants(varied, *call.run(values))
+
+
+def _expressions_once(base: Base, quantities: Iterable[str] | None) -> dict[str, Expression]:
+    """`expressions_of` quantities, found once for the pieces of a study."""
+    problem = base.design.problem
+    if not isinstance(quantities, list) or not all(type(text) is str for text in quantities):
+        return expressions_of(quantities, problem)
+    key = expressions_of, tuple(quantities)
+    if key not in base.memo:
+        base.memo[key] = expressions_of(quantities, problem)
+    found: dict[str, Expression] = base.memo[key]
+    return found
 
 
 def _vary_response(
