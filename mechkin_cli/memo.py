@@ -40,7 +40,10 @@ def remembered(
 
     @wraps(function)
     def recall(owner: Owner, /, *args: Arguments.args, **named: Arguments.kwargs) -> Answer:
-        key = (function, *map(_hashable, args), *((k, _hashable(named[k])) for k in sorted(named)))
+        key: object = function
+        if args or named:
+            by_name = [(k, _hashable(named[k])) for k in sorted(named)]
+            key = (function, *map(_hashable, args), *by_name)
         memo = owner.memo
         if key not in memo:
             memo[key] = function(owner, *args, **named)

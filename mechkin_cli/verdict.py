@@ -7,6 +7,7 @@ values and its status; all its other cells stay empty.
 from __future__ import annotations
 
 from enum import IntEnum
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from mechkin_cli.tolerances.results import (
@@ -16,8 +17,6 @@ from mechkin_cli.tolerances.results import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -150,23 +149,25 @@ class Status(IntEnum):
 
 def has_solution(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_solution` of many rows, the same shape as the codes."""
-    return _having(codes, lambda status: status.has_solution)
+    return _marked("has_solution")[codes]
 
 
 def has_rates(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_rates` of many rows, the same shape as the codes."""
-    return _having(codes, lambda status: status.has_rates)
+    return _marked("has_rates")[codes]
 
 
 def has_forces(codes: NDArray[np.int8]) -> Bools:
     """`Status.has_forces` of many rows, the same shape as the codes."""
-    return _having(codes, lambda status: status.has_forces)
+    return _marked("has_forces")[codes]
 
 
-def _having(codes: NDArray[np.int8], mark: Callable[[Status], bool]) -> Bools:
+@cache
+def _marked(name: str) -> Bools:
+    """What every status has of a mark, by its code."""
     import numpy as np
 
-    return np.array([mark(status) for status in Status], dtype=bool)[codes]
+    return np.array([getattr(status, name) for status in Status], dtype=bool)
 
 
 def labels(codes: NDArray[np.int8]) -> NDArray[np.str_]:

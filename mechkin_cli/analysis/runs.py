@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,11 +52,20 @@ def a_packing(lanes: object, threads: object) -> Packing:
     Raises:
         UsageError: no numbers, or a width that the machine lacks.
     """
+    # what is asked again and again was right before; True is no number
+    known = type(lanes) is int and type(threads) is int
+    return _known_packing(lanes, threads) if known else _packing(lanes, threads)
+
+
+def _packing(lanes: object, threads: object) -> Packing:
     lanes = a_whole_number("lanes", lanes, "rows at a time")
     threads = a_whole_number("threads", threads, "threads")
     check_width(lanes)
     check_threads(threads)
     return Packing(lanes, threads)
+
+
+_known_packing = cache(_packing)
 
 
 def run_name(runs: Sequence[str], name: str | None) -> str:
@@ -144,6 +154,8 @@ def chosen_tables(built: Built, names: Sequence[str] | None, run: str) -> tuple[
     Raises:
         UsageError: the run has no such table.
     """
+    if isinstance(names, list | tuple) and not names:
+        return ()
     own = built.tables_of(run)
     if names is None:
         return own
@@ -260,8 +272,9 @@ def _asked(
     refuse_loaded_spin(session, names)
     # the table of a file that has none shows rates, too
     own = tuple(table for table in layouts if table.name == SWEEP)
-    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named}
-    sweep = Sweep(session.packed(packing), names, unasked=unasked)
+    unasked = {*wanted_names(session, SWEEP, own, None)} - {*named} if own else set()
+    packed = session if packing == session.packing else session.packed(packing)
+    sweep = Sweep(packed, names, unasked=unasked)
     return _Asked(sweep, layouts, asked, chosen(model.built.coefficients, tables), balances)
 
 

@@ -40,7 +40,7 @@ from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, MechkinError
 from mechkin_cli.kernel._kernel import Stepper
 from mechkin_cli.mechanism import LongRun, dimension_of, is_angle
 from mechkin_cli.memo import remembered
-from mechkin_cli.plan import Layout, TrackEnd, build_plan, home_inputs, home_state
+from mechkin_cli.plan import TrackEnd, home_inputs, home_state
 from mechkin_cli.record import replace
 from mechkin_cli.search import (
     Assemblies,
@@ -148,12 +148,7 @@ def _end_of_line(
 
     def plan(place: float) -> Plan:
         if place not in plans:
-            there = between(place)
-            if structure_of(there.graph) != structure:
-                raise MechkinError("another structure on the way")
-            problem = there.problem
-            laid = Layout(problem.laid_mechanism, there.graph, unit, problem.laws)
-            plans[place] = build_plan(laid)
+            plans[place] = between.plan(place, structure, unit)
         return plans[place]
 
     def at(place: float) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:

@@ -79,7 +79,7 @@ from mechkin_cli.mechanism import (
 from mechkin_cli.plan import Demand, demand_of, needs_all_links
 from mechkin_cli.reading import Document, in_order
 from mechkin_cli.record import NamedTuple, replace
-from mechkin_cli.schema import MechanismFile
+from mechkin_cli.schema import Flanks, MechanismFile
 from mechkin_cli.session import Session, solver_graph
 from mechkin_cli.structure import SolverGraph, UnsolvableGraph, listed
 from mechkin_cli.tables import CoefficientsLayout, TableLayout
@@ -329,6 +329,41 @@ def _graph(
                 path = ("chain", i, "joint")
         return error.diagnostic._replace(place=fields.document.place(path))
     return graph if check_blocks(fields, graph) else None
+
+
+def motion_as_built(
+    built: Built, problem: Problem, given: Mapping[str, Quantity]
+) -> MotionInputs | None:
+    """The motion that `build` finds with `given` parameters, for a problem that has all but that;
+    None where it would say something of it, or where more than the inputs goes by it."""
+    file = built.file
+    sections = file.couplings.values()
+    plays = any(isinstance(one, Flanks) and one.backlash is not None for one in sections)
+    if plays or problem.has_idle:
+        return None
+    fields = read_fields(file, built.document, given, datum=problem.mechanism.datum)
+    said = len(fields.diagnostics)
+    joints = problem.mechanism.joints
+    motion = build_motion(fields, file.motion, joints, numbers_per_row(file, joints))
+    return None if len(fields.diagnostics) > said else motion
+
+
+def graph_as_built(problem: Problem, alike: Sequence[LockedFreedom] = ()) -> SolverGraph | None:
+    """The solver graph that `build` finds of a problem that has no errors; None where it would say
+    something of it, or hold other freedoms. `alike` as in `build`."""
+    held = held_of(problem)
+    if held != problem.held:
+        problem = replace(problem, held=held)
+    try:
+        graph = solver_graph(problem.solved_mechanism, problem.driven)
+    except UnsolvableGraph:
+        return None
+    if any(block.equations > MOST_EQUATIONS for block in graph.blocks):
+        return None
+    if is_home_singular(Session.of(problem, graph)):
+        own = mobility.held_to_family(problem, alike)
+        return None if own != problem.held else graph
+    return graph
 
 
 def check_blocks(fields: Fields, graph: SolverGraph) -> bool:

@@ -170,15 +170,17 @@ def precise_response(
     return Precise(recorder, settled(problem), motion, first, (in_si, written))
 
 
-def record(built: Built, names: Sequence[str]) -> tuple[Recorder, Problem]:
-    """The problem of a file, its numbers `Traced` where they depend on some of its parameters.
+def record(built: Built, names: Sequence[str], *, motion: bool = True) -> tuple[Recorder, Problem]:
+    """The problem of a file, its numbers `Traced` where they depend on some of its parameters;
+    without its `motion` that stays as it is, of which the mechanism's numbers do not know.
 
     Raises:
         TraceLost: it depends on one of them in a way that no tape holds.
     """
     base = built.problem
     recorder, fields = _recorded_fields(built, names)
-    problem = build_problem(fields, built.file, responses=False)
+    kept = None if motion else base.motion
+    problem = build_problem(fields, built.file, responses=False, motion=kept)
     problem = _completed(problem, base, base.held)
     _refuse_varied_lines(problem)
     check_spins(fields, problem, built.tables_of(SWEEP))

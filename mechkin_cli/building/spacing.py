@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from decimal import Decimal
-from math import floor, isfinite
+from functools import partial
+from math import floor, inf, isfinite
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,7 @@ from mechkin_cli.mechanism import Joint, told_coordinates
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.schema import MechanismFile, SweptInput, TimeSection
 from mechkin_cli.tables import default_table
+from mechkin_cli.tape import Recorder, Traced, as_recorded
 from mechkin_cli.tolerances import LAST_ROW, LONG_RUN, MOST_NUMBERS, MOST_ROWS
 from mechkin_cli.units import Dimension
 
@@ -92,20 +94,36 @@ def is_long(run_rows: int, per_row: int | None) -> bool:
 
 
 class Spacing(NamedTuple):
-    """Equally spaced values, one for each row: from the first by a step, or without one to the
-    last."""
+    """Equally spaced values, one for each row: from the first towards the last by a positive step,
+    or without one to the last. `name` is that of recorded numbers among these."""
 
     first: float
     last: float
     step: float | None
     rows: int
+    name: str = ""
 
     def values(self, rows: NDArray[np.int64] | None = None) -> Floats:
-        """The values in some rows, by their numbers from 0 (rows,); None: in all."""
+        """The values in some rows, by their numbers from 0 (rows,); None: in all. Of recorded
+        numbers they are inputs of their tape, as no operation of one goes by decimals."""
+        recorder = self._recorder if self.name else None
+        if recorder is not None:
+            if self.step is None:
+                return recorder.take(self.name, partial(_counted, self.rows), self.first, self.last)
+            return recorder.take(self.name, _stepped, self.first, self.last, self.step)
         every = np.arange(self.rows) if rows is None else rows
         if self.step is not None:
-            return self._by_step(every, self.step)
+            return self._by_step(every, self.step if self.last >= self.first else -self.step)
         return np.full(every.shape, self.first) if self.rows == 1 else self._by_count(every)
+
+    @property
+    def _recorder(self) -> Recorder | None:
+        """That of the numbers, if they are recorded."""
+        for number in (self.first, self.last, self.step):
+            if isinstance(number, Traced):
+                recorder: Recorder = number.recorder
+                return recorder
+        return None
 
     def _by_step(self, rows: NDArray[np.int64], step: float) -> Floats:
         """first + i*step."""
@@ -125,6 +143,21 @@ class Spacing(NamedTuple):
             values = np.asarray(self.first + rows * rise, dtype=np.float64)
             return np.where(rows == gaps, self.last, values)
         return numerators / float(power * gaps)
+
+
+def _counted(count: int, first: float, last: float) -> Floats:
+    """`count` values; none where they are not finite."""
+    if not isfinite(last - first):
+        return np.empty(0)
+    return Spacing(first, last, None, count).values()
+
+
+def _stepped(first: float, last: float, step: float) -> Floats:
+    """The values a positive step apart; none where they are without end."""
+    ratio = abs(last - first) / step + LAST_ROW if step else inf
+    if not ratio < MOST_NUMBERS:
+        return np.empty(0)
+    return Spacing(first, last, step, int(ratio) + 1).values()
 
 
 def _whole_numbers(*values: float) -> tuple[tuple[int, ...], int]:
@@ -157,11 +190,12 @@ def spacing(
     first = fields.written((*path, "from"), section.first, dimension)
     last = fields.written((*path, "to"), section.last, dimension)
     one = Spacing(first, first, None, 1)
+    name = ".".join(map(str, path)) if isinstance(section, SweptInput) else ""
     if section.count is not None:
         at = (*path, "count")
         if fields.error_count > errors or has_too_many_rows(fields, at, section.count, per_row):
             return one
-        return Spacing(first, last, None, section.count)
+        return Spacing(first, last, None, section.count, name)
     assert section.step is not None  # the schema wants one of the two
     step = abs(fields.written((*path, "step"), section.step, dimension))
     if fields.error_count > errors:
@@ -171,8 +205,8 @@ def spacing(
             hint = "give the distance of rows"
             fields.error("zero-step", (*path, "step"), "the step is zero", hint)
         return one
-    ratio = abs(last - first) / step + LAST_ROW
+    ratio = as_recorded(abs(last - first) / step) + LAST_ROW
     rows = floor(ratio) + 1 if isfinite(ratio) else ratio
     if has_too_many_rows(fields, (*path, "step"), rows, per_row):
         return one
-    return Spacing(first, last, step if last >= first else -step, int(ratio) + 1)
+    return Spacing(first, last, step, int(ratio) + 1, name)

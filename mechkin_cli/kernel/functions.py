@@ -92,7 +92,8 @@ def threads_for(rows: int, threads: int = 0) -> int:
     Raises:
         UsageError: as `check_threads`.
     """
-    check_threads(threads)
+    if threads != 0:
+        check_threads(threads)
     asked = threads or _forced_threads
     if asked:
         return asked

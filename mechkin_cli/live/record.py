@@ -200,8 +200,13 @@ Varied = Callable[[Sequence[str]], "SessionVariation | None"]
 def _varied_by(design: Design, run: str) -> Varied:
     base = base_of(design)
     if run == SWEEP:
-        return base.variation
+        return lambda names: _by_operations(base.variation(names))
     return lambda names: base.response_variation(names, run)
+
+
+def _by_operations(varied: SessionVariation | None) -> SessionVariation | None:
+    """A recording with inputs that follow from others by no operation is none for a page."""
+    return None if varied is None or varied.recorder.given_rows else varied
 
 
 def _why_fixed(problem: Problem, run: str) -> str | None:

@@ -99,12 +99,12 @@ class Problem:
         drives = self.mechanism.drives
         return self.motion.driven if drives is None else drives.acting
 
-    @property
+    @cached_property
     def has_idle(self) -> bool:
         """Whether something may move freely while all else stands still."""
         return bool(self.mechanism.spins or any(one.idle for one in self.held))
 
-    @property
+    @cached_property
     def stopped(self) -> tuple[LockedFreedom, ...]:
         """Held freedoms that the loops stop, but not to first order."""
         return tuple(one for one in self.held if not one.idle)

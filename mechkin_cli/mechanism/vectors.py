@@ -125,12 +125,19 @@ def upright(point: Vector) -> Frame:
 
 def perpendicular(z: Vector) -> Vector:
     """A unit vector square to the unit vector z: from the ground axis that is farthest from z."""
-    axis = min(((abs(c), k) for k, c in enumerate(z)), key=_size)[1]
-    return unit(cross((GROUND.x, GROUND.y, GROUND.z)[axis], z))
+    found = (*GROUND.x, abs(z[0]))
+    for axis, component in ((GROUND.y, z[1]), (GROUND.z, z[2])):
+        # of equal components the first; no guard, since parameters move axes past each other
+        found = _axis_if(abs(component) < found[3], (*axis, abs(component)), found)
+    return unit(cross((found[0], found[1], found[2]), z))
 
 
-def _size(component: tuple[float, int]) -> float:
-    return component[0]
+_AxisAndSize = tuple[float, float, float, float]
+
+
+def _axis_if(condition: bool, chosen: _AxisAndSize, other: _AxisAndSize) -> _AxisAndSize:
+    x, y, z, size = either(condition, lambda: chosen, lambda: other)
+    return (x, y, z, size)
 
 
 def frame_about(z: Vector, x: Vector, o: Vector) -> Frame:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mechkin_cli.diagnostics import MechkinError
 from mechkin_cli.kernel import _kernel
 from mechkin_cli.mechanism import LongRun
 from mechkin_cli.memo import Memo, remembered
@@ -45,7 +46,7 @@ from mechkin_cli.session.kernel_run import (
     RowInputs,
     run as run_kernel,
 )
-from mechkin_cli.structure import SolverGraph, exchanged, is_redundant
+from mechkin_cli.structure import SolverGraph, exchanged, is_redundant, structure_of
 from mechkin_cli.tolerances import FREE_INPUT_MISS, FREE_INPUT_STEP, STOPPED_MISS
 
 if TYPE_CHECKING:
@@ -75,8 +76,30 @@ class Continued(NamedTuple):
     row: int
 
 
-Between = Callable[[float], "Session"]
-"""The session at a place between a base (0) and the one that continues it (1)."""
+class Between:
+    """What lies between a base (0) and the session that continues it (1).
+
+    Args:
+        session: at a place.
+    """
+
+    def __init__(self, session: Callable[[float], Session]) -> None:
+        self.session = session
+
+    def plan(self, place: float, structure: object, length: float) -> Plan:
+        """The plan at a place, of a structure (`structure_of`) and in a length unit (m).
+
+        Raises:
+            MechkinError: the file has an error there, or is solved in another way.
+        """
+        there = self.session(place)
+        if structure_of(there.graph) != structure:
+            raise MechkinError("another structure on the way")
+        return there.measured_in(length).structure.plan
+
+    def derived(self, make: Callable[[Session], Problem]) -> Between:
+        """What lies between sessions that follow from these, as `Session.derived`."""
+        return Between(lambda place: self.session(place).derived(make))
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,14 +292,30 @@ class Session:
         if self.base is None:
             return other
         base, between = self.base
-        return other.continuing(base.derived(make), lambda place: between(place).derived(make))
+        return other.continuing(base._derived_once(make), between.derived(make))
+
+    def _derived_once(self, make: Callable[[Session], Problem]) -> Session:
+        """As `derived`, one session for the same joints and links: many continue its assembly."""
+        problem = make(self)
+        mechanism = problem.mechanism
+        key = Session.derived, tuple(mechanism.joints), tuple(mechanism.links)
+        if key not in self.memo:
+            self.memo[key] = self.derived(lambda session: problem)
+        found: Session = self.memo[key]
+        return found
 
     def continuing(self, base: Session, between: Between) -> Session:
         """This session with its first assembly, and its length unit, from those of a base."""
+        own = self.measured_in(base.layout.length)
+        return replace(own, first=None, base=(base, between))
+
+    def measured_in(self, length: float) -> Session:
+        """The same session with another length unit (m) in the kernel."""
         own = self.layout
-        laid = Layout(own.mechanism, self.graph, base.layout.length, own.laws)
-        structure = replace(self.structure, layout=laid)
-        return replace(self, structure=structure, first=None, base=(base, between))
+        if length == own.length:
+            return self
+        laid = Layout(own.mechanism, self.graph, length, own.laws)
+        return replace(self, structure=replace(self.structure, layout=laid), own_inputs=None)
 
     @remembered
     def packed(self, packing: Packing) -> Session:

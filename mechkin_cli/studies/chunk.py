@@ -24,29 +24,36 @@ if TYPE_CHECKING:
     from mechkin_cli.show import Floats
     from mechkin_cli.variants import Variants
 
+    Codes = NDArray[np.int8]
+    """Of `Status` (variants, rows)."""
 
 LONGEST_MESSAGE = 300
 
 
 def messages(
-    found: Variants, texts: Iterable[str], along: Heading | None, places: Floats | None
+    found: Variants,
+    codes: Codes,
+    texts: Iterable[str],
+    along: Heading | None,
+    places: Floats | None,
 ) -> Values:
     """Why variants are not ok (variants,), "" of those that are: what was said where one cannot be
     built, else the verdict of the first row that is not ok, with what is infinite.
 
     Args:
         found: all rows of the variants.
+        codes: their verdicts.
         texts: quantities that are kept.
         along: what the run goes along, None where nothing moves.
         places: its values in the rows (variants, rows).
     """
     texts_of = empty_values("text", len(found))
-    not_ok = found.codes != Status.ok
-    infinite = _infinite(found, texts)
+    not_ok = codes != Status.ok
+    infinite = _infinite(found, codes, texts)
     for number in np.flatnonzero(not_ok.any(axis=1)).tolist():
         row = int(np.argmax(not_ok[number]))
         place = "" if places is None else _place(along, float(places[number, row]))
-        reason = _reason(Status(int(found.codes[number, row])))
+        reason = _reason(Status(int(codes[number, row])))
         text = f"row {row + 1}{place}: {reason}{infinite.get(number, '')}"
         texts_of[number] = text[:LONGEST_MESSAGE]
     for number, error in found.errors.items():
@@ -60,9 +67,9 @@ def _reason(status: Status) -> str:
     return sentence.partition(":")[0] if status is Status.dead_centre else sentence
 
 
-def _infinite(found: Variants, texts: Iterable[str]) -> dict[int, str]:
+def _infinite(found: Variants, codes: Codes, texts: Iterable[str]) -> dict[int, str]:
     """Kept quantities that are infinite, and in which row first, by the number of the variant."""
-    at = found.codes == Status.dead_centre
+    at = codes == Status.dead_centre
     numbers = np.flatnonzero(at.any(axis=1))
     words: dict[int, str] = {}
     for text in texts if numbers.size else ():
@@ -159,26 +166,26 @@ def chunk(
     """Records of variants with these values (variants,) by name, in the file's units, by name of
     table; the first variant has the number `begin`."""
     found, places = _varied(model, question, values, threads)
-    count = len(found)
+    count, codes = len(found), found.codes
     records: Records = {VARIANT.label: np.arange(begin, begin + count, dtype=np.int64)}
     records |= {name: np.asarray(column, dtype=np.float64) for name, column in values.items()}
     for column in question.columns:
         records[column.heading.label] = _reduced(found[column.text], column, places)
     words = np.array([status.label for status in Status], dtype=object)
-    not_ok = found.codes != Status.ok
+    not_ok = codes != Status.ok
     records[VERDICTS[0].label] = np.count_nonzero(not_ok, axis=1).astype(np.int64)
-    verdicts = words[found.codes[np.arange(count), np.argmax(not_ok, axis=1)]]
+    verdicts = words[codes[np.arange(count), np.argmax(not_ok, axis=1)]]
     verdicts[list(found.errors)] = NOT_BUILT
     if question.dead_centre is not None:
-        records[question.dead_centre.label] = _dead_centres(model, values, found, places)
+        records[question.dead_centre.label] = _dead_centres(model, values, codes, places)
     records[VERDICTS[1].label] = verdicts
     texts = dict.fromkeys(
         [column.text for column in question.columns] + [h.label for h in question.rows]
     )
-    records[VERDICTS[2].label] = messages(found, texts, question.parameter, places)
+    records[VERDICTS[2].label] = messages(found, codes, texts, question.parameter, places)
     tables = {"variants": records}
     if question.rows:
-        tables["rows"] = _rows(question, found, places, begin, words)
+        tables["rows"] = _rows(question, found, codes, places, begin, words)
     return tables
 
 
@@ -244,16 +251,16 @@ def _place_of_largest(sizes: Floats, places: Floats | None) -> Floats:
 
 
 def _dead_centres(
-    model: Solvable, values: Mapping[str, Floats], found: Variants, places: Floats | None
+    model: Solvable, values: Mapping[str, Floats], codes: Codes, places: Floats | None
 ) -> Floats:
     """The input at the dead centre at which a variant's branch ends, or at which a row stands, in
     the file's units; nan where it meets none."""
-    stands = found.codes == Status.dead_centre
-    ends = np.full(len(found), np.nan)
+    stands = codes == Status.dead_centre
+    ends = np.full(len(codes), np.nan)
     if places is not None and stands.any():
         first = _place_of_largest(stands.astype(np.float64), places)
         ends = np.where(stands.any(axis=1), first, np.nan)
-    for number in np.flatnonzero((found.codes == Status.beyond_dead_centre).any(axis=1)):
+    for number in np.flatnonzero((codes == Status.beyond_dead_centre).any(axis=1)):
         own = {name: float(column[number]) for name, column in values.items()}
         for diagnostic in with_parameters(model, own).analyze([], tables=[]).diagnostics:
             if diagnostic.code == "dead-centre" and diagnostic.numbers:
@@ -264,13 +271,14 @@ def _dead_centres(
 def _rows(
     question: StudyQuestion,
     found: Variants,
+    codes: Codes,
     places: Floats | None,
     begin: int,
     words: NDArray[np.object_],
 ) -> Records:
     """All rows of all variants, one below the other; none behind the one at which a stop ends a
     response."""
-    count, rows = found.codes.shape
+    count, rows = codes.shape
     records: Records = {
         VARIANT.label: np.repeat(np.arange(begin, begin + count, dtype=np.int64), rows),
         ROW.label: np.tile(np.arange(1, rows + 1, dtype=np.int64), count),
@@ -279,8 +287,8 @@ def _rows(
         records[question.parameter.label] = places.reshape(-1)
     for heading in question.rows:
         records[heading.label] = found[heading.label].reshape(-1)
-    records[VERDICTS[1].label] = words[found.codes.reshape(-1)]
+    records[VERDICTS[1].label] = words[codes.reshape(-1)]
     if places is not None and question.run != SWEEP:
-        asked = ~(np.isnan(places) & (found.codes == Status.ok)).reshape(-1)
+        asked = ~(np.isnan(places) & (codes == Status.ok)).reshape(-1)
         records = {label: column[asked] for label, column in records.items()}
     return records

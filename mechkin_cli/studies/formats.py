@@ -7,7 +7,7 @@ depend on the pieces.
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Protocol, TypeAlias
@@ -48,6 +48,38 @@ def joined(pieces: Sequence[Records]) -> Records:
     if len(pieces) == 1:
         return pieces[0]
     return {label: np.concatenate([piece[label] for piece in pieces]) for label in pieces[0]}
+
+
+class GatheredRecords:
+    """Records of a study's tables from stretches of its variants, in whatever order they come:
+    columns of a line for each variant are filled, so that nothing is held twice.
+
+    Args:
+        variants: how many.
+        lines: the table that has a line for each.
+    """
+
+    def __init__(self, variants: int, lines: str) -> None:
+        self._variants, self._lines = variants, lines
+        self._whole: Records = {}
+        self._parts: dict[str, dict[int, Records]] = {}
+
+    def put(self, begin: int, end: int, tables: Mapping[str, Records]) -> None:
+        """The records of variants `begin` to `end` (without it)."""
+        for name, records in tables.items():
+            if name != self._lines:
+                self._parts.setdefault(name, {})[begin] = records
+                continue
+            for label, values in records.items():
+                if label not in self._whole:
+                    own: Any = np.empty(self._variants, dtype=values.dtype)
+                    self._whole[label] = own
+                self._whole[label][begin:end] = values
+
+    def tables(self) -> dict[str, Records]:
+        """All of them, by name of table."""
+        parts = {name: [one[k] for k in sorted(one)] for name, one in self._parts.items()}
+        return {self._lines: self._whole} | {name: joined(each) for name, each in parts.items()}
 
 
 def empty_values(kind: str, count: int) -> Values:

@@ -211,8 +211,7 @@ class _VariationReader:
             return np.empty(0)
         if step is None:
             return Spacing(first, last, None, count).values()
-        step = abs(step) if last >= first else -abs(step)
-        return Spacing(first, last, step, count).values()
+        return Spacing(first, last, abs(step), count).values()
 
     def _distribution(
         self, name: str, form: written.Uniform | written.Normal | written.Tolerance

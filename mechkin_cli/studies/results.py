@@ -14,7 +14,7 @@ from mechkin_cli.record import NamedTuple, dataclass
 from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS
 from mechkin_cli.studies.folder import ROWS, VARIANTS
-from mechkin_cli.studies.formats import Records, Values, numbers
+from mechkin_cli.studies.formats import LINES_AT_ONCE, Records, Values, joined, numbers
 from mechkin_cli.tables import Heading
 
 if TYPE_CHECKING:
@@ -100,24 +100,90 @@ class Overview(NamedTuple):
         return Listing(f"{name}: {self.variants} variants, {verdicts}", labels, rows)
 
 
+class RunningOverview:
+    """The overview of a study's variants as stretches of them come.
+
+    Args:
+        headings: of the variants.
+        number: the label of their numbers.
+        verdict: the label of their verdicts.
+    """
+
+    def __init__(self, headings: Sequence[Heading], number: str, verdict: str) -> None:
+        self.number, self.verdict = number, verdict
+        self.units = {h.label: h.unit for h in headings if h.kind == "number"}
+        self._columns = {label: _RunningColumn() for label in self.units}
+        self._verdicts: dict[str, int] = {}
+        self._variants = 0
+
+    def add(self, records: Records) -> None:
+        """Some variants more, in order: sums are rounded as their stretches have it."""
+        self._variants += len(records[self.number])
+        words, counts = np.unique(records[self.verdict].astype(str), return_counts=True)
+        for word, count in zip(words.tolist(), counts.tolist(), strict=True):
+            self._verdicts[word] = self._verdicts.get(word, 0) + count
+        variants = np.asarray(records[self.number], dtype=np.int64)
+        for label, column in self._columns.items():
+            column.add(numbers(records[label]), variants)
+
+    def overview(self) -> Overview:
+        """Of the variants so far."""
+        spreads = tuple(_spread(label, self.units[label], c) for label, c in self._columns.items())
+        ordered = dict(sorted(self._verdicts.items(), key=lambda item: (-item[1], item[0])))
+        return Overview(self._variants, ordered, spreads)
+
+
+class GatheredOverview:
+    """The overview of a study's pieces in whatever order they come, as their file will give it.
+
+    Args:
+        running: of none yet.
+        begin: the number of the first variant.
+    """
+
+    def __init__(self, running: RunningOverview, begin: int) -> None:
+        self._running, self._next = running, begin
+        self._labels = [running.number, running.verdict, *running.units]
+        self._early: dict[int, Records] = {}
+        self._held: list[Records] = []
+
+    def put(self, begin: int, records: Records) -> None:
+        """A piece, the first of its variants with the number `begin`."""
+        self._early[begin] = {label: records[label] for label in self._labels}
+        while self._next in self._early:
+            found = self._early.pop(self._next)
+            self._held.append(found)
+            self._next += len(found[self._running.number])
+        lines = sum(len(records[self._running.number]) for records in self._held)
+        while lines >= LINES_AT_ONCE:
+            self._take(LINES_AT_ONCE)
+            lines -= LINES_AT_ONCE
+
+    def _take(self, lines: int) -> None:
+        """Adds the first of the lines that are held: as many as are read of a file at a time."""
+        whole = joined(self._held)
+        stretch = {label: values[:lines] for label, values in whole.items()}
+        for label in self._running.units:
+            # a file has no negative zero
+            stretch[label] = numbers(stretch[label]) + 0.0
+        self._running.add(stretch)
+        self._held = [{label: values[lines:] for label, values in whole.items()}]
+
+    def overview(self) -> Overview:
+        """Of all pieces."""
+        if self._held:
+            self._take(LINES_AT_ONCE)
+        return self._running.overview()
+
+
 def overview(
     pieces: Iterable[Records], headings: Sequence[Heading], number: str, verdict: str
 ) -> Overview:
     """The overview of a study's pieces; `number` and `verdict` are labels of columns."""
-    columns = {h.label: _RunningColumn() for h in headings if h.kind == "number"}
-    verdicts: dict[str, int] = {}
-    variants = 0
+    running = RunningOverview(headings, number, verdict)
     for records in pieces:
-        variants += len(records[number])
-        words, counts = np.unique(records[verdict].astype(str), return_counts=True)
-        for word, count in zip(words.tolist(), counts.tolist(), strict=True):
-            verdicts[word] = verdicts.get(word, 0) + count
-        for label, column in columns.items():
-            column.add(numbers(records[label]), np.asarray(records[number], dtype=np.int64))
-    units = {heading.label: heading.unit for heading in headings}
-    spreads = tuple(_spread(label, units[label], column) for label, column in columns.items())
-    ordered = dict(sorted(verdicts.items(), key=lambda item: (-item[1], item[0])))
-    return Overview(variants, ordered, spreads)
+        running.add(records)
+    return running.overview()
 
 
 def _spread(label: str, unit: str, column: _RunningColumn) -> Spread:

@@ -26,13 +26,21 @@ from mechkin_cli.kernel.functions import check_threads
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.studies.chunk import VARIANT, VERDICTS, StudyQuestion, chunk, lost
 from mechkin_cli.studies.folder import VARIANTS, Share, StudyFolder, spare
-from mechkin_cli.studies.formats import Format, Records, format_of, joined
+from mechkin_cli.studies.formats import Format, GatheredRecords, Records, format_of, joined
 from mechkin_cli.studies.plan import study_plan
-from mechkin_cli.studies.results import StudyFiles, StudyResults, overview
+from mechkin_cli.studies.results import (
+    GatheredOverview,
+    Overview,
+    RunningOverview,
+    StudyFiles,
+    StudyResults,
+    overview,
+)
 from mechkin_cli.studies.shares import merge, part_folder, share_of
 from mechkin_cli.studies.source import StudySource, open_study
 from mechkin_cli.studies.workers import Executors, Task, cluster, executed, processes
 from mechkin_cli.tolerances import MOST_KEPT, MOST_THREADS
+from mechkin_cli.variants import base_of
 from mechkin_cli.verdict import SWEEP, __version__
 
 if TYPE_CHECKING:
@@ -59,6 +67,17 @@ def work_off(parcel: Parcel, values: Mapping[str, Floats], begin: int, threads: 
     if parcel[1] != __version__:
         return {}, __version__
     model, question = _unpacked(parcel)
+    return chunk(model, question, values, begin, threads), __version__
+
+
+def _work_off_here(
+    model: Solvable,
+    question: StudyQuestion,
+    values: Mapping[str, Floats],
+    begin: int,
+    threads: int,
+) -> Answer:
+    """The same, done by a thread of this process."""
     return chunk(model, question, values, begin, threads), __version__
 
 
@@ -221,10 +240,16 @@ class Study:
                     yield task, chunk(self.model, question, values, task.begin, workers.threads)
                 return
             executors, count, threads = chosen
-            parcel = pickle.dumps((self.model, question)), __version__
+            shared = workers.is_here
+            if shared:  # threads share the model, and what is recorded of it
+                base_of(self.model.design)
+            parcel = None if shared else (pickle.dumps((self.model, question)), __version__)
 
             def submit(executor: Executor, task: Task) -> Future[Answer]:
                 values = variation.values(task.begin, task.end)
+                if parcel is None:
+                    given = self.model, question, values, task.begin, threads
+                    return executor.submit(_work_off_here, *given)
                 return executor.submit(work_off, parcel, values, task.begin, threads)
 
             def died(task: Task) -> Answer:
@@ -253,11 +278,10 @@ class Study:
         size = self.piece
         pieces = range(-(-self.variants // size))
         tasks = [Task(n, n * size, min((n + 1) * size, self.variants)) for n in pieces]
-        computed = {
-            t.piece: tables for t, tables in self._whole_pieces(tasks, workers, progress, 0)
-        }
-        records = {name: joined([computed[n][name] for n in pieces]) for name in question.tables}
-        return StudyResults(self.source.name, question.tables, records, self.notes)
+        gathered = GatheredRecords(self.variants, VARIANTS)
+        for task, computed in self._whole_pieces(tasks, workers, progress, 0):
+            gathered.put(task.begin, task.end, computed)
+        return StudyResults(self.source.name, question.tables, gathered.tables(), self.notes)
 
     def in_folder(
         self,
@@ -274,18 +298,22 @@ class Study:
             UsageError: the folder holds another study, another process writes to it, or a file
                 cannot be written; pieces that were written stay.
         """
-        workers, kind = _checked(workers), format_of(file_format)
+        workers, kind, question = _checked(workers), format_of(file_format), self.question
         spare(folder, [*self.model.built.document.files, *self.source.document.files])
         with self._folder(folder, kind, self.share) as output:
             output.begin(again)
             missing = [] if output.is_complete else output.missing()
             tasks = [Task(number, *output.stretch(number)) for number in missing]
             done = len(self.numbers) - sum(task.end - task.begin for task in tasks)
+            running = RunningOverview(question.tables[VARIANTS], VARIANT.label, VERDICTS[1].label)
+            gathered = GatheredOverview(running, self.numbers.start)
             for task, records in self._whole_pieces(tasks, workers, progress, done):
                 output.put(task.piece, records)
+                if not done:
+                    gathered.put(task.begin, records[VARIANTS])
             if not output.is_complete:
                 output.finish()
-            return self._written(output)
+            return self._written(output, gathered.overview() if tasks and not done else None)
 
     def merged(self, folder: Path, file_format: str = "csv", again: bool = False) -> StudyFiles:
         """Puts the shares in a folder together, as if the whole study had been run there, and
@@ -307,9 +335,10 @@ class Study:
         tables = self.question.tables
         return StudyFolder(where, self._sources, self.variants, tables, kind, self.piece, share)
 
-    def _written(self, output: StudyFolder) -> StudyFiles:
-        headings = self.question.tables[VARIANTS]
-        seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
+    def _written(self, output: StudyFolder, seen: Overview | None = None) -> StudyFiles:
+        if seen is None:
+            headings = self.question.tables[VARIANTS]
+            seen = overview(output.read(VARIANTS), headings, VARIANT.label, VERDICTS[1].label)
         return StudyFiles(self.source.name, tuple(output.results), seen, self.notes)
 
     def _whole_pieces(

@@ -172,12 +172,12 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
     """Goes on where the inputs turn back at a dead centre or a branch point; says which branch
     points were passed, at which places the inputs turn back, and what ended the branch, if it
     ended. `rows` are in the order in which they were followed."""
-    values = np.ascontiguousarray(session.inputs.values[:, rows.numbers])
-    turning = _turning(values)
+    turning = _turning(session, int(rows.numbers[0]), int(rows.numbers[-1]))
     if not (turning.size or followed.crossings or followed.end != TrackEnd.FINISHED):
         return
     from mechkin_cli.sweep import branch_end
 
+    values = np.ascontiguousarray(session.inputs.values[:, rows.numbers])
     touched: list[SingularPlace] = []
     passed: list[Floats] = []
     first, way = 0, followed
@@ -216,8 +216,12 @@ def explain_way(session: Session, followed: Followed, rows: SweepRows, every_row
         branch_end.explain_end(session, path, way, rest)
 
 
-def _turning(values: Floats) -> NDArray[np.intp]:
-    """The numbers of the rows at which the inputs (inputs, rows) turn back."""
+@remembered
+def _turning(session: Session, first: int, last: int) -> NDArray[np.intp]:
+    """Of the rows from one to another the numbers of those at which the inputs turn back, counted
+    from the first."""
+    step = 1 if last >= first else -1
+    values = session.inputs.values[:, np.arange(first, last + step, step)]
     moved = np.flatnonzero((values[:, 1:] != values[:, :-1]).any(axis=0))
     along = np.zeros(max(moved.size - 1, 0))
     for value in values:

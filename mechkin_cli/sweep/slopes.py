@@ -14,6 +14,7 @@ import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic, Number
 from mechkin_cli.mechanism import ExpressionOf, dimension_of
+from mechkin_cli.memo import remembered
 from mechkin_cli.plan import Demand
 from mechkin_cli.record import NamedTuple
 from mechkin_cli.session import Ask, RowInputs
@@ -154,7 +155,7 @@ def turning_corner(session: Session, state: Floats) -> tuple[Bend, Jump] | None:
 def slope_notes(result: RunRows) -> list[Diagnostic]:
     """Names the places between the rows at which slopes jump, and the rows there."""
     problem, notes = result.problem, []
-    for bend in bends(problem):
+    for bend in _bends_of(result.session):
         if bend.noted or not result.solved.any():
             continue
         values = np.broadcast_to(
@@ -166,6 +167,11 @@ def slope_notes(result: RunRows) -> list[Diagnostic]:
         if jumps:
             notes.append(_note(result.row_states, problem, bend, jumps, values))
     return notes
+
+
+@remembered
+def _bends_of(session: Session) -> list[Bend]:
+    return bends(session.problem)
 
 
 def coordinate_unit(problem: Problem, name: str) -> tuple[float, str]:

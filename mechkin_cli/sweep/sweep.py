@@ -312,7 +312,8 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
     Sides are there where the run demanded more than positions.
     """
     limit = rows.limit
-    if batch.condition is not None:
+    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
+    if batch.condition is not None and failed.any():
         # next to singular places branches may be nearer than a position is known to rounding
         known = np.where(
             batch.condition <= tolerances.CONDITION_RANK_UNCLEAR,
@@ -322,7 +323,7 @@ def _failed(batch: Batch, rows: SweepRows) -> Bools:
         limit = np.maximum(limit, known)
         on_fold = batch.condition > tolerances.CONDITION_SIDE_UNCLEAR
         limit = np.where(on_fold, tolerances.FOLD_CORRECTION * limit, limit)
-    failed: Bools = rows.reached & ~(batch.good & (batch.correction <= limit))
+        failed = rows.reached & ~(batch.good & (batch.correction <= limit))
     assert batch.side is not None
     if not (batch.side != batch.side[:, :1]).any():
         return failed

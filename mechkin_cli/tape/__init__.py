@@ -31,8 +31,8 @@ __getattr__, __dir__ = lazy_names(
         "double_double": "DoubleDoubles bounded difference eliminate exactly joined stacked",
         "exact": "ExactRecorder ExactRows ShiftingRecorder",
         "identities": "Identities",
-        "recorder": "Filling Instruction Recorder TraceLost Traced differ is_traced of_numbers "
-        "register with_rates within",
+        "recorder": "Filling GivenRows Instruction Recorder TraceLost Traced differ is_traced "
+        "of_numbers register with_rates within",
         "row_programs": "JetNumber RowRecorder SLOPES orders_of",
         "scalars": "Recorded Undecided advice as_recorded by_rounding cos either is_finite "
         "is_number is_settled largest next_power_of_two nonzero of_one of_two plain sin smallest "

@@ -11,17 +11,29 @@ import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
+from threading import RLock
 from types import MappingProxyType
 from typing import Any, NoReturn
 
 import numpy as np
 
-from mechkin_cli.record import fields, is_dataclass, replace
+from mechkin_cli.record import NamedTuple, fields, is_dataclass, replace
 from mechkin_cli.show import Floats
-from mechkin_cli.tape.scalars import Recorded, Undecided
+from mechkin_cli.tape.scalars import Recorded, Undecided, as_recorded
 from mechkin_cli.tape.tape import ARITY, Operation, Tape, meaning
 
 Instruction = tuple[Operation, int, int, int]
+
+
+class GivenRows(NamedTuple):
+    """Inputs of a tape that no operation gives: a function of floats computes them from recorded
+    `numbers`, and is to give as many `rows` again; `first` is the place of the first among the
+    inputs."""
+
+    compute: Callable[..., Floats]
+    numbers: tuple[Any, ...]
+    first: int
+    rows: int
 
 
 class Recorder:
@@ -29,7 +41,9 @@ class Recorder:
 
     Attributes:
         values: of every register, when it was recorded.
+        given_rows: inputs that follow from others in a way that no operation has.
         is_settled: whether no other values will replace its inputs.
+        lock: of threads that share what is recorded, and go on recording.
         holds_others: whether numbers of other recordings are constants of this one.
     """
 
@@ -39,6 +53,9 @@ class Recorder:
     def __init__(self, inputs: Sequence[str], values: Sequence[float]) -> None:
         self.inputs = tuple(inputs)
         self.values: list[float] = list(values)
+        self.lock = RLock()
+        self.given_rows: list[GivenRows] = []
+        self._inputs_at = list(range(len(self.inputs)))
         self._constants: dict[tuple[float, float], int] = {}
         self._instructions: dict[Instruction, int] = {}
         self._written: dict[int, Instruction] = {}
@@ -61,6 +78,20 @@ class Recorder:
             number = self._instructions[instruction] = self._register(value)
             self._written[number] = instruction
         return self._instructions[instruction]
+
+    def take(self, name: str, compute: Callable[..., Floats], *numbers: Any) -> Floats:
+        """What a function of floats gives of recorded numbers, each a further input `name`."""
+        found = compute(*map(as_recorded, numbers))
+        self.given_rows.append(GivenRows(compute, numbers, len(self.inputs), found.size))
+        self.inputs += tuple(f"{name}[{row}]" for row in range(found.size))
+        registers = [self._register(value) for value in found.tolist()]
+        self._inputs_at += registers
+        return of_numbers(map(self.number, registers))
+
+    @property
+    def values_given(self) -> list[float]:
+        """The values of the inputs when they were recorded."""
+        return [self.values[register] for register in self._inputs_at]
 
     def number(self, register: int) -> Traced:
         """The number in a register."""
@@ -86,10 +117,11 @@ class Recorder:
         outputs = list(outputs)
         guards = self._guards if guarded else {}
         needed = self._needed([*outputs, *(r for g in guards for r in g[1:3])])
-        first = len(self.inputs)
-        constants = [r for r in needed if r >= first and r not in self._written]
+        given = set(self._inputs_at)
+        constants = [r for r in needed if r not in given and r not in self._written]
         values = [self.values[r] for r in constants]
-        return self._tape(self.inputs, [*range(first), *constants], values, needed, outputs, guards)
+        leaves = [*self._inputs_at, *constants]
+        return self._tape(self.inputs, leaves, values, needed, outputs, guards)
 
     def _tape(
         self,

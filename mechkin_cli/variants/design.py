@@ -13,30 +13,46 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property, partial
+from threading import RLock
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from mechkin_cli.analysis import Design, Solvable
 from mechkin_cli.arguments import Setting, a_setting, a_text, settings, shown
-from mechkin_cli.building import build, is_tiny_length, record, record_response
+from mechkin_cli.building import (
+    build,
+    graph_as_built,
+    is_tiny_length,
+    motion_as_built,
+    record,
+    record_response,
+)
 from mechkin_cli.diagnostics import LONGEST_NAME, Diagnostic, InvalidFile, UsageError, nearest_hint
 from mechkin_cli.expressions import ExpressionError, Quantity, constant
 from mechkin_cli.mechanism import Problem
-from mechkin_cli.memo import remembered
+from mechkin_cli.memo import Memo, remembered
 from mechkin_cli.record import replace
-from mechkin_cli.session import Session
+from mechkin_cli.session import Between, Session
 from mechkin_cli.structure import SolverGraph, structure_of
 from mechkin_cli.sweep import first_assembly
 from mechkin_cli.tape import TraceLost, Verdict
 from mechkin_cli.tolerances import LARGEST_NUMBER, SMALLEST_SIZE
 from mechkin_cli.units import LENGTH
-from mechkin_cli.variants.variation import SessionVariation, varied_response, varied_session
+from mechkin_cli.variants.variation import (
+    Recording,
+    SessionVariation,
+    varied_response,
+    varied_session,
+)
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
     from mechkin_cli.building import Built, ViewSettings
+    from mechkin_cli.kernel._kernel import Plan
+    from mechkin_cli.mechanism import MotionInputs
     from mechkin_cli.show import Floats
     from mechkin_cli.units import Dimension, UnitSystem
 
@@ -155,11 +171,19 @@ def _bounded(name: str, in_si: float, value: object, dimension: Dimension) -> fl
     return in_si
 
 
+MOST_RECORDINGS = 32
+"""Recordings that a design keeps for some parameters. Each costs as much as some builds: a file
+that is built in ever other ways is not worth more."""
+
+
 class Base:
     """What the variants of a design share: its first assembly, and its recordings by parameters."""
 
     def __init__(self, design: Design) -> None:
         self.design = design
+        self.memo: Memo = {}
+        self._lock = RLock()  # threads that share a design record it once
+        self._recordings: dict[tuple[str, ...], list[Recording | None]] = {}
         self._variations: dict[tuple[str, ...], SessionVariation | None] = {}
         self._responses: dict[tuple[str, ...], SessionVariation | None] = {}
 
@@ -179,9 +203,10 @@ class Base:
     def variation(self, names: Sequence[str]) -> SessionVariation | None:
         """How the design depends on some parameters; None where each variant is built by itself."""
         key = tuple(names)
-        if key not in self._variations:
-            self._variations[key] = self._recorded(key)
-        return self._variations[key]
+        with self._lock:
+            if key not in self._variations:
+                self._variations[key] = self._recorded(key)
+            return self._variations[key]
 
     def _recorded(self, names: tuple[str, ...]) -> SessionVariation | None:
         if self._assembled is None:
@@ -192,13 +217,52 @@ class Base:
             # numpy refuses recorded numbers in words of its own
             return None
 
+    def recording(self, values: Mapping[str, float]) -> Recording | None:
+        """How the design depends on some parameters (SI) about these values: the recording of its
+        own values or of others, where its guards hold, or a new one; None where no tape holds it.
+
+        Raises:
+            InvalidFile: a new one, of values with which the file has errors.
+        """
+        names = tuple(values)
+        if not names:
+            return None
+        row = np.array(list(values.values()))
+        with self._lock:
+            if names not in self._recordings:
+                own = self.variation(names)
+                self._recordings[names] = [] if own is None else [own]
+            kept = self._recordings[names]
+            for one in kept:
+                if one is not None and one.plan_constants(row) is not None:
+                    return one
+            if None in kept or len(kept) >= MOST_RECORDINGS:
+                return None
+            kept.append(self._recorded_at(names, values))
+            return kept[-1]
+
+    def _recorded_at(self, names: tuple[str, ...], values: Mapping[str, float]) -> Recording | None:
+        own = self.design.session
+        built = self.built(values)
+        if isinstance(built.graph, Diagnostic):
+            return None
+        session = Session.of(
+            built.problem, built.graph, closed_at=own.closed_at, packing=own.packing
+        ).measured_in(own.layout.length)
+        for motion in (True, False):
+            # of laws of time no tape holds the rows
+            with suppress(TraceLost, TypeError, ValueError):
+                return Recording(session, *record(built, names, motion=motion), moves=motion)
+        return None
+
     def response_variation(self, names: Sequence[str], run: str) -> SessionVariation | None:
         """How the first moment of a response depends on some parameters; None where each variant
         chooses its assembly by itself."""
         key = (run, *names)
-        if key not in self._responses:
-            self._responses[key] = self._recorded_response(tuple(names), run)
-        return self._responses[key]
+        with self._lock:
+            if key not in self._responses:
+                self._responses[key] = self._recorded_response(tuple(names), run)
+            return self._responses[key]
 
     def _recorded_response(self, names: tuple[str, ...], run: str) -> SessionVariation | None:
         session, start = first_assembly(self.design.session_of(run))
@@ -235,15 +299,82 @@ def _own_base(design: Design) -> Base:
     return Base(design)
 
 
+class _Line(Between):
+    """What lies between a file's own parameters and others on the straight line in them."""
+
+    def __init__(
+        self,
+        base: Base,
+        values: Mapping[str, float],
+        make: Callable[[Session], Problem] | None = None,
+    ) -> None:
+        super().__init__(self._session)
+        known = base.design.problem.parameters
+        self.base, self.values, self.make = base, values, make
+        self.own = {name: float(known[name].value) for name in values}  # type: ignore[arg-type]
+
+    def _values(self, place: float) -> dict[str, float]:
+        return {
+            name: start + place * (self.values[name] - start) for name, start in self.own.items()
+        }
+
+    def derived(self, make: Callable[[Session], Problem]) -> Between:
+        """As `Between.derived`."""
+        return super().derived(make) if self.make else _Line(self.base, self.values, make)
+
+    def _session(self, place: float) -> Session:
+        session = self._whole(place)
+        return session.derived(self.make) if self.make else session
+
+    def _whole(self, place: float) -> Session:
+        values = self._values(place)
+        recording = self.base.recording(values)
+        if recording is not None and recording.moves:
+            row = np.array(list(values.values()))
+            if recording.verdicts(row[:, None])[0] != Verdict.OTHER_WAY:
+                problem = recording.problem(row)
+                graph = graph_as_built(problem, self.base.design.built.problem.stopped)
+                if graph is not None:
+                    return Session.of(problem, graph)
+        built = self.base.built(values)
+        if isinstance(built.graph, Diagnostic):
+            raise InvalidFile([*built.problem.diagnostics, built.graph])
+        return Session.of(built.problem, built.graph)
+
+    def plan(self, place: float, structure: object, length: float) -> Plan:
+        """As `Between.plan`; by a replay where a recording holds, as in every continuation of
+        variants."""
+        values = self._values(place)
+        if not values:  # the file's own, wherever on the line
+            own = self.base.design.session
+            return (own.derived(self.make) if self.make else own).measured_in(length).structure.plan
+        recording = self._recording(values, length)
+        if recording is not None and structure_of(recording.base.graph) == structure:
+            constants = recording.plan_constants(np.array(list(values.values())))
+            if constants is not None:
+                return recording.base.structure.plan.with_constants(constants)
+        return super().plan(place, structure, length)
+
+    def _recording(self, values: Mapping[str, float], length: float) -> Recording | None:
+        recording = self.base.recording(values)
+        if recording is None or self.make is None:
+            return recording
+        try:
+            return recording.part(self.make, length)
+        except (TraceLost, TypeError, ValueError):
+            return None
+
+
 class VariedDesign(Design):
     """A design with other values of some parameters.
 
     Args:
         base: of the design as its file has it.
         values: by name, in SI.
+        warned: whether the file's warnings on these values are asked for.
     """
 
-    def __init__(self, base: Base, values: Mapping[str, float]) -> None:
+    def __init__(self, base: Base, values: Mapping[str, float], *, warned: bool = True) -> None:
         known = base.design.problem.parameters
         variation = base.variation(tuple(values))
         if variation is None:
@@ -257,9 +388,41 @@ class VariedDesign(Design):
         if variation is not None:
             verdict = variation.verdicts(self._row[:, None])[0]
         self._variation = None if verdict == Verdict.OTHER_WAY else variation
-        self._advised = verdict == Verdict.OTHER_ADVICE
-        built = base.built(values) if self._variation is None else base.design.built
+        self._recording: Recording | None = self._variation
+        self._graph: SolverGraph | None = None
+        self._motion: MotionInputs | None = None
+        if self._recording is None:
+            verdict = self._record_again()
+        self._advised = warned and verdict == Verdict.OTHER_ADVICE
+        anew = self._recording is None and self._values
+        built = base.built(values) if anew else base.design.built
         super().__init__(built, base.design.stem, base.given(values))
+
+    def _record_again(self) -> Verdict:
+        """Takes the recording of other values that holds with these, and the graph."""
+        design = self.base.design
+        if isinstance(design.built.graph, Diagnostic):
+            return Verdict.OTHER_WAY
+        recording = self.base.recording(self._values)
+        if recording is None:
+            return Verdict.OTHER_WAY
+        verdict = Verdict(recording.verdicts(self._row[:, None])[0])
+        if verdict == Verdict.OTHER_WAY:  # other rows
+            return verdict
+        problem = recording.problem(self._row)
+        if not recording.moves:
+            given = self.base.given(self._values)
+            self._motion = motion_as_built(design.built, problem, given)
+            if self._motion is None:
+                return Verdict.OTHER_WAY
+            problem = replace(problem, motion=self._motion)
+        self._graph = graph_as_built(problem, design.built.problem.stopped)
+        if self._graph is None:
+            return Verdict.OTHER_WAY
+        self._recording = recording
+        # a warning may name numbers of the values that were recorded
+        warnings = recording.base.problem.diagnostics
+        return verdict if warnings == design.problem.diagnostics else Verdict.OTHER_ADVICE
 
     @property
     def values(self) -> Mapping[str, float]:
@@ -273,12 +436,17 @@ class VariedDesign(Design):
     @cached_property
     def problem(self) -> Problem:
         """The mechanism, its motion and assembly in SI."""
-        if self._variation is None:
+        if self._recording is None:
             return self.built.problem
-        problem = self._variation.problem(self._row)
+        problem = self._recording.problem(self._row)
+        if self._motion is not None:
+            problem = replace(problem, motion=self._motion)
+            problem = problem.with_quantities_of(self.base.design.problem)
         if self._advised:
             fresh = self.base.built(self._values).problem
             problem = replace(problem, diagnostics=fresh.diagnostics)
+        elif problem.diagnostics != self.base.design.problem.diagnostics:
+            problem = replace(problem, diagnostics=self.base.design.problem.diagnostics)
         return problem
 
     @cached_property
@@ -286,13 +454,16 @@ class VariedDesign(Design):
         """The mechanism in the kernel."""
         if self._variation is None:
             base = self.base.design.session
-            own = Session.of(
-                self.problem, self.graph, closed_at=base.closed_at, packing=base.packing
-            )
-            return own.continuing(base, self._between).reading(lambda: self.precise)
+            graph = self._graph or self.graph
+            own = Session.of(self.problem, graph, closed_at=base.closed_at, packing=base.packing)
+            line = _Line(self.base, self._values)
+            return own.continuing(base, line).reading(lambda: self.precise)
         varied = varied_session(self._variation, self._row, self.problem)
         if varied.first is not None and varied.first.state is None:
             # the branch ends on the way: the same structure, or another problem?
+            own_graph = graph_as_built(self.problem, self.base.design.built.problem.stopped)
+            if own_graph is not None and structure_of(own_graph) == structure_of(varied.graph):
+                return varied.reading(lambda: self.precise)
             fresh = self.base.built(self._values)
             if isinstance(fresh.graph, Diagnostic):
                 raise InvalidFile([*fresh.problem.diagnostics, fresh.graph])
@@ -300,27 +471,15 @@ class VariedDesign(Design):
                 return Session.of(fresh.problem, fresh.graph)
         return varied.reading(lambda: self.precise)
 
-    def _between(self, place: float) -> Session:
-        """The session between the file's own parameters (0) and these (1), built from the file."""
-        own = self.base.design.problem.parameters
-        values = {}
-        for name, value in self._values.items():
-            start = float(own[name].value)  # type: ignore[arg-type]
-            values[name] = start + place * (value - start)
-        built = self.base.built(values)
-        if isinstance(built.graph, Diagnostic):
-            raise InvalidFile([*built.problem.diagnostics, built.graph])
-        return Session.of(built.problem, built.graph)
-
     @property
     def graph(self) -> SolverGraph:
         """Tree, cut joints and blocks."""
-        return super().graph if self._variation is None else self.session.graph
+        return super().graph if self._recording is None else self.session.graph
 
     @cached_property
     def at_responses(self) -> Design:
         """The same design built from the file."""
-        built = self.built if self._variation is None else self.base.built(self._values)
+        built = self.built if self._recording is None else self.base.built(self._values)
         return Design(built, self.stem, self.given)
 
     def session_of(self, run: str) -> Session:

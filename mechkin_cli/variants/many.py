@@ -33,11 +33,12 @@ from mechkin_cli.session import Packing, input_rest
 from mechkin_cli.show import Bools, Floats
 from mechkin_cli.sweep import has_turns, is_slack, limited, slack_quantities
 from mechkin_cli.tolerances import MOST_KEPT
-from mechkin_cli.variants.design import VariedDesign, base_of
+from mechkin_cli.variants.design import Base, VariedDesign, base_of
 from mechkin_cli.variants.result import (
     Reduce,
     Reductions,
     Variants,
+    Verdicts,
     expressions_of,
     need_places,
     read_by,
@@ -95,21 +96,27 @@ class _SweepRun:
         self.wanted = tuple(known[name] for name in self.read)
         self.errors: dict[int, MechkinError] = {}
 
-    def run(
-        self, values: Floats
-    ) -> tuple[dict[str, Floats], NDArray[np.int8], dict[int, MechkinError]]:
+    def run(self, values: Floats) -> tuple[dict[str, Floats], Verdicts, dict[int, MechkinError]]:
         """All variants, chunk by chunk: what was asked for, the verdicts, the errors."""
         count = values.shape[1]
-        codes = np.empty((count, self.rows), dtype=np.int8)
+        verdicts = []
         parts: dict[str, list[Floats]] = {text: [] for text in self.texts}
         variation = self.base.variation(self.names)
-        native = self._native(variation) if variation is not None else None
+        native = self._native_once(variation) if variation is not None else None
         chunk = self._chunk()
         for begin in range(0, max(count, 1), chunk):
             part = values[:, begin : begin + chunk]
+            codes = np.empty((part.shape[1], self.rows), dtype=np.int8)
             for text, array in self._chunk_values(variation, native, part, begin, codes).items():
                 parts[text].append(array)
-        return {text: np.concatenate(arrays) for text, arrays in parts.items()}, codes, self.errors
+            verdicts.append(Verdicts.of(codes))
+        found = {}
+        for text in self.texts:
+            arrays = parts.pop(text)
+            # what is the same in all variants is a view that nobody may write to
+            whole = len(arrays) == 1 and arrays[0].flags.writeable
+            found[text] = arrays[0] if whole else np.concatenate(arrays)
+        return found, Verdicts.joined(verdicts), self.errors
 
     def numbers_returned(self) -> int:
         """Numbers that come back of a variant: parameters, verdicts, what was asked for."""
@@ -126,11 +133,17 @@ class _SweepRun:
         width = 2 + sum(3 if quantity.vector else 1 for quantity in self.wanted)
         return max(1, CHUNK_NUMBERS // (self.rows * width))
 
+    def _native_once(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
+        """`_native`, found once for the pieces of a study."""
+        memo, key = self.base.memo, (_SweepRun._native, self.names, tuple(self.asked))
+        if key not in memo:
+            memo[key] = self._native(variation)
+        found: tuple[VariantReadout, Any] | None = memo[key]
+        return found
+
     def _native(self, variation: SessionVariation) -> tuple[VariantReadout, Any] | None:
         """The kernel's variants of what is read; None where the rows take more than its run."""
         problem = self.problem
-        inputs = {driven.name for driven in problem.motion.inputs}
-        inputs |= {name for driven in problem.motion.inputs for name in driven.orders}
         session = variation.base
         if (
             any(q.kind in DERIVED_KINDS or q.kind == "power_error" for q in self.wanted)
@@ -139,7 +152,6 @@ class _SweepRun:
             or self._led_by_rates()
             or variation.moves_limits
             or self.problem.mechanism.has_arcs
-            or (variation.moving_inputs and inputs & {q.name for q in self._read_or_judged()})
         ):
             return None
         reading = variation.reading(self._computed())
@@ -169,7 +181,7 @@ class _SweepRun:
 
     def _computed(self) -> list[Wanted]:
         """What the kernel computes: no verdicts but on friction, and no inputs."""
-        inputs = self.prescribed()
+        inputs = self._prescribed()
         every = self._read_or_judged()
         computed = [q for q in every if q.owner != "row" and q.name not in inputs]
         if demand_of(self.problem.mechanism, computed) & Demand.FORCES:
@@ -180,13 +192,11 @@ class _SweepRun:
             computed += [q._replace(name=q.name + REST) for q in computed if has_turns(q)]
         return computed
 
-    def prescribed(self) -> dict[str, Floats]:
-        """Time, inputs and their rates over the rows, in SI."""
+    def _prescribed(self) -> set[str]:
+        """Time, inputs and their rates."""
         motion = self.problem.motion
-        values = {} if motion.time is None else {"time": motion.time.values}
-        for driven in motion.inputs:
-            values |= {name: in_si for name, (in_si, _) in driven.orders.items()}
-        return values
+        names = {name for driven in motion.inputs for name in driven.orders}
+        return names if motion.time is None else {"time", *names}
 
     def _chunk_values(
         self,
@@ -203,15 +213,14 @@ class _SweepRun:
         else:
             reading, kernel = native
             threads = threads_for(count * self.rows, self.packing.threads)
-            runs = run_variants(kernel, values, self.packing.lanes, threads)
+            runs = run_variants(kernel, variation.inputs_of(values), self.packing.lanes, threads)
             frictions = friction_states(self.problem.mechanism)
             states = [reading.slots[q.name].start for q in frictions if q.name in reading.slots]
             strands = [q.name for q in slack_quantities(self.problem) if q.name in reading.slots]
             slots = [reading.slots[name].start for name in strands]
-            codes[begin : begin + count] = _verdicts(runs, states, slots)
-            own = codes[begin : begin + count]
-            self._judge_limits(_Resolver(self, variation, reading, runs, values, own), own)
-            found = self._evaluated(variation, reading, runs, values, own)
+            codes[:] = _verdicts(runs, states, slots)
+            self._judge_limits(_Resolver(self, variation, reading, runs, values, codes), codes)
+            found = self._evaluated(variation, reading, runs, values, codes)
             # what may stand at a dead centre is judged as in a run of its own
             alone = np.flatnonzero((runs.end != int(VariantEnd.COMPLETE)) | _doubtful(runs))
         for number in alone:
@@ -241,7 +250,7 @@ class _SweepRun:
         resolve = _Resolver(self, variation, reading, runs, values, codes)
         found = {}
         for text, expression in self.asked.items():
-            written = self._written(text)
+            written = resolve.written(text)
             if written is not None:
                 found[text] = np.broadcast_to(written, (count, self.rows))
                 continue
@@ -254,16 +263,6 @@ class _SweepRun:
                 columns.append(in_units.reshape(count, self.rows))
             found[text] = np.stack(columns, axis=2) if len(columns) > 1 else columns[0]
         return found
-
-    def _written(self, text: str) -> Floats | None:
-        """An input's values, or time, exactly as written."""
-        motion = self.problem.motion
-        if text == "time" and motion.time is not None:
-            return motion.time.written
-        for driven in motion.inputs:
-            if text == driven.name:
-                return driven.written
-        return None
 
     def _alone(
         self,
@@ -278,22 +277,28 @@ class _SweepRun:
         for text in self.asked:
             if not found[text].flags.writeable:
                 found[text] = found[text].copy()
+        variation = self.base.variation(self.names)
         try:
-            model = self.model.of(VariedDesign(self.base, named))
+            if variation is not None:
+                self._check_rows(variation.other_rows(values) or self.rows, number)
+            model = self.model.of(VariedDesign(self.base, named, warned=False))
             analysis = model.analyze(self.read, tables=[], lanes=self.packing.lanes)
-            if analysis.rows != self.rows:
-                raise UsageError(
-                    f"variant {number} has {analysis.rows} rows, the file has {self.rows}; vary "
-                    "parameters that keep their number, or take with_parameters for each"
-                )
-            codes[number] = analysis.result.status
+            self._check_rows(analysis.rows, number)
+            codes[place] = analysis.result.status
             for text in self.asked:
                 found[text][place] = analysis[text]
         except MechkinError as error:
             self.errors[number] = error
-            codes[number] = int(Status.not_assembled)
+            codes[place] = int(Status.not_assembled)
             for text in self.asked:
                 found[text][place] = np.nan
+
+    def _check_rows(self, rows: int, number: int) -> None:
+        if rows != self.rows:
+            raise UsageError(
+                f"variant {number} has {rows} rows, the file has {self.rows}; vary parameters that "
+                "keep their number, or take with_parameters for each"
+            )
 
     def _empty(self, expression: Expression, count: int) -> Floats:
         value = expression.evaluate(sample_of(self.problem), self.problem.units).value
@@ -316,7 +321,10 @@ class _Resolver:
         self.run, self.reading, self.runs = run, reading, runs
         self.count, self.rows = values.shape[1], run.rows
         self.known = run.problem.quantities()
-        self.prescribed = run.prescribed()
+        motion = run.problem.motion
+        self.orders = variation.orders(values)
+        if motion.time is not None:
+            self.orders["time"] = motion.time.values, motion.time.written
         self.unclear = codes == int(Status.rank_unclear)
         self.solved = runs.end == int(VariantEnd.COMPLETE)
         parameters = variation.parameters(values)
@@ -334,8 +342,10 @@ class _Resolver:
         if wanted.owner == "row" and name != "time":
             array = self.runs.residual if wanted.kind == "residual" else self.runs.condition
             return Quantity(array.reshape(-1), wanted.dimension)
-        if name in self.prescribed:
-            rest = input_rest(self.reading.variation.base, name)
+        if name in self.orders:
+            variation = self.reading.variation
+            # inputs that move with the parameters have no whole turns here
+            rest = None if variation.moving_inputs else input_rest(variation.base, name)
             if rest is not None:
                 rest = np.broadcast_to(rest, (self.count, self.rows)).reshape(-1)
             return Quantity(self._over_rows(name), wanted.dimension, rest)
@@ -347,8 +357,13 @@ class _Resolver:
         within = None if place is None else self._column(wanted, place.start)
         return Quantity(columns[0], wanted.dimension, within)
 
+    def written(self, text: str) -> Floats | None:
+        """An input's values, or time, exactly as written: (rows,) or (variants, rows)."""
+        names = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
+        return self.orders[text][1] if text in names and text in self.orders else None
+
     def _over_rows(self, name: str) -> Floats:
-        rows = np.broadcast_to(self.prescribed[name], (self.count, self.rows))
+        rows = np.broadcast_to(self.orders[name][0], (self.count, self.rows))
         values = {driven.name for driven in self.run.problem.motion.inputs} | {"time"}
         if name not in values:
             rows = np.where(self.solved[:, None], rows, np.nan)
@@ -478,9 +493,10 @@ def vary(
             f"{model.name} has no sweep to vary; vary a response one by one: "
             f'with_parameters({{...}}).respond("{model.runs[0]}")'
         )
-    problem = base_of(model.design).design.problem
+    base = base_of(model.design)
+    problem = base.design.problem
     varied, names, values = varied_parameters(problem, parameters, model.design.values)
-    asked = expressions_of(quantities, problem)
+    asked = _expressions_once(base, quantities)
     call = _SweepRun(model, names, asked, reductions_of(asked, reduce), packing)
     numbers = values.shape[1] * call.numbers_returned()
     if numbers > MOST_KEPT:
@@ -489,6 +505,18 @@ def vary(
             "ask for less, reduce over the rows, or take fewer variants at a time"
         )
     return Variants(varied, *call.run(values))
+
+
+def _expressions_once(base: Base, quantities: Iterable[str] | None) -> dict[str, Expression]:
+    """`expressions_of` quantities, found once for the pieces of a study."""
+    problem = base.design.problem
+    if not isinstance(quantities, list) or not all(type(text) is str for text in quantities):
+        return expressions_of(quantities, problem)
+    key = expressions_of, tuple(quantities)
+    if key not in base.memo:
+        base.memo[key] = expressions_of(quantities, problem)
+    found: dict[str, Expression] = base.memo[key]
+    return found
 
 
 def _vary_response(
@@ -514,4 +542,4 @@ def _vary_response(
     call = _ResponseRun(model, names, list(read), run, packing)
     rows = call.run(values)
     results = {text: reduced(text, rows[text], reductions[text], rows.get(TIME)) for text in asked}
-    return Variants(varied, results, call.codes, call.errors)
+    return Variants(varied, results, Verdicts.of(call.codes), call.errors)

@@ -11,6 +11,7 @@ import numpy as np
 from mechkin_cli.arguments import a_text, shown, texts
 from mechkin_cli.diagnostics import LONGEST_NAME, MechkinError, UsageError
 from mechkin_cli.expressions import Expression, ExpressionError, Quantity, UnknownName
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.show import Floats, Listed, Listing
 from mechkin_cli.tables import (
     OVER_THE_WAY,
@@ -21,7 +22,7 @@ from mechkin_cli.tables import (
     root_mean_square,
 )
 from mechkin_cli.variants.design import file_values, parameter_arrays
-from mechkin_cli.verdict import has_solution, labels
+from mechkin_cli.verdict import Status, has_solution, labels
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,6 +34,38 @@ LONGEST_MESSAGE = 400
 """Characters of an expression's error that a message repeats."""
 
 Reduce = str | Callable[["Floats"], "Floats"]
+
+
+class Verdicts(NamedTuple):
+    """Codes of `Status` of variants and rows. Only those of variants with a row that is not ok are
+    held: reduced, a variant is smaller than the verdicts of its rows."""
+
+    variants: int
+    rows: int
+    numbers: NDArray[np.int64]
+    held: NDArray[np.int8]
+
+    @classmethod
+    def of(cls, codes: NDArray[np.int8]) -> Verdicts:
+        """Of all (variants, rows)."""
+        numbers = np.flatnonzero((codes != int(Status.ok)).any(axis=1))
+        count, rows = codes.shape
+        return cls(count, rows, numbers, codes[numbers])
+
+    @classmethod
+    def joined(cls, parts: Sequence[Verdicts]) -> Verdicts:
+        """Of parts of the variants, one after the other."""
+        begins = np.cumsum([0, *(part.variants for part in parts)])
+        numbers = [part.numbers + begin for part, begin in zip(parts, begins, strict=False)]
+        held = np.concatenate([part.held for part in parts])
+        return cls(int(begins[-1]), parts[0].rows, np.concatenate(numbers), held)
+
+    @property
+    def codes(self) -> NDArray[np.int8]:
+        """All of them (variants, rows)."""
+        found = np.full((self.variants, self.rows), int(Status.ok), dtype=np.int8)
+        found[self.numbers] = self.held
+        return found
 
 
 class Variants(Listed):
@@ -47,13 +80,13 @@ class Variants(Listed):
         self,
         parameters: Mapping[str, Floats],
         values: Mapping[str, Floats],
-        codes: NDArray[np.int8],
+        verdicts: Verdicts,
         errors: Mapping[int, MechkinError],
     ) -> None:
         self.parameters = parameters
         self.errors = errors
         self._values = values
-        self._codes = codes
+        self._verdicts = verdicts
 
     @property
     def listing(self) -> Listing:
@@ -65,7 +98,7 @@ class Variants(Listed):
         return Listing(head, ("column", "least", "largest"), rows)
 
     def __len__(self) -> int:
-        return len(self._codes)
+        return self._verdicts.variants
 
     def __getitem__(self, text: str) -> Floats:
         """A quantity or expression that was asked for.
@@ -84,12 +117,12 @@ class Variants(Listed):
     @property
     def codes(self) -> NDArray[np.int8]:
         """The verdict of every variant and row, codes of `Status` (variants, rows)."""
-        return self._codes
+        return self._verdicts.codes
 
     @cached_property
     def status(self) -> NDArray[np.str_]:
         """The verdict of every variant and row, in words (variants, rows)."""
-        return labels(self._codes)
+        return labels(self.codes)
 
     @property
     def complete(self) -> NDArray[np.bool_]:
@@ -97,7 +130,8 @@ class Variants(Listed):
 
         A row at a dead centre has one: see `status`; what has no bound there is infinite.
         """
-        complete: NDArray[np.bool_] = np.logical_and.reduce(has_solution(self._codes), axis=1)
+        complete = np.ones(len(self), dtype=np.bool_)
+        complete[self._verdicts.numbers] = has_solution(self._verdicts.held).all(axis=1)
         return complete
 
 

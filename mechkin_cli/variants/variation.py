@@ -7,7 +7,7 @@ the straight line in the parameters (kernel/core/stepping/variants.hpp).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
@@ -35,13 +35,12 @@ from mechkin_cli.session import (
 from mechkin_cli.structure import graph_of, structure_of
 from mechkin_cli.tape import (
     Filling,
+    GivenRows,
     Recorder,
     Tape,
-    TraceLost,
     Verdict,
     compiled,
     is_traced,
-    next_power_of_two,
     register,
     replay,
     tape_values,
@@ -88,7 +87,7 @@ class VariantReadout:
 
     def outputs(self, values: Floats) -> _kernel.Outputs:
         """What a run of one variant writes."""
-        constants = replay(self.tape, values[:, None])[0][0]
+        constants = replay(self.tape, self.variation.inputs_of(values[:, None]))[0][0]
         return self.readout.outputs.with_constants(constants[self.first : self.last])
 
     def text(self, demand: Demand) -> str:
@@ -186,70 +185,156 @@ def _ways(base: Session, row: int) -> list[tuple[int, list[int], Floats, _kernel
     return [(step, way.rows.tolist(), way.values, way.course) for step, way in ways]
 
 
-class SessionVariation:
-    """How a session depends on some parameters.
+class Recording:
+    """How a file's problem, and the constants of its plan, depend on some parameters.
+
+    Values of parameters are (parameters, variants) or of one variant (parameters,), in SI.
 
     Args:
-        base: the session with the file's own parameters.
-        first: its first assembly: states at a row, the row, and the mechanism's size there in m.
+        base: the session with the values that it was recorded with.
         recorder: that holds the parameters as inputs.
         problem: the session's problem with recorded numbers.
+        moves: whether its motion is recorded, too: else it has the plan alone.
 
     Raises:
         TraceLost: the plan depends on a parameter in a way that no tape holds.
     """
 
     def __init__(
-        self,
-        base: Session,
-        first: tuple[Floats, int, float],
-        recorder: Recorder,
-        problem: Problem,
+        self, base: Session, recorder: Recorder, problem: Problem, *, moves: bool = True
     ) -> None:
+        self.moves = moves
         self.base = base
-        self.state, self.row, self.size = first
         self.recorder = recorder
         self.recorded = problem
-        self.values = np.array(recorder.values[: len(recorder.inputs)])
+        self.values = np.array(recorder.values_given)
+        self.count = len(self.values) - sum(given.rows for given in recorder.given_rows)
         self.layout = Layout(
             problem.laid_mechanism,
             graph_of(problem.solved_mechanism, base.graph),
             base.layout.length,
             problem.laws,
         )
-        unit = base.layout.length  # of the base as long as it is not far from the variant's own
-        own = next_power_of_two(problem.mechanism.box_diagonal())
-        if not (0.5 * unit <= own and own <= 2.0 * unit):
-            raise TraceLost("the length unit is another")
         self.constants = flatten(plan_records(self.layout))
         inputs = kernel_inputs(problem, self.layout).orders
         moving = any(map(is_traced, inputs))
         self.moving_inputs = [x for table in inputs for x in table.flat] if moving else []
-        self._readings: dict[tuple[str, ...], VariantReadout] = {}
+        self._parts: dict[tuple[object, ...], Recording] = {}
+
+    def part(self, make: Callable[[Session], Problem], length: float) -> Recording:
+        """The recording of the problem that follows from this session's, as `Session.derived`, in
+        a length unit (m).
+
+        Raises:
+            TraceLost: as above.
+        """
+        with self.recorder.lock:
+            problem = make(replace(self.base, problem=self.recorded))
+            mechanism = problem.mechanism
+            key = tuple(mechanism.joints), tuple(mechanism.links), length
+            if key not in self._parts:
+                base = self.base.derived(make).measured_in(length)
+                self._parts[key] = Recording(base, self.recorder, problem, moves=self.moves)
+            return self._parts[key]
 
     def tape(self, numbers: Iterable[Any]) -> _kernel.Tape:
-        """The tape from the parameters to some numbers of the recording."""
+        """The tape from the inputs to some numbers of the recording."""
         return compiled(self.recorded_tape(numbers))
 
     def recorded_tape(self, numbers: Iterable[Any]) -> Tape:
         """The same as plain data."""
-        return self.recorder.tape(register(self.recorder, n) for n in numbers)
+        with self.recorder.lock:
+            return self.recorder.tape(register(self.recorder, n) for n in numbers)
 
-    def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
-        """The reading of some quantities."""
-        wanted = tuple(wanted)
-        key = tuple(quantity.name for quantity in wanted)
-        if key not in self._readings:
-            self._readings[key] = VariantReadout(self, wanted)
-        return self._readings[key]
+    def inputs_of(self, values: Floats) -> Floats:
+        """The tape's inputs (inputs, variants) with some parameters; nan, which no guard passes,
+        where there are not as many rows as were recorded."""
+        if not self.recorder.given_rows:
+            return values
+        found = self._with_recorded_rows(values)
+        for given, tape in self._row_tapes:
+            numbers = replay(tape, found)[0]
+            rows = found[given.first : given.first + given.rows]
+            known: dict[bytes, Floats] = {}
+            for column, own in enumerate(numbers):
+                key = own.tobytes()
+                if key not in known:
+                    known[key] = given.compute(*own.tolist())
+                fits = known[key].size == given.rows
+                rows[:, column] = known[key] if fits else np.nan
+        return found
+
+    def other_rows(self, values: Floats) -> int | None:
+        """How many rows one variant has, where its inputs have others than were recorded and all
+        else is as recorded; None where it has as many, or this does not tell."""
+        own = self.base.problem.motion
+        moving = [one for one in own.inputs if np.ptp(one.written) > 0.0]
+        if len(moving) != len(self.recorder.given_rows) or self.plan_constants(values) is None:
+            return None
+        found = self._with_recorded_rows(values[:, None])
+        counts = {
+            given.compute(*replay(tape, found)[0][0].tolist()).size
+            for given, tape in self._row_tapes
+        }
+        count = counts.pop() if len(counts) == 1 else 0
+        return count if count not in (0, own.rows) else None
+
+    def _with_recorded_rows(self, values: Floats) -> Floats:
+        rows = np.repeat(self.values[self.count :, None], values.shape[1], axis=1)
+        return np.vstack([values, rows])
+
+    @cached_property
+    def _row_tapes(self) -> list[tuple[GivenRows, _kernel.Tape]]:
+        found = []
+        with self.recorder.lock:
+            for given in self.recorder.given_rows:
+                numbers = [register(self.recorder, number) for number in given.numbers]
+                found.append((given, compiled(self.recorder.tape(numbers, guarded=False))))
+        return found
 
     def verdicts(self, values: Floats) -> NDArray[np.uint8]:
-        """The guards' verdicts on parameters (parameters, variants), in SI."""
-        return replay(self._plan_tape, values)[1]
+        """The guards' verdicts on parameters (parameters, variants)."""
+        return replay(self._plan_tape, self.inputs_of(values))[1]
 
     @cached_property
     def _plan_tape(self) -> _kernel.Tape:
         return self.tape([*self.constants, *self.moving_inputs])
+
+    def plan_constants(self, values: Floats) -> Floats | None:
+        """The plan's constants with the parameters of one variant, however many rows it has; None
+        where a guard fails."""
+        inputs = values[:, None]
+        if self.recorder.given_rows:
+            inputs = self._with_recorded_rows(inputs)
+        numbers, verdicts = replay(self._plan_tape, inputs)
+        holds = verdicts[0] != Verdict.OTHER_WAY
+        return numbers[0][: len(self.constants)] if holds else None
+
+    def orders(self, values: Floats) -> dict[str, tuple[Floats, Floats]]:
+        """As `DrivenInput.orders` of all inputs: (variants, rows) where they depend on parameters,
+        else (rows,)."""
+        found = {}
+        tape, numbers = self._orders_tape, self._orders
+        moved = iter(()) if tape is None else iter(replay(tape, self.inputs_of(values))[0].T)
+        for name, both in numbers.items():
+            found[name] = tuple(
+                np.array([next(moved) for _ in range(one.size)]).T if is_traced(one) else one
+                for one in both
+            )
+        return found  # type: ignore[return-value]
+
+    @cached_property
+    def _orders(self) -> dict[str, tuple[Floats, Floats]]:
+        inputs = self.recorded.motion.inputs
+        return {name: both for driven in inputs for name, both in driven.orders.items()}
+
+    @cached_property
+    def _orders_tape(self) -> _kernel.Tape | None:
+        numbers = [
+            x for both in self._orders.values() for one in both if is_traced(one) for x in one.flat
+        ]
+        # one that is not recorded stands among others that are
+        return self.tape(numbers) if numbers else None
 
     @property
     def moves_limits(self) -> bool:
@@ -270,19 +355,20 @@ class SessionVariation:
         return Filling((problem.mechanism, problem.assembly, problem.motion, problem.limits))
 
     def parameters(self, values: Floats) -> Floats:
-        """All parameters of the file (parameters, variants) in SI, in the file's order."""
-        return np.asarray(replay(self._parameter_tape, values)[0].T)
+        """All parameters of the file (parameters, variants), in the file's order."""
+        return np.asarray(replay(self._parameter_tape, self.inputs_of(values))[0].T)
 
     def problem(self, values: Floats) -> Problem:
         """The problem of one variant, as building it would give it."""
-        numbers = self.parameters(values[:, None])[:, 0].tolist()
+        inputs = self.inputs_of(values[:, None])
+        numbers = replay(self._parameter_tape, inputs)[0][0].tolist()
         parameters = {
             name: Quantity(number, quantity.dimension)
             for (name, quantity), number in zip(
                 self.recorded.parameters.items(), numbers, strict=True
             )
         }
-        leaves = replay(self._mechanism_tape, values[:, None])[0][0].tolist()
+        leaves = replay(self._mechanism_tape, inputs)[0][0].tolist()
         mechanism, assembly, motion, limits = self._mechanism.fill(leaves)
         problem = replace(
             self.base.problem,
@@ -296,7 +382,7 @@ class SessionVariation:
 
     def plan(self, values: Floats, size: float) -> _kernel.Plan:
         """The plan of one variant; residual and condition in parts of `size` (m)."""
-        constants = replay(self._plan_tape, values[:, None])[0][0]
+        constants = replay(self._plan_tape, self.inputs_of(values[:, None]))[0][0]
         count = len(self.constants)
         return self.base.plan.with_constants(constants[:count]).with_size(size)
 
@@ -305,16 +391,50 @@ class SessionVariation:
         base = self.base.inputs
         if not self.moving_inputs:
             return base
-        numbers = replay(self._plan_tape, values[:, None])[0][0][len(self.constants) :]
-        orders = numbers.reshape((4, *base.values.shape))
+        numbers = replay(self._plan_tape, self.inputs_of(values[:, None]))[0][0]
+        orders = numbers[len(self.constants) :].reshape((4, *base.values.shape))
         return KernelInputs.of(self.problem(values), *orders)
 
 
+class SessionVariation(Recording):
+    """How a session depends on some parameters.
+
+    Args:
+        base: the session with the file's own parameters.
+        first: its first assembly: states at a row, the row, and the mechanism's size there in m.
+        recorder: that holds the parameters as inputs.
+        problem: the session's problem with recorded numbers.
+
+    Raises:
+        TraceLost: as for a `Recording`.
+    """
+
+    def __init__(
+        self,
+        base: Session,
+        first: tuple[Floats, int, float],
+        recorder: Recorder,
+        problem: Problem,
+    ) -> None:
+        super().__init__(base, recorder, problem)
+        self.state, self.row, self.size = first
+        self._readings: dict[tuple[str, ...], VariantReadout] = {}
+
+    def reading(self, wanted: Iterable[Wanted]) -> VariantReadout:
+        """The reading of some quantities."""
+        wanted = tuple(wanted)
+        key = tuple(quantity.name for quantity in wanted)
+        with self.recorder.lock:
+            if key not in self._readings:
+                self._readings[key] = VariantReadout(self, wanted)
+            return self._readings[key]
+
+
 def run_variants(
-    variants: _kernel.Variants, values: Floats, lanes: int = 0, threads: int = 1
+    variants: _kernel.Variants, inputs: Floats, lanes: int = 0, threads: int = 1
 ) -> Runs:
-    """Runs parameters (parameters, variants) in SI."""
-    values = np.ascontiguousarray(values, dtype=np.float64)
+    """Runs inputs of the tape (inputs, variants), `Recording.inputs_of` parameters."""
+    values = np.ascontiguousarray(inputs, dtype=np.float64)
     return Runs(*variants.run(values, width(lanes), threads))
 
 
@@ -328,7 +448,8 @@ def varied_session(variation: SessionVariation, values: Floats, problem: Problem
     """
     base = variation.base
     graph = graph_of(problem.solved_mechanism, base.graph)
-    end, size, state = variation.reading(()).runs(Demand.POSITION).start(values)
+    inputs = variation.inputs_of(values[:, None])[:, 0]
+    end, size, state = variation.reading(()).runs(Demand.POSITION).start(inputs)
     lost = end != VariantEnd.COMPLETE
     structure = Structure(
         Layout(problem.laid_mechanism, graph, base.layout.length, problem.laws),
@@ -362,7 +483,8 @@ def varied_response(variation: SessionVariation, values: Floats, built: Session)
         return None
     if variation.verdicts(values[:, None])[0] == Verdict.OTHER_WAY:
         return None
-    end, size, state = variation.reading(()).runs(Demand.POSITION).start(values)
+    inputs = variation.inputs_of(values[:, None])[:, 0]
+    end, size, state = variation.reading(()).runs(Demand.POSITION).start(inputs)
     if end != VariantEnd.COMPLETE:
         return None
     graph = graph_of(problem.solved_mechanism, base.graph)

@@ -1,4 +1,5 @@
 """How fast studies are: variants of 361 rows with forces, on a core and on two, and their memory.
+Where other work is on the machine, the share of the one thread tells what two cores would gain.
 With CasADi installed (extra `bench`), beside them the same rows by Newton's method as compiled C.
 
     python -P tests/benchmark/studies.py [--variants 10000]
@@ -20,7 +21,7 @@ from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
-from time import perf_counter
+from time import perf_counter, process_time, thread_time
 from typing import Any
 
 import numpy as np
@@ -117,6 +118,10 @@ def measured(case: Case, count: int, compared: Callable[[], None] | None) -> str
         with tempfile.TemporaryDirectory() as folder:
             model.study(case.study(count), folder, threads=threads)
 
+    into_folder(2)  # what is built once
+    whole, alone = process_time(), thread_time()
+    into_folder(2)
+    serial = (thread_time() - alone) / (process_time() - whole)
     taken: dict[str, list[float]] = {"one": [], "two": [], "peer": []}
     for _ in range(ROUNDS):
         taken["one"].append(seconds(lambda: into_folder(1)))
@@ -127,7 +132,8 @@ def measured(case: Case, count: int, compared: Callable[[], None] | None) -> str
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / MEGA
     line = (
         f"{case.name}: {count} variants of {ROWS} rows: {one:.3g} s on a core "
-        f"({one / count * MICRO:.0f} us each), {one / two:.2f} times that on two; {memory:.0f} MB"
+        f"({one / count * MICRO:.0f} us each), {one / two:.2f} times that on two, of which the "
+        f"thread that hands out pieces and writes computes {serial:.1%}; {memory:.0f} MB"
     )
     if compared is None:
         return line

@@ -1,4 +1,5 @@
-"""Times `m.vary`, `m.with_parameters(...).analyze()` and `m.solve`, and the memory of variants.
+"""Times `m.vary`, `m.with_parameters(...).analyze()` and `m.solve`, and the memory of variants;
+and variants that one recording does not hold against a build of their file.
 
     python tests/benchmark/variants.py [--variants 1000] [--quick]
 
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 
 import mechkin_cli as mk
+from mechkin_cli.variants.design import base_of
 
 MECHANISMS = Path(__file__).resolve().parents[2] / "mechanisms"
 ROWS = 361
@@ -107,6 +109,51 @@ def measure(stem: str, count: int, times: int) -> None:
     print(f"{stem:7} solve     {1e6 * best_of(positions, times) / places.size:8.2f} us a call")
 
 
+def without_mass() -> str:
+    """RCSR whose coupler has a mass that may be zero: it is planned in two ways."""
+    text = text_of("rcsr").replace("parameters:\n", "parameters:\n  m: 5\n", 1)
+    assert "coupler:\n    mass: 5\n" in text
+    return text.replace("coupler:\n    mass: 5\n", "coupler:\n    mass: m * 1 lbm\n", 1)
+
+
+def by_law() -> str:
+    """RCSR driven by a law of time whose end is a parameter."""
+    text = text_of("rcsr").replace("parameters:\n", "parameters:\n  last: 190 deg\n", 1)
+    begin = text.index("    O1.theta: {from: 150")
+    law = "    O1.theta: {law: harmonic, from: 150, to: last}\n"
+    text = text[:begin] + law + text[text.index("\n", begin) + 1 :]
+    return text.replace("motion:\n", f"motion:\n  time: {{from: 0, to: 1, count: {ROWS}}}\n", 1)
+
+
+APART: dict[str, tuple[Any, list[str], str, tuple[float, ...]]] = {
+    "another recording": (without_mass, ["O4.theta", "O1.effort"], "m", (0.0,)),
+    "loops left out": (lambda: text_of("rcsr_csr_loop_one"), ["O4.theta"], "", ()),
+    "rows by parameters": (lambda: text_of("double_wishbone"), ["lower_pivot.theta"], "", ()),
+    "a law of time": (by_law, ["O4.theta", "O1.effort"], "", ()),
+    "beside a dead centre": (
+        lambda: text_of("rcsr").replace("to: 190", "to: 205"),
+        ["O4.theta", "O1.effort"],
+        "",
+        (),
+    ),
+}
+"""Files, quantities, and a parameter that is held at a value in all variants."""
+
+
+def apart(name: str, count: int, times: int) -> None:
+    """Prints what a variant of such a file takes, as a part of a build."""
+    make, quantities, held, value = APART[name]
+    model = mk.loads(make(), "apart")
+    given = arrays(model, count)
+    if held:
+        given[held] = np.full(count, value[0])
+    one = {n: q.value * 1.001 for n, q in model.problem.parameters.items()}
+    base = base_of(model.design)
+    build = best_of(lambda: base.built(one), times)
+    taken = best_of(lambda: model.vary(given, quantities, threads=1), times) / count
+    print(f"{name:21} {1e3 * taken:8.3f} ms a variant, {taken / build:5.2f} of a build of its file")
+
+
 def peak_after(count: int) -> int:
     """Peak memory in MB of a process that runs so many variants of RCSR."""
     script = (
@@ -130,6 +177,8 @@ def main() -> None:
     options = parser.parse_args()
     for stem in CASES:
         measure(stem, options.variants, 1 if options.quick else 5)
+    for name in APART:
+        apart(name, 50, 1 if options.quick else 5)
     if not options.quick:
         few, many = peak_after(1000), peak_after(10_000)
         print(f"peak memory: {few} MB with 1000 variants, {many} MB with 10 000")

@@ -47,7 +47,7 @@ def arm(motion: str, value: str = "n*L", type: str = "R", more: str = "") -> str
         (arm(HARMONIC.replace("to: 90", "to: 90, start: 0.1, duration: k * 0.2 s")), False),
         (arm(TIMED.replace("LAW", "polynomial, coefficients: [0, k * 1 rad/s]")), False),
         (arm(SWEPT.replace("from: 0, to: 90, step: 30", "values: [0, 30, k * 20 deg]")), True),
-        (arm(SWEPT.replace("to: 90, step: 30", "to: k * 20 deg, count: 4")), False),
+        (arm(SWEPT.replace("to: 90, step: 30", "to: k * 20 deg, count: 4")), True),
     ],
 )
 def test_as_fresh_files(text: str, taped: bool) -> None:

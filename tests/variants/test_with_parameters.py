@@ -68,7 +68,7 @@ def test_one_after_another() -> None:
 
 
 def test_rows_that_follow_a_parameter() -> None:
-    """What no tape holds is built anew; rates of inputs are on the tape."""
+    """Other numbers of rows are built anew; rates of inputs are on the tape."""
     text = FILE_OF["rcsr"].read_text(encoding="utf-8")
     text = text.replace("parameters:\n", "parameters:\n  last: 202 deg\n  w: 0.1 rad/s\n")
     text = text.replace("to: 202", "to: last").replace("rate: 0.1 rad/s", "rate: w")
