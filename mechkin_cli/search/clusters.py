@@ -188,10 +188,13 @@ class Clusters:
         """Of assemblies."""
         return int(self.met.size)
 
-    def add(self, states: Floats, isolated: Isolated) -> None:
-        """Sorts end points (columns, in the order of their starts) into the clusters; those that
-        are not known yet as `isolated` leaves them."""
-        keys = pose_keys(self.layout, states, self.carriers, by_turns=True)
+    def keys_of(self, states: Floats) -> Floats:
+        """What end points (columns) are told apart by (keys, columns)."""
+        return pose_keys(self.layout, states, self.carriers, by_turns=True)
+
+    def add(self, states: Floats, keys: Floats, isolated: Isolated) -> None:
+        """Sorts end points (columns, in the order of their starts) with their keys into the
+        clusters; those that are not known yet as `isolated` leaves them."""
         unknown = self._left(keys)
         fresh = states[:, unknown]
         ended, good, condition, free = isolated(fresh)
@@ -205,10 +208,7 @@ class Clusters:
         self.closed += int(np.count_nonzero(closing))
         self.free += free
         moved = ended is not fresh
-        if moved:
-            keys = pose_keys(self.layout, ended, self.carriers, by_turns=True)
-        else:
-            keys = keys[:, unknown]
+        keys = self.keys_of(ended) if moved else keys[:, unknown]
         self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
         if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
             self._merge_folds()

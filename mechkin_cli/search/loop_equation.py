@@ -28,6 +28,7 @@ Equations, each of their roots one assembly:
 
 from __future__ import annotations
 
+from functools import cache
 from math import pi
 from typing import TYPE_CHECKING
 
@@ -43,12 +44,13 @@ from mechkin_cli.search.chain import (
     ChainMotion,
     are_parallel,
     chain_of,
+    chains_of,
     square_to,
 )
 
 if TYPE_CHECKING:
     from mechkin_cli.plan import Layout
-    from mechkin_cli.show import Floats
+    from mechkin_cli.show import Bools, Floats
 
 
 FIRST_INTERVALS = 16
@@ -96,15 +98,13 @@ def count_roots(g: Trigonometric, error: float = tolerances.ROOT_ROUNDING) -> in
     g = Trigonometric(*(c / largest for c in g))
     doubt = 5.0 * error
     bend = abs(g.a1) + abs(g.b1) + 4.0 * (abs(g.a2) + abs(g.b2))
-    half = pi / FIRST_INTERVALS
-    # an odd shift: roots of mechanisms drawn along axes do not fall on ends of intervals
-    middles: Floats = 0.1234 + 2.0 * half * np.arange(float(FIRST_INTERVALS))
+    half, middles, turns = _first_intervals()
     count = 0
     while middles.size:
-        value, slope = _at(g, middles)
+        value, slope = _at(g, turns[0])
         free = np.abs(value) - np.abs(slope) * half - 0.5 * bend * half * half > doubt
         steep = ~free & (np.abs(slope) - bend * half > 2.0 * doubt)
-        ends = [_at(g, middles[steep] + side)[0] for side in (-half, half)]
+        ends = [_at(g, turn.of(steep))[0] for turn in turns[1:]]
         if (np.abs(ends[0]) <= doubt).any() or (np.abs(ends[1]) <= doubt).any():
             return None
         count += int(np.count_nonzero((ends[0] < 0.0) != (ends[1] < 0.0)))
@@ -113,7 +113,34 @@ def count_roots(g: Trigonometric, error: float = tolerances.ROOT_ROUNDING) -> in
         if half < tolerances.ROOT_LEAST_INTERVAL:
             return None if left.size else count
         middles = np.concatenate([left - half, left + half])
+        turns = _turns_about(middles, half)
     return count
+
+
+class _Turn(NamedTuple):
+    """Cosines and sines of angles."""
+
+    cosine: Floats
+    sine: Floats
+
+    def of(self, some: Bools) -> _Turn:
+        """Those of some of the angles."""
+        return _Turn(self.cosine[some], self.sine[some])
+
+
+def _turns_about(middles: Floats, half: float) -> tuple[_Turn, ...]:
+    """Those of the middles of intervals, and of their two ends."""
+    angles = middles, middles - half, middles + half
+    return tuple(_Turn(functions.cos(each), functions.sin(each)) for each in angles)
+
+
+@cache
+def _first_intervals() -> tuple[float, Floats, tuple[_Turn, ...]]:
+    """Half the width of the first intervals, their middles, and the turns about these."""
+    half = pi / FIRST_INTERVALS
+    # an odd shift: roots of mechanisms drawn along axes do not fall on ends of intervals
+    middles: Floats = 0.1234 + 2.0 * half * np.arange(float(FIRST_INTERVALS))
+    return half, middles, _turns_about(middles, half)
 
 
 def count_polynomial_roots(
@@ -141,9 +168,9 @@ def count_polynomial_roots(
     return None if count is None else count - degree % 2
 
 
-def _at(g: Trigonometric, angles: Floats) -> tuple[Floats, Floats]:
+def _at(g: Trigonometric, turn: _Turn) -> tuple[Floats, Floats]:
     """Values and slopes."""
-    c, s = functions.cos(angles), functions.sin(angles)
+    c, s = turn
     c2, s2 = c * c - s * s, 2.0 * s * c
     value = g.a0 + g.a1 * c + g.b1 * s + g.a2 * c2 + g.b2 * s2
     slope = g.b1 * c - g.a1 * s + 2.0 * (g.b2 * c2 - g.a2 * s2)
@@ -409,7 +436,21 @@ def count_assemblies(layout: Layout, number: int, base: Floats) -> tuple[int | N
     """A block's number of assemblies, upstream states as in `base` (states,), None where rounding
     leaves it open, and the most that such a loop has; None for loops of other kinds."""
     chain = chain_of(layout, number, base)
-    equation = None if chain is None else _equation_of(chain)
+    return None if chain is None else _count_of(chain, number)
+
+
+def counts_of_assemblies(
+    layout: Layout, number: int, bases: Floats
+) -> list[tuple[int | None, int] | None]:
+    """The same at many places (columns of `bases`, (states, places))."""
+    chains = chains_of(layout, number, bases)
+    if chains is None:
+        return [None] * bases.shape[1]
+    return [_count_of(chain, number) for chain in chains]
+
+
+def _count_of(chain: Chain, number: int) -> tuple[int | None, int] | None:
+    equation = _equation_of(chain)
     if equation is None:
         return None
     polynomial, regularity, most = equation

@@ -33,7 +33,7 @@ from mechkin_cli.search.clusters import (
     unknown_states,
     upstream_states,
 )
-from mechkin_cli.search.loop_equation import count_assemblies
+from mechkin_cli.search.loop_equation import counts_of_assemblies
 from mechkin_cli.session import Ask, RowInputs, Session, Structure, lies_in_family, run
 
 if TYPE_CHECKING:
@@ -78,7 +78,8 @@ class PlaceSearch:
         self.real: int | None = None
 
     def learn(self, count: tuple[int | None, int] | None) -> None:
-        """Takes the loop's number of assemblies and the most it may have (`count_assemblies`)."""
+        """Takes the loop's number of assemblies and the most it may have
+        (`counts_of_assemblies`)."""
         if count is not None:
             self.real, most = count
             self.most = most if self.most is None else min(most, self.most)
@@ -133,9 +134,10 @@ def search_block(
             search_round(request, number, states, generator, [searches[i] for i in places])
         if not tried and request.within is None:
             # a box holds some of them, and their number is not known
-            for i, search in enumerate(searches):
-                if not search.is_complete:
-                    search.learn(count_assemblies(request.layout, number, bases[:, i]))
+            open_ = [i for i, search in enumerate(searches) if not search.is_complete]
+            counts = counts_of_assemblies(request.layout, number, bases[:, open_])
+            for i, count in zip(open_, counts, strict=True):
+                searches[i].learn(count)
         active = [i for i in active if not searches[i].is_over]
         clusters = [search.clusters for search in searches]
         if any(c.closed + c.free for c in clusters):
@@ -187,14 +189,16 @@ def search_round(
     turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
     good = closed & turned.all(axis=0) & on_tracks(layout, number, states)
     share = states.shape[1] // len(searches)
+    ended = states[:, good]
+    keys = searches[0].clusters.keys_of(ended)
+    last = np.cumsum(good)[share - 1 :: share].tolist()
     for i, search in enumerate(searches):
-        part = slice(i * share, (i + 1) * share)
+        own = slice(last[i - 1] if i else 0, last[i])
         clusters = search.clusters
-        clusters.closest = min(clusters.closest, float(np.min(residual[part])))
+        closest = float(np.min(residual[i * share : (i + 1) * share]))
+        clusters.closest = min(clusters.closest, closest)
         clusters.tried += share
-        clusters.add(
-            states[:, part][:, good[part]], lambda ended: _isolated(request, number, ended)
-        )
+        clusters.add(ended[:, own], keys[:, own], lambda some: _isolated(request, number, some))
 
 
 def _isolated(
