@@ -200,7 +200,7 @@ def _letters(
     count = points.shape[2]
     rows = [
         *(_order(mechanism, name, values) for name, values in coordinates.items()),
-        *np.rint(points.reshape(-1, count) / grid),
+        *np.rint(points.reshape(3 * points.shape[0], count) / grid),
     ]
     keys = np.array(rows).reshape(len(rows), count).T.tolist()
     order = sorted(range(count), key=keys.__getitem__)
