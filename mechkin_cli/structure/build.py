@@ -33,10 +33,11 @@ from mechkin_cli.structure.network import (
     depths,
     incidence,
     order_of,
+    outward,
     reduce,
 )
 from mechkin_cli.structure.rank import Rates, middle_and_size
-from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS
+from mechkin_cli.tolerances import MOST_COMPARED_TREES, MOST_EQUATIONS, MOST_LOOP_JOINTS
 
 Freedom = tuple[int, int]
 
@@ -517,14 +518,70 @@ def _groups(
 def _closing_names(whole: Reduction, groups: Sequence[Subgraph]) -> list[str]:
     """The cut joints of all groups: fewest equations first, then as written."""
     depth = {GROUND_NAME: 0}
+    above: dict[str, str] = {}
     chosen: dict[str, int] = {}
     for group in groups:
-        some = {c.name: c.equations for c in closings_of(group, depth)}
+        cuts = _shortened(group, closings_of(group, depth), depth, above)
+        some = {c.name: c.equations for c in cuts}
         tree = [c for c in group.connections if c.has_coordinates and c.name not in some]
+        above.update(outward(tree, depth))
         depth.update(depths(tree, depth))
         chosen.update(some)
     written = [name for name in whole.joints if name in chosen]
     return sorted(written, key=chosen.__getitem__)
+
+
+def _shortened(
+    group: Subgraph,
+    chosen: list[Connection],
+    depth: Mapping[str, int],
+    above: Mapping[str, str],
+) -> list[Connection]:
+    """The cut joints, or, of one loop that they make long, that which makes it shortest.
+
+    A rhomb of scissors is split most evenly where both halves lead to ground by a side of the
+    scissors each, but closes in itself as well: with the storeys loops would grow, and with the
+    square of the storeys the work. `above` is the link that carries a link.
+    """
+    farthest = max((depth.get(link, 0) for c in group.connections for link in c.ends), default=0)
+    if len(chosen) != 1 or 2 * (farthest + len(group.links)) <= MOST_LOOP_JOINTS:
+        return chosen
+    joints = [c for c in group.connections if c.has_coordinates]
+    own = set(group.links)
+
+    def key(cut: Connection) -> tuple[float, bool]:
+        # where all are long the group's links stay joined, so that the loops on them are short
+        return _passed(joints, cut, depth, above), cut.first in own and cut.second in own
+
+    (best,), least = chosen, key(chosen[0])
+    if least[0] <= MOST_LOOP_JOINTS:
+        return chosen
+    for c in joints:
+        if not c.stays and c.equations == chosen[0].equations and (found := key(c)) < least:
+            best, least = c, found
+    return [best]
+
+
+def _passed(
+    joints: Sequence[Connection],
+    cut: Connection,
+    depth: Mapping[str, int],
+    above: Mapping[str, str],
+) -> float:
+    """How many joints of the tree a loop passes with a cut joint; more than `MOST_LOOP_JOINTS` are
+    not told apart, and without a tree they are infinite."""
+    tree = [c for c in joints if c is not cut]
+    found, below = depths(tree, depth), outward(tree, depth)
+    if not all(c.first in found and c.second in found for c in tree):
+        return float("inf")
+    one, other, passed = cut.first, cut.second, 0
+    while one != other and passed <= MOST_LOOP_JOINTS:
+        first, second = (found.get(link, depth.get(link, 0)) for link in (one, other))
+        if first < second:
+            one, other = other, one
+        one = below.get(one) or above[one]
+        passed += 1
+    return passed
 
 
 def _carried_loop(block: NothingSolved, connections: Sequence[Connection]) -> list[Connection]:
