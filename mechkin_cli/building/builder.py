@@ -42,6 +42,7 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
+from mechkin_cli.building.source import without_collection
 from mechkin_cli.building.tables import (
     ColumnSample,
     build_coefficients,
@@ -119,6 +120,7 @@ class Built(NamedTuple):
         return tuple(table for table in self.tables if table.run == run)
 
 
+@without_collection()
 def build(
     file: MechanismFile,
     document: Document,
