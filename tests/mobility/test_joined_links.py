@@ -52,8 +52,7 @@ def test_every_plane_loop_in_space_has_three_redundant_constraints(
     network: Network, redundant: int
 ) -> None:
     found = mk.loads(network.text).mobility()
-    if found.mobility is not None:
-        assert found.mobility == 1
-        assert sum(item.number for item in found.redundant) == redundant
+    assert found.mobility == 1
+    assert sum(item.number for item in found.redundant) == redundant
     flat = mk.loads(network.plane_text).mobility()
     assert flat.count == 1
