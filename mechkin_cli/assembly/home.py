@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from math import ceil, pi, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from mechkin_cli.show import Bools, Floats
+
+Angle = TypeVar("Angle", float, "Floats")
 
 
 @remembered
@@ -195,26 +197,23 @@ def _letters(
     (points, 3, assemblies).
     """
     grid = mechanism.box_diagonal() * tolerances.MODE_ORDER
-
-    def key(i: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        places = tuple(round(float(part)) for part in points[:, :, i].reshape(-1) / grid)
-        return _key(mechanism, coordinates, i), places
-
-    order = sorted(range(points.shape[2]), key=key)
+    count = points.shape[2]
+    rows = [
+        *(_order(mechanism, name, values) for name, values in coordinates.items()),
+        *np.rint(points.reshape(3 * points.shape[0], count) / grid),
+    ]
+    keys = np.array(rows).reshape(len(rows), count).T.tolist()
+    order = sorted(range(count), key=keys.__getitem__)
     return {i: mode_name(rank) for rank, i in enumerate(order)}
 
 
-def _key(mechanism: Mechanism, coordinates: dict[str, Floats], number: int) -> tuple[int, ...]:
-    half_turn, size = round(pi / tolerances.MODE_ORDER), mechanism.box_diagonal()
-    key = []
-    for name, values in coordinates.items():
-        value = float(values[number])
-        angle = is_cyclic(mechanism, name)
-        if not is_angle(name.rpartition(".")[2]):
-            value /= size
-        part = round((wrapped(value) if angle else value) / tolerances.MODE_ORDER)
-        key.append(half_turn if angle and part == -half_turn else part)
-    return tuple(key)
+def _order(mechanism: Mechanism, name: str, values: Floats) -> Floats:
+    """What values (assemblies,) of a coordinate are ordered by: whole numbers."""
+    half_turn, cyclic = round(pi / tolerances.MODE_ORDER), is_cyclic(mechanism, name)
+    if not is_angle(name.rpartition(".")[2]):
+        values = values / mechanism.box_diagonal()
+    order: Floats = np.rint((wrapped(values) if cyclic else values) / tolerances.MODE_ORDER)
+    return np.where(order == -half_turn, half_turn, order) if cyclic else order
 
 
 def mode_name(rank: int) -> str:
@@ -234,9 +233,10 @@ def is_cyclic(mechanism: Mechanism, name: str) -> bool:
     return joint.type.chain[joint.freedom_number(coordinate)].is_cyclic
 
 
-def wrapped(angle: float) -> float:
-    """The angle brought into (-pi, pi]."""
-    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
+def wrapped(angle: Angle) -> Angle:
+    """The angle, or each of an array, brought into (-pi, pi]."""
+    turns = (angle - pi) / (2.0 * pi)
+    return angle - 2.0 * pi * (np.ceil(turns) if isinstance(angle, np.ndarray) else ceil(turns))
 
 
 def rows_from_home(session: Session) -> Iterator[tuple[int, Followed, bool]]:

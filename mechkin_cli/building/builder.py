@@ -42,6 +42,7 @@ from mechkin_cli.building.responses import (
     note_spins,
     settled,
 )
+from mechkin_cli.building.source import without_collection
 from mechkin_cli.building.spacing import numbers_per_row
 from mechkin_cli.building.tables import (
     ColumnSample,
@@ -120,6 +121,7 @@ class Built(NamedTuple):
         return tuple(table for table in self.tables if table.run == run)
 
 
+@without_collection()
 def build(
     file: MechanismFile,
     document: Document,

@@ -148,7 +148,7 @@ def build_joints(
     """All joints whose links exist; errors are noted in `fields`."""
     joints = {}
     for name, section in sections.items():
-        unknown = [link for link in section.links if link not in (GROUND_NAME, *links)]
+        unknown = [link for link in section.links if link != GROUND_NAME and link not in links]
         for i, link in enumerate(section.links):
             if link in unknown:
                 hint = nearest_hint(link, [GROUND_NAME, *links])

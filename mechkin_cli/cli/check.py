@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mechkin_cli import mechanism, mobility, structure
+from mechkin_cli import mobility, structure
 from mechkin_cli.cli.messages import (
     ExitCode,
     Record,
@@ -66,14 +66,14 @@ def _input_faults(model: Model) -> list[Diagnostic]:
     faults = []
     for run in model.runs:
         if run == SWEEP:
-            problem = model.problem
-            path: tuple[str, ...] = ("motion", "inputs") if problem.motion.inputs else ("joints",)
+            inputs = model.problem.motion.inputs
+            path: tuple[str, ...] = ("motion", "inputs") if inputs else ("joints",)
         else:
             path = ("responses", run, "start")
-            problem = mechanism.response_problem(model.problem, model.problem.responses[run])
         if structure.is_redundant(_graph(model, run)):
             place = model.built.document.place(path)
-            faults += [fault._replace(place=place) for fault in mobility.drawn_faults(problem)]
+            found = mobility.drawn_faults(model.session_of(run))
+            faults += [fault._replace(place=place) for fault in found]
     return faults
 
 

@@ -7,14 +7,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_told, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pair_type import Attached
 from mechkin_cli.mechanism.pairs import JOINT_TYPES, PLANE_JOINT_TYPES, dimension_of, is_angle
-from mechkin_cli.mechanism.quantities import BEARING_KINDS, effort_quantity, in_plane
+from mechkin_cli.mechanism.quantities import BEARING_KINDS, Elements, effort_quantity, in_plane
 from mechkin_cli.mechanism.vectors import ZERO
 from mechkin_cli.mechanism.wanted import Kind, Wanted
 from mechkin_cli.units import (
@@ -63,8 +63,9 @@ def coefficient_catalogue(
     """Every coefficient of the quantities that are `known`; `leading` is the input that is meant
     where none is named."""
     found = [*_of_inertias(inputs)]
+    taken = frozenset(inputs)
     for quantity in known.values():
-        if _is_linear(quantity, inputs):
+        if _is_linear(quantity, taken):
             found.append(_per(quantity, leading, f"{quantity.name}.per_acceleration"))
             for joint, coordinate in inputs if len(inputs) > 1 else ():
                 name = f"{quantity.name}.per.{joint}.{coordinate}_ddot"
@@ -98,7 +99,7 @@ def _of_inertias(inputs: Sequence[Input]) -> Iterator[Wanted]:
         yield _per(effort, (joint, coordinate), f"{joint}.{coordinate}.reduced_inertia")
 
 
-def _is_linear(quantity: Wanted, inputs: Sequence[Input]) -> bool:
+def _is_linear(quantity: Wanted, inputs: Collection[Input]) -> bool:
     if quantity.kind == "coordinate":
         return quantity.order == 2 and (quantity.owner, quantity.coordinate) not in inputs
     if quantity.kind == "point":
@@ -222,24 +223,24 @@ _HELD = {
 
 
 def derived_catalogue(
-    mechanism: Mechanism,
+    elements: Elements,
     inputs: Sequence[tuple[str, str]],
     leading: tuple[str, str] | None,
 ) -> dict[str, Wanted]:
     """Every derived quantity by name; `inputs` (joint, coordinate), `leading` the one of them that
     mechanical advantages refer to."""
-    found = [*_of_orientations(mechanism), *_of_curves(mechanism), *_of_screws(mechanism)]
+    found = [*_of_orientations(elements), *_of_curves(elements), *_of_screws(elements)]
     if leading is not None:
-        found += _of_advantages(mechanism, inputs, leading[1])
-    found += _of_transmissions(mechanism, inputs)
+        found += _of_advantages(elements, inputs, leading[1])
+    found += _of_transmissions(elements, inputs)
     known = {wanted.name: wanted for wanted in found}
-    return in_plane(known) if mechanism.plane else known
+    return in_plane(known) if elements.plane else known
 
 
-def _of_curves(mechanism: Mechanism) -> Iterator[Wanted]:
+def _of_curves(elements: Elements) -> Iterator[Wanted]:
     """Lengths along curves, from where their parameter is zero, or else from their begin, with
     their rates."""
-    for joint in mechanism.joints.values():
+    for joint in elements.joints:
         if joint.type.is_carried and joint.track.names == (PARAMETER,):
             dimension = LENGTH
             for order, suffix in enumerate(ORDERS):
@@ -410,7 +411,7 @@ def is_of_motion(name: str) -> bool:
     return not _OF_MOTION.isdisjoint(name.split("."))
 
 
-def driving_joint(mechanism: Mechanism, joint: Joint) -> Joint | None:
+def driving_joint(mechanism: Mechanism | Elements, joint: Joint) -> Joint | None:
     """The joint that alone drives the link which `joint` guides on ground, by a force through its
     point: a ball, in a plane a pin; None where the structure is another."""
     if not joint.type.is_guide or GROUND_NAME not in (joint.first, joint.second):
@@ -433,8 +434,8 @@ def reference_point(mechanism: Mechanism, link: str) -> Attached:
     return next(points, Attached(link, ZERO))
 
 
-def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
-    for joint in mechanism.joints.values():
+def _of_orientations(elements: Elements) -> Iterator[Wanted]:
+    for joint in elements.joints:
         if joint.type.is_oriented and is_written(joint.name):
             for word in QUATERNION:
                 name = f"{joint.name}.{word}"
@@ -442,17 +443,17 @@ def _of_orientations(mechanism: Mechanism) -> Iterator[Wanted]:
             yield Wanted(f"{joint.name}.turn", "turn", joint.name, ANGLE, True)
 
 
-def _of_screws(mechanism: Mechanism) -> Iterator[Wanted]:
-    for link in mechanism.links:
+def _of_screws(elements: Elements) -> Iterator[Wanted]:
+    for link in elements.links:
         if link != GROUND_NAME and is_written(link):
             for kind, dimension, vector, order in _SCREWS:
                 yield Wanted(f"{link}.{kind}", kind, link, dimension, vector, order=order)
 
 
 def _of_advantages(
-    mechanism: Mechanism, inputs: Sequence[tuple[str, str]], leading: str
+    elements: Elements, inputs: Sequence[tuple[str, str]], leading: str
 ) -> Iterator[Wanted]:
-    for joint in mechanism.joints.values():
+    for joint in elements.joints:
         for coordinate in joint.type.coordinates if is_told(joint.name) else ():
             if (joint.name, coordinate) not in inputs:
                 name = f"{joint.name}.{coordinate}.mechanical_advantage"
@@ -461,10 +462,10 @@ def _of_advantages(
                 yield Wanted(name, kind, joint.name, dimension, False, coordinate)
 
 
-def _of_transmissions(mechanism: Mechanism, inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+def _of_transmissions(elements: Elements, inputs: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
     driven = {joint for joint, _ in inputs}
-    for joint in mechanism.joints.values():
-        driver = driving_joint(mechanism, joint)
+    for joint in elements.joints:
+        driver = driving_joint(elements, joint)
         if driver is not None and driver.name not in driven and is_told(joint.name):
             for coordinate in joint.type.coordinates:
                 for kind in TRANSMISSION_KINDS if (joint.name, coordinate) not in inputs else ():

@@ -34,7 +34,14 @@ from mechkin_cli.mechanism.joint import GROUND_NAME, is_told
 from mechkin_cli.mechanism.model import Mechanism, without_effort
 from mechkin_cli.mechanism.motion import Assembly, DrivenInput, Limit, MotionInputs
 from mechkin_cli.mechanism.pairs import is_angle
-from mechkin_cli.mechanism.quantities import bearing_catalogue, catalogue, response_quantities
+from mechkin_cli.mechanism.quantities import (
+    Catalogue,
+    Elements,
+    ElementsByName,
+    bearing_catalogue,
+    catalogue,
+    response_quantities,
+)
 from mechkin_cli.mechanism.wanted import Wanted
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.tolerances import LARGEST_NUMBER, TABLE_END
@@ -198,16 +205,29 @@ class Problem:
 
     def _linear(self, found: Mapping[str, Wanted]) -> Mapping[str, Wanted]:
         """Without reactions where teeth push wheels apart, whichever way their moment acts."""
-        if not any(relation.pushes_apart for relation in self.mechanism.couplings.values()):
+        if not self._pushes_apart:
             return found
         reactions = ("force", "moment", "moment_about_origin")
         return {name: known for name, known in found.items() if known.kind not in reactions}
 
     @cached_property
+    def _pushes_apart(self) -> bool:
+        return any(relation.pushes_apart for relation in self.mechanism.couplings.values())
+
+    @cached_property
     def _quantities(self) -> Mapping[str, Wanted]:
         if self._alike is not None:
             return self._alike.quantities()
-        tied, found = self.tied, self._all_quantities()
+        return Catalogue(self._quantities_of)
+
+    @cached_property
+    def _elements(self) -> ElementsByName:
+        return ElementsByName(self.mechanism)
+
+    def _quantities_of(self, word: str | None) -> Mapping[str, Wanted]:
+        """Those whose names have this first word; None: all."""
+        elements = Elements.of(self.mechanism) if word is None else self._elements(word)
+        tied, found = self.tied, self._untied_quantities(elements)
         if not tied:
             return found
         return {
@@ -216,12 +236,12 @@ class Problem:
             if known.owner not in tied or known.kind not in _REACTIONS
         }
 
-    def _all_quantities(self) -> Mapping[str, Wanted]:
-        mechanism, motion = self.mechanism, self.motion
+    def _untied_quantities(self, elements: Elements) -> Mapping[str, Wanted]:
+        motion = self.motion
         if self.response is not None:
             efforts = self.response.efforts_of
-            found = catalogue(mechanism, efforts, timed=True, held=self.held)
-            derived = derived_catalogue(mechanism, (), None)
+            found = catalogue(elements, efforts, timed=True, held=self.held)
+            derived = derived_catalogue(elements, (), None)
             # the rates of forces, and with them jerks, are not known; nor is what steps leave of
             # errors
             found = {
@@ -235,16 +255,16 @@ class Problem:
             moving = [*self.response.independent, *self.response.driven_at]
             if moving:
                 found |= coefficient_catalogue(linear, moving, moving[0])
-            found |= response_quantities() | bearing_catalogue(mechanism, efforts)
+            found |= response_quantities() | bearing_catalogue(elements, efforts)
             return found | {name: known for name, known in derived.items() if known.order < 3}
         leading = motion.leading and (motion.leading.joint, motion.leading.coordinate)
-        found = catalogue(mechanism, self.acting, timed=motion.time is not None, held=self.held)
+        found = catalogue(elements, self.acting, timed=motion.time is not None, held=self.held)
         if leading is not None:
             found |= coefficient_catalogue(self._linear(found), motion.driven, leading)
         if motion.time is not None and leading is not None:
             found |= ledger_catalogue()
-        found |= bearing_catalogue(mechanism)
-        return found | derived_catalogue(mechanism, motion.driven, leading)
+        found |= bearing_catalogue(elements)
+        return found | derived_catalogue(elements, motion.driven, leading)
 
 
 def _as_coupling(tied: DrivenInput, leader: DrivenInput) -> str:

@@ -7,8 +7,10 @@ names; those that are computed from others after a run stand in `derived_quantit
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
+from typing import TYPE_CHECKING, TypeVar
 
 from mechkin_cli.expressions import (
     Expression,
@@ -17,12 +19,13 @@ from mechkin_cli.expressions import (
     parse,
 )
 from mechkin_cli.mechanism.held import LockedFreedom
-from mechkin_cli.mechanism.joint import GROUND_NAME, is_written
+from mechkin_cli.mechanism.joint import GROUND_NAME, Joint, is_written
 from mechkin_cli.mechanism.model import Mechanism
 from mechkin_cli.mechanism.motion import ORDERS
 from mechkin_cli.mechanism.pairs import is_angle
 from mechkin_cli.mechanism.relation import Relation
 from mechkin_cli.mechanism.wanted import Kind, Wanted
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.units import (
     ACCELERATION,
     ANGULAR_ACCELERATION,
@@ -38,6 +41,10 @@ from mechkin_cli.units import (
     VELOCITY,
     Dimension,
 )
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism.constraint import DistanceConstraint
+    from mechkin_cli.mechanism.pair_type import Rubbing
 
 TIME_OF_ROW = Wanted("time", "time", "row", TIME, False)
 """The moment of a row."""
@@ -73,8 +80,135 @@ _JOINT_WRENCH: dict[str, tuple[Kind, Dimension]] = {
 }
 
 
+_OF_ALL = (GROUND_NAME, "row", "time")
+"""First words of the quantities that a mechanism has as a whole."""
+
+
+class Elements(NamedTuple):
+    """What of a mechanism has quantities: all of it, or what goes by one name, the first word of
+    the names of its quantities; with the joints at every link."""
+
+    joints: Sequence[Joint]
+    joints_of: Mapping[str, Sequence[Joint]]
+    links: Sequence[str]
+    points: Sequence[str]
+    directions: Sequence[str]
+    couplings: Mapping[str, Relation]
+    frictions: Sequence[Rubbing]
+    spins: Sequence[DistanceConstraint]
+    plane: bool
+    word: str | None = None
+
+    @classmethod
+    def of(cls, mechanism: Mechanism) -> Elements:
+        """All of a mechanism."""
+        return cls(
+            tuple(mechanism.joints.values()),
+            mechanism.joints_of,
+            tuple(mechanism.links),
+            tuple(mechanism.points),
+            tuple(mechanism.directions),
+            mechanism.couplings,
+            mechanism.frictions,
+            mechanism.spins,
+            mechanism.plane,
+        )
+
+
+T = TypeVar("T")
+
+
+def first_word(name: str) -> str:
+    """What a quantity is of, by its name.
+
+    >>> first_word("A.theta_dot")
+    'A'
+    """
+    return name.partition(".")[0]
+
+
+class ElementsByName:
+    """What of a mechanism goes by one name."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._of = mechanism
+        named: tuple[Mapping[str, object], ...] = (
+            *(mechanism.joints, mechanism.links, mechanism.points),
+            *(mechanism.directions, mechanism.couplings),
+        )
+        # what stands in the file has one word; what guides a point has more
+        self._longer = [_by_word((name for name in some if "." in name), str) for some in named]
+        self._frictions = _by_word(mechanism.frictions, lambda rubbing: rubbing.joint)
+        self._spins = _by_word(mechanism.spins, lambda spin: spin.holding)
+
+    def __call__(self, word: str) -> Elements:
+        """The joints, links and so on of this name."""
+        of = self._of
+
+        def own(number: int, some: Mapping[str, T]) -> dict[str, T]:
+            names = (word, *self._longer[number].get(word, ()))
+            return {name: some[name] for name in names if name in some}
+
+        return Elements(
+            tuple(own(0, of.joints).values()),
+            of.joints_of,
+            tuple(own(1, of.links)),
+            tuple(own(2, of.points)),
+            tuple(own(3, of.directions)),
+            own(4, of.couplings),
+            self._frictions.get(word, ()),
+            self._spins.get(word, ()),
+            of.plane,
+            word,
+        )
+
+
+def _by_word(some: Iterable[T], name: Callable[[T], str]) -> dict[str, list[T]]:
+    found: dict[str, list[T]] = {}
+    for one in some:
+        found.setdefault(first_word(name(one)), []).append(one)
+    return found
+
+
+class Catalogue(Mapping[str, Wanted]):
+    """Quantities by name, which are made when they are asked for: those of one first word, or all.
+
+    A mechanism of a thousand loops has a hundred thousand quantities, of which a run reads a few.
+    """
+
+    def __init__(self, of: Callable[[str | None], Mapping[str, Wanted]]) -> None:
+        self._of = of
+        self._own: dict[str, Mapping[str, Wanted]] = {}
+        self._every: Mapping[str, Wanted] | None = None
+
+    def __getitem__(self, name: str) -> Wanted:
+        if self._every is not None:
+            return self._every[name]
+        word = first_word(name)
+        if word not in self._own:
+            self._own[word] = self._of(word)
+        return self._own[word][name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    @property
+    def made(self) -> set[str]:
+        """The first words of those made so far one by one."""
+        return {word for word, own in self._own.items() if own}
+
+    @property
+    def _all(self) -> Mapping[str, Wanted]:
+        if self._every is None:
+            self._every = self._of(None)
+        return self._every
+
+
 def catalogue(
-    mechanism: Mechanism,
+    elements: Elements,
     driven: Sequence[tuple[str, str]],
     *,
     timed: bool = False,
@@ -84,18 +218,18 @@ def catalogue(
     have a time, and what is `held` that which holds it."""
     found = {}
     for wanted in (
-        *_of_coordinates(mechanism),
-        *_of_joints(mechanism),
+        *_of_coordinates(elements),
+        *_of_joints(elements),
         *_of_efforts(driven),
-        *_of_points(mechanism),
-        *_of_links(mechanism),
-        *_of_frictions(mechanism),
-        *_of_couplings(mechanism),
+        *_of_points(elements),
+        *_of_links(elements),
+        *_of_frictions(elements),
+        *_of_couplings(elements),
         *_of_held(held),
-        *_of_ground(),
+        *_of_ground(elements.word),
     ):
         found[wanted.name] = wanted
-    if mechanism.plane:
+    if elements.plane:
         found = in_plane(found)
     if timed:
         found["time"] = TIME_OF_ROW
@@ -133,8 +267,8 @@ def coordinate_quantities(mechanism: Mechanism) -> list[Wanted]:
     ]
 
 
-def _of_coordinates(mechanism: Mechanism) -> Iterator[Wanted]:
-    for joint in mechanism.joints.values():
+def _of_coordinates(elements: Elements) -> Iterator[Wanted]:
+    for joint in elements.joints:
         for known in joint.type.named:
             dimension = known.dimension
             for order, suffix in enumerate(ORDERS):
@@ -143,8 +277,8 @@ def _of_coordinates(mechanism: Mechanism) -> Iterator[Wanted]:
                 dimension = dimension / TIME
 
 
-def _of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
-    for joint in mechanism.joints.values():
+def _of_joints(elements: Elements) -> Iterator[Wanted]:
+    for joint in elements.joints:
         if not is_written(joint.name) or joint.is_play:
             continue
         if joint.type.has_point:
@@ -167,8 +301,8 @@ def effort_quantity(joint: str, coordinate: str) -> Wanted:
     return Wanted(f"{joint}.{coordinate}.effort", "effort", joint, dimension, False, coordinate)
 
 
-def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
-    for rubbing in mechanism.frictions:
+def _of_frictions(elements: Elements) -> Iterator[Wanted]:
+    for rubbing in elements.frictions:
         owner = rubbing.joint
         turns = rubbing.loss is not None and rubbing.loss.turns
         load = MOMENT if turns else FORCE
@@ -178,9 +312,9 @@ def _of_frictions(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(f"{owner}.friction_power", "friction_power", owner, POWER, False)
 
 
-def _of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
+def _of_couplings(elements: Elements) -> Iterator[Wanted]:
     """What each applies at the first of its angles and of its slides, and by its teeth."""
-    for name, relation in mechanism.couplings.items():
+    for name, relation in elements.couplings.items():
         places: dict[tuple[Kind, Dimension], str] = {}
         for term in relation.terms:
             if not is_written(term.joint.name) or term.joint.is_play:
@@ -215,34 +349,34 @@ def friction_states(mechanism: Mechanism) -> list[Wanted]:
 
 
 def _of_efforts(driven: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
-    joints = [joint for joint, _ in driven]
+    count = Counter(joint for joint, _ in driven)
     for joint, coordinate in driven:
         effort = effort_quantity(joint, coordinate)
-        if joints.count(joint) == 1:
+        if count[joint] == 1:
             yield effort._replace(name=f"{joint}.effort")
         yield effort
 
 
-def _of_points(mechanism: Mechanism) -> Iterator[Wanted]:
+def _of_points(elements: Elements) -> Iterator[Wanted]:
     words = (
         ("position", LENGTH),
         ("velocity", VELOCITY),
         ("acceleration", ACCELERATION),
         ("jerk", JERK),
     )
-    for name in mechanism.points:
+    for name in elements.points:
         for order, (word, dimension) in enumerate(words):
             yield Wanted(f"{name}.{word}", "point", name, dimension, True, order=order)
-    for name in mechanism.directions:
+    for name in elements.directions:
         yield Wanted(name, "direction", name, DIMENSIONLESS, True)
 
 
-def _of_links(mechanism: Mechanism) -> Iterator[Wanted]:
-    for name in mechanism.links:
+def _of_links(elements: Elements) -> Iterator[Wanted]:
+    for name in elements.links:
         if name != GROUND_NAME and is_written(name):
             yield Wanted(f"{name}.omega", "omega", name, ANGULAR_RATE, True)
             yield Wanted(f"{name}.alpha", "alpha", name, ANGULAR_ACCELERATION, True)
-    for spin in mechanism.spins:
+    for spin in elements.spins:
         yield Wanted(spin.holding, "holding_moment", spin.links[0], MOMENT, False)
 
 
@@ -256,7 +390,9 @@ def _of_held(held: Sequence[LockedFreedom]) -> Iterator[Wanted]:
         yield Wanted(one.holding, kind, one.links[0], dimension, False, one.name)
 
 
-def _of_ground() -> Iterator[Wanted]:
+def _of_ground(only: str | None) -> Iterator[Wanted]:
+    if only is not None and only not in _OF_ALL:
+        return
     for word, (kind, dimension) in _GROUND.items():
         yield Wanted(f"ground.{word}", kind, GROUND_NAME, dimension, True)
     for word in _ENERGIES:
@@ -311,15 +447,15 @@ efficiency."""
 
 
 def bearing_catalogue(
-    mechanism: Mechanism, efforts: Sequence[tuple[str, str]] = ()
+    elements: Elements, efforts: Sequence[tuple[str, str]] = ()
 ) -> dict[str, Wanted]:
     """`J.radial_force`, `J.axial_force` and `J.tilting_moment` of every joint with an axis, in a
     plane the first alone, of every joint with a point; `K.power` of every coupling, and
     `K.efficiency` of those that rub."""
     loads = (
-        *_bearing_loads_of_joints(mechanism),
-        *_powers_of_couplings(mechanism),
-        *_efficiencies(mechanism, efforts),
+        *_bearing_loads_of_joints(elements),
+        *_powers_of_couplings(elements),
+        *_efficiencies(elements, efforts),
     )
     return {wanted.name: wanted for wanted in loads}
 
@@ -344,18 +480,18 @@ def read_for(names: Iterable[str], known: Mapping[str, Wanted]) -> list[str]:
     return list(found)
 
 
-def _bearing_loads_of_joints(mechanism: Mechanism) -> Iterator[Wanted]:
-    loads, told = (_LOADS_IN_PLANE, _TOLD_IN_PLANE) if mechanism.plane else (_LOADS, "xyz")
-    for joint in mechanism.joints.values():
-        bears = joint.type.has_point and (mechanism.plane or joint.type.axis is not None)
+def _bearing_loads_of_joints(elements: Elements) -> Iterator[Wanted]:
+    loads, told = (_LOADS_IN_PLANE, _TOLD_IN_PLANE) if elements.plane else (_LOADS, "xyz")
+    for joint in elements.joints:
+        bears = joint.type.has_point and (elements.plane or joint.type.axis is not None)
         bears = bears and is_written(joint.name) and not joint.is_telescope
         for kind, (_, dimension) in loads.items() if bears else ():
             yield Wanted(f"{joint.name}.{kind}", kind, joint.name, dimension, False, told=told)
 
 
-def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
+def _powers_of_couplings(elements: Elements) -> Iterator[Wanted]:
     """What each puts in at its first coordinate; all that it puts in is zero."""
-    for name, relation in mechanism.couplings.items():
+    for name, relation in elements.couplings.items():
         first = relation.terms[0]
         if not is_written(first.joint.name):
             continue
@@ -363,10 +499,10 @@ def _powers_of_couplings(mechanism: Mechanism) -> Iterator[Wanted]:
         yield Wanted(f"{name}.power", "coupling_power", name, POWER, False, at)
 
 
-def _efficiencies(mechanism: Mechanism, efforts: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
+def _efficiencies(elements: Elements, efforts: Sequence[tuple[str, str]]) -> Iterator[Wanted]:
     """Of couplings that rub: what the driven wheel gets of what the driving one puts in; none where
     no flank bears, of a play at which `efforts` are told."""
-    for rubbing in mechanism.frictions:
+    for rubbing in elements.frictions:
         if rubbing.loss is None:
             continue
         owner, loss = rubbing.joint, rubbing.loss
@@ -376,7 +512,7 @@ def _efficiencies(mechanism: Mechanism, efforts: Sequence[tuple[str, str]]) -> I
         share = f"max({first}, {second})/(-min({first}, {second}))"
         # the root empties it where both put in power, and none comes out
         text = f"{share} + 0*sqrt({share})"
-        last = mechanism.couplings[owner].terms[-1]
+        last = elements.couplings[owner].terms[-1]
         if last.joint.is_play and (owner, last.coordinate) in efforts:
             pushed = f"{owner}.{last.coordinate}.effort"
             text += f" + 0*({pushed}/{pushed})"

@@ -280,11 +280,15 @@ class Configuration:
         return self.body.loops.poses.named(turns[0], places[0])
 
     @cached_property
+    def every_twist(self) -> Floats:
+        """Twists (bodies, 6, freedoms) of all bodies for unit rates of the joints' freedoms."""
+        every: Floats = self.body.loops.twists(*self._arrays, self.state[None])[0]
+        return every
+
+    @cached_property
     def twists(self) -> dict[str, Floats]:
-        """Twists (6, freedoms) of all bodies for unit rates of the joints' freedoms."""
-        loops = self.body.loops
-        twists = loops.twists(*self._arrays, self.state[None])[0]
-        return {name: twists[k] for name, k in loops.number.items()}
+        """The same by the body's name, (6, freedoms) each."""
+        return {name: self.every_twist[k] for name, k in self.body.loops.number.items()}
 
     @cached_property
     def _closing(self) -> tuple[Floats, Floats]:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, reduce
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.idle import PLACES, LinkMotion, RigidGroup, held_groups
 from mechkin_cli.kernel.functions import RandomStarts
-from mechkin_cli.mechanism import Joint, LockedFreedom, Problem, Vector
+from mechkin_cli.mechanism import Joint, LockedFreedom, Mechanism, Problem, Vector
 from mechkin_cli.mobility.configurations import Body, Configuration, LoopPart, home
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
 from mechkin_cli.mobility.opened import rank_of
@@ -193,26 +192,56 @@ def _turns_and_slides(twists: Floats) -> Floats:
 
 def _groups(configuration: Configuration) -> Iterator[tuple[set[str], list[Joint]]]:
     """Groups of links between two others or more, with the joints to these; small groups first."""
-    joints = configuration.body.mechanism.joints.values()
-    links = configuration.body.links
-    for count in range(1, min(tolerances.MOST_IDLE_LINKS, len(links) - 1) + 1):
-        for chosen in combinations(links, count):
+    body = configuration.body
+    at = body.mechanism.joints_of
+    place = {joint.name: k for k, joint in enumerate(body.mechanism.joints.values())}
+    for count in range(1, min(tolerances.MOST_IDLE_LINKS, len(body.links) - 1) + 1):
+        for chosen in joined_links(body.mechanism, body.links, count):
             group = set(chosen)
-            border = [j for j in joints if (j.first in group) != (j.second in group)]
-            inner = [j for j in joints if j.first in group and j.second in group]
+            around = {joint.name: joint for link in chosen for joint in at[link]}
+            border = [j for j in around.values() if (j.first in group) != (j.second in group)]
             others = {end for j in border for end in (j.first, j.second)} - group
-            if len(others) >= 2 and len(inner) >= count - 1:
-                yield group, border
+            if len(others) >= 2:
+                yield group, sorted(border, key=lambda joint: place[joint.name])
+
+
+def joined_links(mechanism: Mechanism, links: Sequence[str], count: int) -> list[tuple[str, ...]]:
+    """The choices of so many links with as many joints between them, less one, in the order of
+    `combinations`: they are grown from link to link."""
+    rank = {link: k for k, link in enumerate(links)}
+    if count == 1:
+        return [(link,) for link in links]
+    next_to: dict[int, list[int]] = {k: [] for k in rank.values()}
+    for joint in mechanism.joints.values():
+        if joint.first in rank and joint.second in rank and joint.first != joint.second:
+            next_to[rank[joint.first]].append(rank[joint.second])
+            next_to[rank[joint.second]].append(rank[joint.first])
+    found: set[tuple[int, ...]] = {(k,) for k in rank.values()}
+    for _ in range(count - 1):
+        found = {
+            tuple(sorted((*some, other)))
+            for some in found
+            for k in some
+            for other in next_to[k]
+            if other not in some
+        }
+    return [tuple(links[k] for k in some) for some in sorted(found)]
 
 
 def _common_motions(configuration: Configuration, links: set[str], border: list[Joint]) -> Floats:
     """Motions (freedoms, count) of the links as one body that leave the others at rest: nothing but
     the joints around them moves."""
-    body, twists = configuration.body, configuration.twists
+    body = configuration.body
     moving = [column for joint in border for column in body.columns[joint.name]]
-    one = twists[min(links)]
-    rest = [twists[n] if n not in links else twists[n] - one for n in body.links]
-    matrix = np.concatenate([configuration.jacobian, *rest])[:, moving]
+    number = body.loops.number
+    twists = configuration.every_twist[:, :, moving]
+    one = twists[number[min(links)]].copy()
+    for link in links:
+        twists[number[link]] -= one
+    rest = twists[[number[link] for link in body.links]].reshape(-1, len(moving))
+    matrix = np.concatenate([configuration.jacobian[:, moving], rest])
+    # what these joints do not move says nothing
+    matrix = matrix[np.any(matrix != 0.0, axis=1)]
     _, values, right = np.linalg.svd(matrix, full_matrices=len(matrix) < len(moving))
     least = tolerances.RANK_ZERO * values.max(initial=0.0)  # welds alone have none
     motions = np.zeros((body.count, len(moving) - int(np.count_nonzero(values > least))))

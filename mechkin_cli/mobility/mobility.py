@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.assembly import is_home_singular
 from mechkin_cli.diagnostics import Diagnostic
 from mechkin_cli.kernel.functions import RandomStarts
 from mechkin_cli.mechanism import Joint, Problem, is_written, joint_type
@@ -33,11 +34,15 @@ from mechkin_cli.mobility.configurations import Body, Configuration, assembled, 
 from mechkin_cli.mobility.dimension import LocalFreedom, freedom_of
 from mechkin_cli.mobility.families import MotionFamily, families_of
 from mechkin_cli.mobility.idle import IdleFreedom, Motions, idle_freedoms
+from mechkin_cli.plan import home_inputs, home_state
 from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.session import moves_freely
 from mechkin_cli.show import Listed, Listing
 from mechkin_cli.structure import listed
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
@@ -206,6 +211,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
     fits = any(f.inputs == inputs and f.dimension == len(inputs) + len(idle) for f in families)
     seen = tuple(item for item in idle if any(map(is_written, item.links)))
     unseen = len(idle) - len(seen)
+    told = frozenset(mechanism.coordinates)
     return replace(
         counted,
         mobility=motion.mobility - unseen,
@@ -214,7 +220,7 @@ def find_mobility(problem: Problem, session: Session | None = None) -> Mobility:
         configurations=1 + motion.places,
         idle=seen,
         redundant=redundancies(motion.general, motion.stresses, {name for name, _ in driven}),
-        fixed=tuple(name for name in motion.fixed if name in mechanism.coordinates),
+        fixed=tuple(name for name in motion.fixed if name in told),
         families=families,
         diagnostics=() if inputs and fits else tuple(input_notes(problem, motion, len(idle))),
     )
@@ -268,9 +274,13 @@ def _unclear(unclear: LocalFreedom) -> Diagnostic:
     )
 
 
-def drawn_faults(problem: Problem) -> list[Diagnostic]:
+def drawn_faults(session: Session) -> list[Diagnostic]:
     """Inputs that are locked, dependent or too few, as warnings; none where the drawing is not
     assembled or a special position."""
+    problem, layout = session.problem, session.layout
+    drawn = home_inputs(layout), home_state(layout)
+    if not is_home_singular(session) and moves_freely(session, *drawn):
+        return []  # the inputs determine all, and each of them moves
     body = Body(problem.mechanism)
     start, random = home(body), RandomStarts()
     if not start.assembled:
@@ -323,14 +333,16 @@ def redundancies(
     # and the efforts of couplings
     of_cuts, of_couplings = np.split(stresses, [configuration.body.loops.cut_rows])
     cuts = of_cuts.reshape(-1, 6, stresses.shape[1])
-    signs = configuration.body.signs
-    rows = [np.add.reduce(signs[joint.name][:, None, None] * cuts) for joint in joints]
+    rows = []
+    for joint in joints:
+        signs = configuration.body.signs[joint.name]
+        passing = np.flatnonzero(signs)
+        rows.append(np.add.reduce(signs[passing, None, None] * cuts[passing]))
     carried = np.linalg.qr(np.concatenate([*rows, of_couplings]))[0]
-    shares = carried @ carried.T
     found = []
-    for names in _groups(places, shares):
+    for names in _groups(places, carried):
         every = [i for name in names for i in places[name]]
-        number = round(float(np.trace(shares[np.ix_(every, every)])))
+        number = round(float(np.sum(carried[every] ** 2)))
         if number:
             group = [mechanism.joints[name] for name in names if name in mechanism.joints]
             words = ""
@@ -342,25 +354,27 @@ def redundancies(
     return tuple(found)
 
 
-def _groups(places: dict[str, list[int]], shares: Floats) -> Iterator[tuple[str, ...]]:
+def _groups(places: dict[str, list[int]], carried: Floats) -> Iterator[tuple[str, ...]]:
     """Joints and couplings that carry stresses, in groups that do not stress each other."""
+    names = list(places)
+    starts = [rows[0] for rows in places.values()]
 
-    def touch(one: str, other: str) -> bool:
-        block = shares[np.ix_(places[one], places[other])]
-        return bool(np.abs(block).max() > tolerances.MOBILITY_NO_WRENCH)
+    def touched(number: int) -> NDArray[np.intp]:
+        """The numbers of those that one stresses."""
+        shares = np.abs(carried[places[names[number]]] @ carried.T).max(axis=0)
+        return np.flatnonzero(np.maximum.reduceat(shares, starts) > tolerances.MOBILITY_NO_WRENCH)
 
-    order = list(places)
-    left = [name for name in order if touch(name, name)]
-    while left:
-        group, grown = [left.pop(0)], True
-        while grown:
-            grown = False
-            for name in list(left):
-                if any(touch(name, other) for other in group):
-                    group.append(name)
-                    left.remove(name)
-                    grown = True
-        yield tuple(sorted(group, key=order.index))
+    seen: set[int] = set()
+    for first in range(len(names)):
+        if first in seen or first not in touched(first):
+            continue
+        group = [first]
+        seen.add(first)
+        for member in group:
+            more = [k for k in touched(member).tolist() if k not in seen]
+            seen.update(more)
+            group += more
+        yield tuple(names[k] for k in sorted(group))
 
 
 def _wrenches(
@@ -450,8 +464,14 @@ def _axis(direction: Floats) -> str:
 def _cure(configuration: Configuration, group: list[Joint], number: int) -> str | None:
     """The fewest softer joints that take away all redundancy and free no motion."""
     options = [(joint, letter) for joint in group for letter in joint.type.softer]
-    rank = _rank(configuration.jacobian)
-    for count in range(1, tolerances.MOST_CHANGES + 1):
+    frees = [joint_type(letter).freedoms - joint.type.freedoms for joint, letter in options]
+    counts = [
+        count
+        for count in range(1, tolerances.MOST_CHANGES + 1)
+        if options and count * min(frees) <= number <= count * max(frees)
+    ]
+    rank = _rank(configuration.jacobian) if counts else 0
+    for count in counts:
         for changes in combinations(options, count):
             freed = sum(
                 joint_type(letter).freedoms - joint.type.freedoms for joint, letter in changes

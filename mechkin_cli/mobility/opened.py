@@ -31,6 +31,7 @@ from mechkin_cli.mechanism import (
     Mechanism,
     Part,
     RigidLink,
+    far_link,
     screws_at,
 )
 from mechkin_cli.record import NamedTuple
@@ -80,11 +81,10 @@ def opened(mechanism: Mechanism) -> Opened:
     edges: list[TreeEdge] = []
     elements: dict[str, tuple[int, ...]] = {}
     reached, front = {GROUND_NAME}, [GROUND_NAME]
-    while front:
-        link = front.pop(0)
-        for name, joint in mechanism.joints.items():
-            far = {joint.first: joint.second, joint.second: joint.first}.get(link)
-            if name in elements or far is None or far in reached:
+    for link in front:
+        for joint in mechanism.joints_of[link]:
+            name, far = joint.name, far_link(joint, link)
+            if name in elements or far in reached:
                 continue
             elements[name] = _carry(edges, _parts_of(joint, joint.second), link)
             reached.add(far)

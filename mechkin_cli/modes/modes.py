@@ -266,10 +266,11 @@ def _result(
     order = sorted(
         range(assemblies.number), key=lambda i: (names[i] == UNNAMED, len(names[i]), names[i])
     )
+    shown = {n: _shown(problem, inputs, n, values) for n, values in coordinates.items()}
     modes = tuple(
         Mode(
             names[i],
-            {n: _shown(problem, inputs, n, float(v[i])) for n, v in coordinates.items()},
+            {name: values[i] for name, values in shown.items()},
             float(assemblies.residual[i]),
             float(assemblies.condition[i]),
             {
@@ -305,12 +306,15 @@ def _result(
     )
 
 
-def _shown(problem: Problem, inputs: Mapping[str, float], name: str, value: float) -> float:
-    """A coordinate in the file's units; that of an input as the file or the caller has it."""
-    turned = wrapped(value) if is_cyclic(problem.mechanism, name) else value
-    if name in inputs and turned == value:
-        return inputs[name]
-    return float(problem.units.from_si(turned, dimension_of(name.rpartition(".")[2])))
+def _shown(problem: Problem, inputs: Mapping[str, float], name: str, values: Floats) -> list[float]:
+    """Values (assemblies,) of a coordinate in the file's units; that of an input as the file or the
+    caller has it."""
+    turned = wrapped(values) if is_cyclic(problem.mechanism, name) else values
+    shown = problem.units.from_si(turned, dimension_of(name.rpartition(".")[2]))
+    if name in inputs:
+        shown = np.where(turned == values, inputs[name], shown)
+    found: list[float] = shown.tolist()
+    return found
 
 
 def _family_notes(problem: Problem) -> list[Diagnostic]:

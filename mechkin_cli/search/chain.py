@@ -24,7 +24,9 @@ Loops that are drawn planar or spherical have fewer (`loop_equation`).
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
@@ -34,7 +36,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.structure import Block, SolverGraph
 
 if TYPE_CHECKING:
-    from mechkin_cli.mechanism import Joint
+    from mechkin_cli.mechanism import Constraint, Joint
     from mechkin_cli.show import Floats
 
 
@@ -61,6 +63,50 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     """The chain of a block with one cut joint, upstream states as in `base` (states,); None where
     an unknown is a thread, a ball or a carriage or its turns are counted, or no loop of links is
     closed."""
+    way = _way_of(layout, number)
+    return None if way is None else _chain_along(way, [float(x) for x in base])
+
+
+def chains_of(layout: Layout, number: int, bases: Floats) -> list[Chain] | None:
+    """The chains at many places, upstream states as in the columns of `bases` (states, places):
+    those of `chain_of`, to the last bit."""
+    way = _way_of(layout, number)
+    if way is None:
+        return None
+    if any(layout.carriers[k].part.track is not None for path in way.paths for k in path):
+        # curves are evaluated number by number
+        return [_chain_along(way, column) for column in bases.T.tolist()]
+    chain = _chain_along(way, [np.ascontiguousarray(row) for row in bases])
+    vectors = [v for motion in chain.motions for v in (motion.axis, motion.point)]
+    vectors += [*chain.first, *chain.second]
+    parts = [np.broadcast_to(part, bases.shape[1]) for vector in vectors for part in vector]
+    slides = [motion.slide for motion in chain.motions]
+    found = []
+    for numbers in np.array(parts).T.tolist():
+        own: list[Vector] = [
+            (numbers[i], numbers[i + 1], numbers[i + 2]) for i in range(0, len(numbers), 3)
+        ]
+        motions = tuple(
+            ChainMotion(slide, own[2 * k], own[2 * k + 1]) for k, slide in enumerate(slides)
+        )
+        frames = Frame(*own[-8:-4]), Frame(*own[-4:])
+        found.append(Chain(chain.joint, motions, *frames, chain.distance))
+    return found
+
+
+class _Way(NamedTuple):
+    """Round the loop of a block with one cut joint: the kernel's joints from either of its links to
+    ground, those that only one of them has, in order, and the states that are unknown."""
+
+    layout: Layout
+    constraint: Constraint
+    paths: tuple[list[int], list[int]]
+    around: list[int]
+    unknown: set[int]
+
+
+def _way_of(layout: Layout, number: int) -> _Way | None:
+    """None where `chain_of` has no chain."""
     graph = layout.graph
     block = graph.blocks[number]
     if len(block.closings) != 1:
@@ -72,25 +118,41 @@ def chain_of(layout: Layout, number: int, base: Floats) -> Chain | None:
     unknown = {layout.state(e, f) for e, f in block.unknowns}
     if constraint.slides or constraint.terms:
         return None
-    ends = (constraint.first, constraint.second)
-    paths = [_path(layout, layout.link_number[link]) for link in ends]
-    shared = set(paths[0]) & set(paths[1])
-    around = [k for k in (*paths[0], *reversed(paths[1])) if k not in shared]
-    states = [float(x) for x in base]
-    for state in unknown:
+    first, second = (
+        _path(layout, layout.link_number[link]) for link in (constraint.first, constraint.second)
+    )
+    shared = set(first) & set(second)
+    around = [k for k in (*first, *reversed(second)) if k not in shared]
+    if any(graph.edges[layout.carriers[k].edge].hung for k in around):
+        return None
+    own = [
+        state
+        for k in around
+        for state, _ in enumerate(layout.carriers[k].part.type.slides, layout.carriers[k].state)
+    ]
+    if len(unknown.intersection(own)) != len(unknown):
+        return None
+    return _Way(layout, constraint, (first, second), around, unknown)
+
+
+def _chain_along(way: _Way, states: list[Any]) -> Chain:
+    """The chain with upstream `states`: numbers, or arrays of as many places."""
+    layout, constraint = way.layout, way.constraint
+    for state in way.unknown:
         states[state] = 0.0
     frames = _ChainFrames(layout, states)
     motions = []
-    for k in around:
+    for k in way.around:
         carrier = layout.carriers[k]
-        if graph.edges[carrier.edge].hung:
-            return None
-        before = frames.before(k)
-        for state, slide in enumerate(carrier.part.type.slides, start=carrier.state):
-            if state in unknown:
-                motions.append(ChainMotion(slide, before.z, before.o))
-    if len(motions) != len(unknown):
-        return None
+        unknown = [
+            slide
+            for state, slide in enumerate(carrier.part.type.slides, start=carrier.state)
+            if state in way.unknown
+        ]
+        if unknown:
+            before = frames.before(k)
+            motions += [ChainMotion(slide, before.z, before.o) for slide in unknown]
+    ends = (constraint.first, constraint.second)
     first, second = (
         frames.on_link(link, frame) for link, frame in zip(ends, constraint.frames, strict=True)
     )
@@ -108,17 +170,21 @@ def _path(layout: Layout, body: int) -> list[int]:
 
 
 class _ChainFrames:
-    """Frames of bodies in the kernel's axes and lengths, at one state."""
+    """Frames of bodies in the kernel's axes and lengths, at one state or at many at once."""
 
-    def __init__(self, layout: Layout, states: list[float]) -> None:
+    def __init__(self, layout: Layout, states: list[Any]) -> None:
         self.layout, self.states = layout, states
         self._bodies: dict[int, Frame] = {-1: GROUND}
 
     def body(self, number: int) -> Frame:
-        if number not in self._bodies:
-            carrier = self.layout.carriers[number]
+        # outward from the last that is known, since a chain may be longer than calls go deep
+        ahead = [number]
+        while ahead[-1] not in self._bodies:
+            ahead.append(self.layout.carriers[ahead[-1]].parent)
+        for at in ahead[-2::-1]:
+            carrier = self.layout.carriers[at]
             moved = _displacement(self.layout, carrier, self.states)
-            self._bodies[number] = self.before(number).carry(moved)
+            self._bodies[at] = self.before(at).carry(moved)
         return self._bodies[number]
 
     def before(self, number: int) -> Frame:
@@ -137,7 +203,7 @@ def _frame(numbers: list[float]) -> Frame:
     return Frame(x, y, z, o)
 
 
-def _displacement(layout: Layout, carrier: Carrier, states: list[float]) -> Frame:
+def _displacement(layout: Layout, carrier: Carrier, states: list[Any]) -> Frame:
     kind, state = carrier.part.type, carrier.state
     if kind.is_ball:
         w, x, y, z = states[state : state + 4]
@@ -159,7 +225,7 @@ def _displacement(layout: Layout, carrier: Carrier, states: list[float]) -> Fram
         if freedom.motion == "thread":
             pitch = layout.graph.edges[carrier.edge].joint.pitch
             along += states[state + local] * pitch / layout.length
-    c, s = float(functions.cos(turn)), float(functions.sin(turn))
+    c, s = functions.cos(turn), functions.sin(turn)
     return Frame((c, s, 0.0), (-s, c, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, along))
 
 

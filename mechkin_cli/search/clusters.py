@@ -19,20 +19,38 @@ import numpy as np
 from mechkin_cli import tolerances
 from mechkin_cli.kernel import functions
 from mechkin_cli.plan import Carrier, Layout
+from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.loop_equation import count_assemblies
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Sequence
+    from collections.abc import Collection, Sequence
 
     from numpy.typing import NDArray
 
     from mechkin_cli.kernel.functions import RandomStarts
     from mechkin_cli.show import Bools, Floats
 
-    Isolated = Callable[[Floats], tuple[Floats, Bools, Floats, int]]
-    """From end points (columns) to the points closed as well as possible, which of them are
-    isolated assemblies, their conditions, and how many are assemblies but not isolated."""
+
+class Ended(NamedTuple):
+    """End points (columns of `states` and of their `keys`) closed as well as possible: which of
+    them are isolated assemblies, which assemblies are not, and their conditions."""
+
+    states: Floats
+    keys: Floats
+    good: Bools
+    free: Bools
+    condition: Floats
+
+    def part(self, own: slice) -> Ended:
+        """Those of some columns."""
+        return Ended(
+            self.states[:, own],
+            self.keys[:, own],
+            self.good[own],
+            self.free[own],
+            self.condition[own],
+        )
 
 
 Within = tuple["Floats", "Floats"]
@@ -188,28 +206,30 @@ class Clusters:
         """Of assemblies."""
         return int(self.met.size)
 
-    def add(self, states: Floats, isolated: Isolated) -> None:
-        """Sorts end points (columns, in the order of their starts) into the clusters; those that
-        are not known yet as `isolated` leaves them."""
-        keys = pose_keys(self.layout, states, self.carriers, by_turns=True)
-        unknown = self._left(keys)
-        fresh = states[:, unknown]
-        ended, good, condition, free = isolated(fresh)
+    def keys_of(self, states: Floats) -> Floats:
+        """What end points (columns) are told apart by (keys, columns)."""
+        return pose_keys(self.layout, states, self.carriers, by_turns=True)
+
+    def unknown(self, keys: Floats) -> NDArray[np.int64]:
+        """Which end points (columns of keys) are not known; those that are, are counted."""
+        return self._left(keys)
+
+    def add(self, tried: int, unknown: NDArray[np.int64], ended: Ended) -> None:
+        """Sorts the unknown ones of end points that were `tried`, in the order of their starts,
+        into the clusters, as they ended."""
+        good, free = ended.good, int(np.count_nonzero(ended.free))
         if self.folds:
-            singular = _near_singular(condition)
+            singular = _near_singular(ended.condition)
             free += int(np.count_nonzero(good & singular))
             good = good & ~singular
-        closing = np.ones(keys.shape[1], dtype=bool)
+        closing = np.ones(tried, dtype=bool)
         closing[unknown[~good]] = False
         order = self.closed + np.cumsum(closing)
         self.closed += int(np.count_nonzero(closing))
         self.free += free
-        moved = ended is not fresh
-        if moved:
-            keys = pose_keys(self.layout, ended, self.carriers, by_turns=True)
-        else:
-            keys = keys[:, unknown]
-        self._take(ended[:, good], keys[:, good], order[unknown[good]], condition[good])
+        if good.any():
+            states, keys = ended.states[:, good], ended.keys[:, good]
+            self._take(states, keys, order[unknown[good]], ended.condition[good])
         if int(np.count_nonzero(_near_singular(self.condition))) > tolerances.SEARCH_MOST_SINGULAR:
             self._merge_folds()
 

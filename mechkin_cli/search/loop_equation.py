@@ -43,10 +43,13 @@ from mechkin_cli.search.chain import (
     ChainMotion,
     are_parallel,
     chain_of,
+    chains_of,
     square_to,
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from mechkin_cli.plan import Layout
     from mechkin_cli.show import Floats
 
@@ -90,30 +93,43 @@ def count_roots(g: Trigonometric, error: float = tolerances.ROOT_ROUNDING) -> in
     >>> count_roots(Trigonometric(0.1, 0.0, 0.0, 1.0, 0.0))
     4
     """
-    largest = max(abs(c) for c in g)
-    if not 0.0 < largest < np.inf:
-        return None
-    g = Trigonometric(*(c / largest for c in g))
-    doubt = 5.0 * error
-    bend = abs(g.a1) + abs(g.b1) + 4.0 * (abs(g.a2) + abs(g.b2))
+    return counts_of_roots([g], [error])[0]
+
+
+def counts_of_roots(some: Sequence[Trigonometric], errors: Sequence[float]) -> list[int | None]:
+    """The same of many at once, each with its error."""
+    given = np.array(some, dtype=np.float64).reshape(len(some), 5).T
+    largest = np.abs(given).max(axis=0, initial=0.0)
+    undecided = ~((largest > 0.0) & (largest < np.inf))
+    of = given / np.where(undecided, 1.0, largest)
+    doubts = 5.0 * np.array(errors, dtype=np.float64)
+    bends = np.abs(of[1]) + np.abs(of[2]) + 4.0 * (np.abs(of[3]) + np.abs(of[4]))
     half = pi / FIRST_INTERVALS
     # an odd shift: roots of mechanisms drawn along axes do not fall on ends of intervals
-    middles: Floats = 0.1234 + 2.0 * half * np.arange(float(FIRST_INTERVALS))
-    count = 0
+    first: Floats = 0.1234 + 2.0 * half * np.arange(float(FIRST_INTERVALS))
+    owner = np.repeat(np.flatnonzero(~undecided), FIRST_INTERVALS)
+    middles = np.tile(first, owner.size // FIRST_INTERVALS)
+    counts = np.zeros(len(some), dtype=np.intp)
     while middles.size:
+        g, doubt, bend = of[:, owner], doubts[owner], bends[owner]
         value, slope = _at(g, middles)
         free = np.abs(value) - np.abs(slope) * half - 0.5 * bend * half * half > doubt
         steep = ~free & (np.abs(slope) - bend * half > 2.0 * doubt)
-        ends = [_at(g, middles[steep] + side)[0] for side in (-half, half)]
-        if (np.abs(ends[0]) <= doubt).any() or (np.abs(ends[1]) <= doubt).any():
-            return None
-        count += int(np.count_nonzero((ends[0] < 0.0) != (ends[1] < 0.0)))
-        left = middles[~free & ~steep]
+        low, high = (_at(g[:, steep], middles[steep] + side)[0] for side in (-half, half))
+        near = (np.abs(low) <= doubt[steep]) | (np.abs(high) <= doubt[steep])
+        undecided[owner[steep][near]] = True
+        changes = owner[steep][(low < 0.0) != (high < 0.0)]
+        counts += np.bincount(changes, minlength=len(some))
+        left = ~free & ~steep & ~undecided[owner]
+        owner, middles = owner[left], middles[left]
         half *= 0.5
         if half < tolerances.ROOT_LEAST_INTERVAL:
-            return None if left.size else count
-        middles = np.concatenate([left - half, left + half])
-    return count
+            undecided[owner] = True
+            break
+        owner = np.concatenate([owner, owner])
+        middles = np.concatenate([middles - half, middles + half])
+    pairs = zip(counts.tolist(), undecided.tolist(), strict=True)
+    return [None if open_ else count for count, open_ in pairs]
 
 
 def count_polynomial_roots(
@@ -127,9 +143,19 @@ def count_polynomial_roots(
     >>> count_polynomial_roots((-6.0, 11.0, -6.0, 1.0)), count_polynomial_roots((1.0, 0.0, 1.0))
     (3, 0)
     """
+    g, at_infinity = _on_circle(coefficients)
+    if g is None:
+        return 0 if coefficients[0] != 0.0 else None
+    count = count_roots(g, error)
+    return None if count is None else count - at_infinity
+
+
+def _on_circle(coefficients: tuple[float, ...]) -> tuple[Trigonometric | None, int]:
+    """A polynomial of the tangent of half an angle as one of the angle, None of a constant; and how
+    many roots it has at infinity."""
     degree = max((k for k, c in enumerate(coefficients) if c != 0.0), default=0)
     if degree == 0:
-        return 0 if coefficients[0] != 0.0 else None
+        return None, 0
     # cos^2, sin cos and sin^2 of half the angle; an odd degree has a root at infinity, too
     parts = Trigonometric(0.5, 0.5), Trigonometric(0.0, 0.0, 0.5), Trigonometric(0.5, -0.5)
     g = Trigonometric()
@@ -137,16 +163,16 @@ def count_polynomial_roots(
         high = power // 2 if degree > 2 else 0
         term = parts[high].times(parts[power - high]) if degree > 2 else parts[power]
         g = g.plus(term, c)
-    count = count_roots(g, error)
-    return None if count is None else count - degree % 2
+    return g, degree % 2
 
 
-def _at(g: Trigonometric, angles: Floats) -> tuple[Floats, Floats]:
-    """Values and slopes."""
+def _at(g: Floats, angles: Floats) -> tuple[Floats, Floats]:
+    """Values and slopes of polynomials (5, number), each at its angle (number,)."""
+    a0, a1, b1, a2, b2 = g
     c, s = functions.cos(angles), functions.sin(angles)
     c2, s2 = c * c - s * s, 2.0 * s * c
-    value = g.a0 + g.a1 * c + g.b1 * s + g.a2 * c2 + g.b2 * s2
-    slope = g.b1 * c - g.a1 * s + 2.0 * (g.b2 * c2 - g.a2 * s2)
+    value = a0 + a1 * c + b1 * s + a2 * c2 + b2 * s2
+    slope = b1 * c - a1 * s + 2.0 * (b2 * c2 - a2 * s2)
     return value, slope
 
 
@@ -409,15 +435,40 @@ def count_assemblies(layout: Layout, number: int, base: Floats) -> tuple[int | N
     """A block's number of assemblies, upstream states as in `base` (states,), None where rounding
     leaves it open, and the most that such a loop has; None for loops of other kinds."""
     chain = chain_of(layout, number, base)
-    equation = None if chain is None else _equation_of(chain)
-    if equation is None:
-        return None
-    polynomial, regularity, most = equation
-    if polynomial is None or regularity < tolerances.ROOT_REGULAR:
-        return None, most
+    return _counts_of([chain], number)[0]
+
+
+def counts_of_assemblies(
+    layout: Layout, number: int, bases: Floats
+) -> list[tuple[int | None, int] | None]:
+    """The same at many places (columns of `bases`, (states, places))."""
+    chains = chains_of(layout, number, bases)
+    return [None] * bases.shape[1] if chains is None else _counts_of(chains, number)
+
+
+def _counts_of(chains: Sequence[Chain | None], number: int) -> list[tuple[int | None, int] | None]:
     # the upstream states of the first block are inputs, those of others are solved for
     error = tolerances.ROOT_STATE_ERROR if number else tolerances.ROOT_ROUNDING
-    doubt = error / (regularity * regularity)
-    if isinstance(polynomial, Trigonometric):
-        return count_roots(polynomial, doubt), most
-    return count_polynomial_roots(polynomial, doubt), most
+    found: list[tuple[int | None, int] | None] = [None] * len(chains)
+    ahead = []
+    for k, chain in enumerate(chains):
+        equation = None if chain is None else _equation_of(chain)
+        if equation is None:
+            continue
+        polynomial, regularity, most = equation
+        found[k] = None, most
+        if polynomial is None or regularity < tolerances.ROOT_REGULAR:
+            continue
+        if isinstance(polynomial, Trigonometric):
+            g, beside = polynomial, 0
+        else:
+            circle, beside = _on_circle(polynomial)
+            if circle is None:
+                found[k] = 0 if polynomial[0] != 0.0 else None, most
+                continue
+            g = circle
+        ahead.append((k, g, beside, most, error / (regularity * regularity)))
+    counts = counts_of_roots([each[1] for each in ahead], [each[4] for each in ahead])
+    for (k, _, beside, most, _), count in zip(ahead, counts, strict=True):
+        found[k] = None if count is None else count - beside, most
+    return found

@@ -22,6 +22,7 @@ from mechkin_cli.record import NamedTuple
 from mechkin_cli.search.chain import most_of_block
 from mechkin_cli.search.clusters import (
     Clusters,
+    Ended,
     Within,
     counted_turns,
     first_of_each,
@@ -33,7 +34,7 @@ from mechkin_cli.search.clusters import (
     unknown_states,
     upstream_states,
 )
-from mechkin_cli.search.loop_equation import count_assemblies
+from mechkin_cli.search.loop_equation import counts_of_assemblies
 from mechkin_cli.session import Ask, RowInputs, Session, Structure, lies_in_family, run
 
 if TYPE_CHECKING:
@@ -78,7 +79,8 @@ class PlaceSearch:
         self.real: int | None = None
 
     def learn(self, count: tuple[int | None, int] | None) -> None:
-        """Takes the loop's number of assemblies and the most it may have (`count_assemblies`)."""
+        """Takes the loop's number of assemblies and the most it may have
+        (`counts_of_assemblies`)."""
         if count is not None:
             self.real, most = count
             self.most = most if self.most is None else min(most, self.most)
@@ -133,9 +135,10 @@ def search_block(
             search_round(request, number, states, generator, [searches[i] for i in places])
         if not tried and request.within is None:
             # a box holds some of them, and their number is not known
-            for i, search in enumerate(searches):
-                if not search.is_complete:
-                    search.learn(count_assemblies(request.layout, number, bases[:, i]))
+            open_ = [i for i, search in enumerate(searches) if not search.is_complete]
+            counts = counts_of_assemblies(request.layout, number, bases[:, open_])
+            for i, count in zip(open_, counts, strict=True):
+                searches[i].learn(count)
         active = [i for i in active if not searches[i].is_over]
         clusters = [search.clusters for search in searches]
         if any(c.closed + c.free for c in clusters):
@@ -187,32 +190,40 @@ def search_round(
     turned = np.abs(states[threads] - middle[threads, None]) <= most_turn(request.turns)
     good = closed & turned.all(axis=0) & on_tracks(layout, number, states)
     share = states.shape[1] // len(searches)
-    for i, search in enumerate(searches):
-        part = slice(i * share, (i + 1) * share)
+    closing = states[:, good]
+    keys = searches[0].clusters.keys_of(closing)
+    last = np.cumsum(good)[share - 1 :: share].tolist()
+    parts = list(zip([0, *last], last, strict=False))
+    unknown = [
+        search.clusters.unknown(keys[:, first:end])
+        for search, (first, end) in zip(searches, parts, strict=True)
+    ]
+    fresh = [first + some for (first, _), some in zip(parts, unknown, strict=True)]
+    ended = _ended(request, number, closing[:, np.concatenate(fresh)], searches[0].clusters)
+    done = 0
+    for i, (search, (first, end), some) in enumerate(zip(searches, parts, unknown, strict=True)):
         clusters = search.clusters
-        clusters.closest = min(clusters.closest, float(np.min(residual[part])))
+        closest = float(np.min(residual[i * share : (i + 1) * share]))
+        clusters.closest = min(clusters.closest, closest)
         clusters.tried += share
-        clusters.add(
-            states[:, part][:, good[part]], lambda ended: _isolated(request, number, ended)
-        )
+        clusters.add(end - first, some, ended.part(slice(done, done + some.size)))
+        done += some.size
 
 
-def _isolated(
-    request: BlockSearch, number: int, states: Floats
-) -> tuple[Floats, Bools, Floats, int]:
-    """The isolated assemblies of a block among end points of its search, the conditions of all
-    points, and how many assemblies are not isolated: places where the block moves with all else
-    held, or singular ones."""
+def _ended(request: BlockSearch, number: int, states: Floats, clusters: Clusters) -> Ended:
+    """The end points of a block's search; not isolated are assemblies at which the block moves with
+    all else held, or singular ones."""
     count = states.shape[1]
     if count == 0:
-        return states, np.ones(count, dtype=bool), np.zeros(count), 0
+        none = np.ones(count, dtype=bool)
+        return Ended(states, clusters.keys_of(states), none, none, np.zeros(count))
     values = np.repeat(request.inputs[:, None], count, axis=1)
     ask = Ask(Demand.CONDITION, iterations=20, only=number)
     batch = run(request.plan, RowInputs(values, states), ask)
     assert batch.condition is not None
     regular = batch.condition < tolerances.SEARCH_CONDITION
-    free = int(np.count_nonzero(batch.good & ~regular))
-    return batch.states, batch.good & regular, batch.condition, free
+    keys = clusters.keys_of(batch.states)
+    return Ended(batch.states, keys, batch.good & regular, batch.good & ~regular, batch.condition)
 
 
 def ends(plan: Plan, number: int, values: Floats, states: Floats) -> tuple[Floats, Bools]:

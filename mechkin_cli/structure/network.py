@@ -22,7 +22,7 @@ freedoms of its order beside it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
 from mechkin_cli.exact import part
@@ -270,18 +270,31 @@ def incidence(connections: Sequence[Connection]) -> dict[str, list[int]]:
 def depths(connections: Sequence[Connection], known: Mapping[str, int]) -> dict[str, int]:
     """Number of connections from ground to each link at some connections that is reached from
     those whose number is known."""
+    depth = {
+        link: known[link] for c in connections for link in (c.first, c.second) if link in known
+    }
+    for link, before in outward(connections, known).items():
+        depth[link] = depth[before] + 1
+    return depth
+
+
+def outward(connections: Sequence[Connection], known: Container[str]) -> dict[str, str]:
+    """The link from which each link at some connections is reached, breadth first from those that
+    are known."""
     ends: dict[str, list[str]] = {}
     for c in connections:
         ends.setdefault(c.first, []).append(c.second)
         ends.setdefault(c.second, []).append(c.first)
-    depth = {link: known[link] for link in ends if link in known}
-    front = list(depth)
+    front = [link for link in ends if link in known]
+    seen = set(front)
+    before: dict[str, str] = {}
     for link in front:
         for other in ends[link]:
-            if other not in depth:
-                depth[other] = depth[link] + 1
+            if other not in seen:
+                seen.add(other)
+                before[other] = link
                 front.append(other)
-    return depth
+    return before
 
 
 class Subgraph(NamedTuple):

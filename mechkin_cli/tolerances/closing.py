@@ -72,6 +72,11 @@ MOST_COMPARED_TREES: Final = 400
 """Choices of closing joints of equal size that are compared for evenness; of more, single
 exchanges."""
 
+MOST_LOOP_JOINTS: Final = 64
+"""Joints of the tree that a loop may pass before it is closed where it is shortest: three platforms
+on each other, or scissors of thirty storeys. Longer ones are as long as the machine if they lead to
+ground, and the work goes with the square of its loops."""
+
 REFINEMENT_ROUNDS: Final = 12
 """Rounds of telling links apart by their neighbours: each doubles what is seen of the structure."""
 

@@ -2,9 +2,9 @@
 
     python tests/benchmark/figures.py [NAME ...] [--rounds N] [--rows N] [--json]
 
-NAMEs: platform, million, verdicts, closing, wheels, threads, chains; without any, all of
-them. Times are by the clock on the wall, as threads and files count, those of `wheels` by the
-thread's; run it on an otherwise idle machine.
+NAMEs: platform, million, verdicts, closing, wheels, threads, chains, loops, storeys; without any,
+all of them. Times are by the clock on the wall, as threads and files count, those of `wheels` by
+the thread's, those of `loops` and `storeys` by the process's; run it on an otherwise idle machine.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
+from time import perf_counter, process_time
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
@@ -34,12 +34,14 @@ from benchmark.kernel_case import (
 )
 from benchmark.process import command
 from benchmark.specimens import sevenr_specimen
+from structure.networks import Network, scissors, windows
 
 import mechkin_cli as mk
 from benchmarks import rcsr
 from mechkin_cli.bench.measurement import Timing, in_turns
 from mechkin_cli.bench.report import Cell, ReportColumn, ReportTable, machine, plain_text
 from mechkin_cli.bench.scene import ALONE
+from mechkin_cli.mobility import drawn_faults
 from mechkin_cli.plan.records import Demand
 from mechkin_cli.session import Ask
 from mechkin_cli.sweep import analyze, at_once, follow_rows
@@ -301,7 +303,63 @@ def chains(rounds: int, _: int) -> ReportTable:
     return ReportTable("chains", "load and graph of chains of four-bars", COLUMNS, rows, ())
 
 
-FIGURES = {f.__name__: f for f in (platform, million, verdicts, closing, wheels, threads, chains)}
+def among_few_and_many(
+    case: str, question: Callable[[int], Callable[[], object]], few: int, many: int, rounds: int
+) -> dict[str, Cell]:
+    """What one of many costs against one of few."""
+    calls = {str(count): question(count) for count in (few, many)}
+    times = in_turns(calls, rounds, process_time)
+    ratio = times[str(many)].median / times[str(few)].median * few / many
+    spread = max(timing.spread for timing in times.values())
+    return row(f"{case}: one of {many} against one of {few}", ratio, "", spread, 2.0)
+
+
+def loops(rounds: int, _: int) -> ReportTable:
+    """Machines of many loops: what each costs where there are ten thousand."""
+
+    def whole(network: Callable[[int], Network], count: int) -> Callable[[], object]:
+        text = network(count).text
+        return lambda: mk.loads(text).analyze()
+
+    def moving(network: Callable[[int], Network], count: int) -> Callable[[], object]:
+        model = mk.loads(network(count).text)
+        return lambda: drawn_faults(model.session)
+
+    rows = []
+    for name, network in {"four-bars": windows, "scissors": scissors}.items():
+        rows.append(
+            among_few_and_many(
+                f"{name}, load and run", partial(whole, network), 200, 10_000, rounds
+            )
+        )
+        rows.append(
+            among_few_and_many(f"{name}, check", partial(moving, network), 200, 10_000, rounds)
+        )
+    return ReportTable("loops", "a loop in machines of few and many", COLUMNS, rows, ())
+
+
+def storeys(rounds: int, _: int) -> ReportTable:
+    """Scissors, whose assemblies double with every storey: what each assembly costs."""
+
+    def modes(count: int) -> Callable[[], object]:
+        text = scissors(1 + count.bit_length() - 1).text
+        return lambda: mk.loads(text).modes()
+
+    def ranges(count: int) -> Callable[[], object]:
+        text = scissors(1 + count.bit_length() - 1).text
+        return lambda: mk.loads(text).ranges()
+
+    rows = [
+        among_few_and_many("modes of scissors", modes, 64, 4096, rounds),
+        among_few_and_many("ranges of scissors", ranges, 16, 128, rounds),
+    ]
+    return ReportTable("storeys", "an assembly of few and of many", COLUMNS, rows, ())
+
+
+FIGURES = {
+    f.__name__: f
+    for f in (platform, million, verdicts, closing, wheels, threads, chains, loops, storeys)
+}
 
 
 def tables(names: list[str], rounds: int, count: int) -> Iterator[ReportTable]:

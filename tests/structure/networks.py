@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -34,6 +35,13 @@ class Network(NamedTuple):
     @property
     def loops(self) -> int:
         return len(self.joints) - len(self.links)
+
+    @property
+    def plane_text(self) -> str:
+        """As a file in a plane, of revolutes and slides drawn at z = 0."""
+        text = self.text.replace(", axis: [0, 0, 1]", "")
+        text = re.sub(r"(point|axis): \[([^,\]]*), ([^,\]]*), 0\]", r"\1: [\2, \3]", text)
+        return text.replace("format: 1\n", "format: 1\nplane: xy\n")
 
     @property
     def text(self) -> str:
@@ -77,6 +85,35 @@ def windows(count: int) -> Network:
         joints[f"A{k}"] = turn(f"c{k}", f"b{k}", (x + 0.1, 1 + 0.1 * (k % 3), 0))
         joints[f"B{k}"] = turn(f"b{k}", f"c{k + 1}", (x + 4.3, 1.5, 0))
         joints[f"O{k + 1}"] = turn("ground", f"c{k + 1}", (x + 4, 0, 0))
+    return Network(links, joints, ["O0.theta"])
+
+
+def scissors(count: int) -> Network:
+    """Storeys of two crossed bars, the lowest on a pin and a shoe. Bars lead from (0, 0.4 k) to
+    (1, 0.4 k + 0.4), or from (1, 0.4 k) to (0, 0.4 k + 0.4)."""
+    links = ["shoe"]
+    joints = {
+        "A0": turn("ground", "a0", (0, 0, 0)),
+        "S": slide("ground", "shoe", (1, 0, 0), (1, 0, 0)),
+        "B0": turn("shoe", "b0", (1, 0, 0)),
+    }
+    for k in range(count):
+        links += [f"a{k}", f"b{k}"]
+        joints[f"M{k}"] = turn(f"a{k}", f"b{k}", (0.5, 0.4 * k + 0.2, 0))
+    for k in range(1, count):
+        joints[f"L{k}"] = turn(f"b{k - 1}", f"a{k}", (0, 0.4 * k, 0))
+        joints[f"R{k}"] = turn(f"a{k - 1}", f"b{k}", (1, 0.4 * k, 0))
+    return Network(links, joints, ["A0.theta"])
+
+
+def parallelograms(count: int) -> Network:
+    """Cranks of length 1 that couplers of length 4 keep parallel, one after the other."""
+    links, joints = ["c0"], {"O0": turn("ground", "c0", (0, 0, 0))}
+    for k in range(count):
+        links += [f"b{k}", f"c{k + 1}"]
+        joints[f"A{k}"] = turn(f"c{k}", f"b{k}", (4 * k, 1, 0))
+        joints[f"B{k}"] = turn(f"b{k}", f"c{k + 1}", (4 * k + 4, 1, 0))
+        joints[f"O{k + 1}"] = turn("ground", f"c{k + 1}", (4 * k + 4, 0, 0))
     return Network(links, joints, ["O0.theta"])
 
 

@@ -96,21 +96,40 @@ bool Arc::look(const double* guess, bool complete, const std::vector<double>& ra
 }
 
 // Of one block as the kernel has it; of several by rates of one unknown after the other, since one block's equations
-// read the unknowns of those before it.
+// read the unknowns of those before it: each in a lane of its own.
 Matrix Arc::own_jacobian(const Node& node) {
   int blocks = 0;
   for (char own : own_) blocks += own;
   if (blocks == 1) return block_matrix(node.jacobian, first_);
   Matrix j(rows_, size_);
-  std::vector<double> rates(size_, 0.0);
-  const std::vector<double> none(size_, 0.0);
-  for (int u = 0; u < size_; ++u) {
-    rates[u] = 1.0;
-    Node copy = node;
-    Looked seen;
-    look(node.state.data(), false, rates, 0.0, none, 0.0, 0, DEMAND_VELOCITY, &copy, &seen);
-    for (int i = 0; i < rows_; ++i) j(i, u) = seen.first[i];
-    rates[u] = 0.0;
+  path_.at(node.sigma, &point_);
+  std::vector<unsigned char> use(plan_.blocks);
+  for (int b = 0; b < plan_.blocks; ++b) use[b] = own_[b] ? BLOCK_HELD : before_[b] ? BLOCK_SOLVED : BLOCK_LEFT;
+  for (int begin = 0; begin < size_; begin += unit_.lanes) {
+    const int rows = std::min(unit_.lanes, size_ - begin);
+    const auto in_rows = [rows](const std::vector<double>& one) {
+      std::vector<double> every;
+      every.reserve(one.size() * rows);
+      for (double x : one) every.insert(every.end(), rows, x);
+      return every;
+    };
+    const std::vector<double> inputs = in_rows(point_.inputs), guess = in_rows(node.state);
+    const std::vector<double> still((std::size_t)plan_.inputs * rows, 0.0), none((std::size_t)size_ * rows, 0.0);
+    std::vector<double> rates = none, states(guess.size()), velocities((std::size_t)plan_.columns * rows);
+    for (int k = 0; k < rows; ++k) rates[(std::size_t)(begin + k) * rows + k] = 1.0;
+    std::vector<double> equations((std::size_t)rows_ * rows), first(equations), residual(rows), correction(rows);
+    std::vector<unsigned char> flags(rows);
+    const Held held = {use.data(), false, rates.data(), none.data(), equations.data(), first.data(), nullptr};
+    Request r = {};
+    r.rows = rows, r.held = &held;
+    r.inputs = inputs.data(), r.rates = still.data(), r.guess = guess.data();
+    r.states = states.data(), r.velocities = velocities.data();
+    r.residual = residual.data(), r.correction = correction.data(), r.flags = flags.data();
+    r.demand = DEMAND_VELOCITY;
+    r.tight = limits_.tight, r.coarse = limits_.coarse, r.accept = limits_.accept;
+    unit_.run_row(plan_, r, memory_.data());
+    for (int i = 0; i < rows_; ++i)
+      for (int k = 0; k < rows; ++k) j(i, begin + k) = first[(std::size_t)i * rows + k];
   }
   return j;
 }
