@@ -79,27 +79,33 @@ class TextRoom:
     written to their files before the next ones take their place."""
 
     def __init__(self, size: int = TEXT_ROOM) -> None:
-        self._memory = np.empty(size, np.uint8)
+        self._size = size  # for each thread
+        self._memory = np.empty(0, np.uint8)
 
     def pieces(
         self,
         rows: int,
         write: Callable[[int, NDArray[np.uint8]], tuple[int, list[tuple[int, int]]]],
+        threads: int = 1,
     ) -> Iterator[memoryview]:
         """The text of all rows; each piece is to be used before the next one is asked for.
 
         Args:
             write: takes the first row and the memory, and says the row behind the last one for
                 which there was room, with the starts and sizes of the pieces.
+            threads: that write.
         """
         row = 0
         while row < rows:
-            end, pieces = write(row, self._memory)
+            size = self._size * threads
+            if self._memory.size < size:
+                self._memory = np.empty(size, np.uint8)
+            end, pieces = write(row, self._memory[:size])
             if end == row:  # not even one line
-                self._memory = np.empty(2 * self._memory.size, np.uint8)
+                self._size *= 2
             view = self._memory.data
-            for start, size in pieces:
-                yield view[start : start + size]
+            for start, count in pieces:
+                yield view[start : start + count]
             row = end
 
 
@@ -133,6 +139,7 @@ def csv_lines(
             decimal_comma=style.decimal_comma,
             threads=threads,
         ),
+        threads,
     )
 
 

@@ -119,7 +119,7 @@ class _JsonLinesFile:
         def lines(first: int, memory: Any) -> tuple[int, list[tuple[int, int]]]:
             return _kernel.json_lines(self._keys, cells, first, memory, self._whole, threads)
 
-        for piece in self._room.pieces(block[0].rows if block else 0, lines):
+        for piece in self._room.pieces(block[0].rows if block else 0, lines, threads):
             self._file.write(piece)
 
     def end(self) -> None:

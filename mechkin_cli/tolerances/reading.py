@@ -135,9 +135,10 @@ MOST_TEXT_THREADS: Final = 64
 
 # --- files of tables -----------------------------------------------------------------------------
 
-TEXT_ROOM: Final = 8 << 20
-"""Bytes of memory that lines of a table are written into at a time: a quarter of a million numbers,
-which are worth the threads that write them, in a part of a processor's cache."""
+TEXT_ROOM: Final = 2 << 20
+"""Bytes of memory, for each thread, that lines of a table are written into at a time: sixty
+thousand numbers, which are worth a call of the thread, and still lie in a processor's cache when
+they go on to a checksum and a file."""
 
 PACKED_PART: Final = 1 << 20
 """Bytes that are packed at a time, so that a packed file depends on its text alone, and not on the
