@@ -46,7 +46,7 @@ def test_parallel_cranks_are_a_compound_pendulum(loops: int, rate: float) -> Non
     assert f"and {int(np.floor(turned / np.pi + 0.5)) - 4} more" in str(note)
 
 
-@pytest.mark.parametrize("loops", [20, 40])
+@pytest.mark.parametrize("loops", [20, 40, 120])
 def test_many_parallel_cranks_pass_at_once(loops: int) -> None:
     text = parallel_cranks(
         loops,
