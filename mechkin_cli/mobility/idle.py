@@ -238,7 +238,8 @@ def _common_motions(configuration: Configuration, links: set[str], border: list[
     one = twists[number[min(links)]].copy()
     for link in links:
         twists[number[link]] -= one
-    rest = twists[[number[link] for link in body.links]].reshape(-1, len(moving))
+    rest = twists[[number[link] for link in body.links]]
+    rest = rest.reshape(rest.shape[0] * rest.shape[1], len(moving))
     matrix = np.concatenate([configuration.jacobian[:, moving], rest])
     # what these joints do not move says nothing
     matrix = matrix[np.any(matrix != 0.0, axis=1)]

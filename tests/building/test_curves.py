@@ -100,8 +100,8 @@ BAD = [
     ("t,x\n0,0\n1e-320,1\n2,3\n", "m.yaml:2:6: error: the curve through this table is too steep"),
     (b"t,x\n0,\xff\n", "t.csv:2:1: error: the byte 0xFF is not UTF-8 text; save the file"),
     (
-        "t,x\n" + "0,0\n" * 300_000,
-        "m.yaml:2:6: error: t.csv is too large for a table: more than 1 MiB (limit 1048576 bytes)",
+        "t,x\n" + "0,0\n" * 1_100_000,
+        "m.yaml:2:6: error: t.csv is too large for a table: more than 4 MiB (limit 4194304 bytes)",
     ),
 ]
 
