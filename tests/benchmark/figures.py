@@ -315,25 +315,23 @@ def among_few_and_many(
 
 
 def loops(rounds: int, _: int) -> ReportTable:
-    """Machines of many loops: what each costs where there are ten thousand."""
+    """Machines of many loops: what each costs where there are thousands."""
 
     def whole(network: Callable[[int], Network], count: int) -> Callable[[], object]:
         text = network(count).text
         return lambda: mk.loads(text).analyze()
 
     def moving(network: Callable[[int], Network], count: int) -> Callable[[], object]:
-        model = mk.loads(network(count).text)
-        return lambda: drawn_faults(model.session)
+        text = network(count).text
+        return lambda: drawn_faults(mk.loads(text).session)
 
     rows = []
     for name, network in {"four-bars": windows, "scissors": scissors}.items():
         rows.append(
-            among_few_and_many(
-                f"{name}, load and run", partial(whole, network), 200, 10_000, rounds
-            )
+            among_few_and_many(f"{name}, load and run", partial(whole, network), 100, 2_000, rounds)
         )
         rows.append(
-            among_few_and_many(f"{name}, check", partial(moving, network), 200, 10_000, rounds)
+            among_few_and_many(f"{name}, check", partial(moving, network), 100, 2_000, rounds)
         )
     return ReportTable("loops", "a loop in machines of few and many", COLUMNS, rows, ())
 
