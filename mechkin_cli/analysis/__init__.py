@@ -24,6 +24,6 @@ __getattr__, __dir__ = lazy_names(
         "certificate": "Certificate",
         "design": "Design",
         "runs": "a_packing input_values respond response_name run_name run_sweep stream_sweep",
-        "stream": "Block Stream",
+        "stream": "Block PartRows Stream",
     },
 )

@@ -34,9 +34,8 @@ from mechkin_cli.tables import (
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
-    from mechkin_cli.analysis import Stream
-    from mechkin_cli.analysis.stream import PartRows
-    from mechkin_cli.cli.analyze import AnalyzeCommand
+    from mechkin_cli.analysis import PartRows, Stream
+    from mechkin_cli.cli.analyze_options import AnalyzeCommand
     from mechkin_cli.cli.progress import Tell
     from mechkin_cli.model import Model
     from mechkin_cli.tables import OutputFile, Summary, TableHeading, TableLayout
@@ -134,9 +133,10 @@ def _progress(tell: Tell, rows: int) -> Callable[[int], None]:
     begun = monotonic()
 
     def told(done: int) -> None:
-        rate = done / max(monotonic() - begun, 1e-9)
-        left = clock((rows - done) / rate)
-        tell(f"{done:,} of {rows:,} rows, {rate:,.0f} a second, {left} left")
+        seconds = monotonic() - begun
+        rate = done / seconds if seconds > 0.0 else 0.0
+        left = f", {rate:,.0f} a second, {clock((rows - done) / rate)} left" if rate else ""
+        tell(f"{done:,} of {rows:,} rows{left}")
 
     return told
 

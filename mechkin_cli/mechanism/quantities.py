@@ -184,7 +184,7 @@ class Catalogue(Mapping[str, Wanted]):
     def __getitem__(self, name: str) -> Wanted:
         if self._every is not None:
             return self._every[name]
-        word = first_word(name)
+        word = name.partition(".")[0]
         if word not in self._own:
             self._own[word] = self._of(word)
         return self._own[word][name]

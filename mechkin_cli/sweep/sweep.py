@@ -138,6 +138,13 @@ def analyze(
     return Sweep(session, quantities, verdicts=verdicts, unasked=unasked).run()
 
 
+@remembered
+def _wanted(session: Session, names: tuple[str, ...]) -> list[Wanted]:
+    """The quantities of some names, with those that they are read for."""
+    known = session.problem.quantities() if names else {}
+    return [known[name] for name in read_for(names, known)]
+
+
 class Sweep:
     """A sweep that is to be run; arguments and errors are those of `analyze`."""
 
@@ -149,9 +156,7 @@ class Sweep:
         verdicts: bool = True,
         unasked: Collection[str] = (),
     ) -> None:
-        names = list(dict.fromkeys(quantities))
-        known = session.problem.quantities() if names else {}
-        self.asked = [known[name] for name in read_for(names, known)]
+        self.asked = _wanted(session, tuple(dict.fromkeys(quantities)))
         self.unasked = unasked
         if session.problem.follow is not None:
             session = followed_session(session, [*self.asked, *limited(session.problem)])
