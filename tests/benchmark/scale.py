@@ -1,0 +1,133 @@
+"""Runs of any length: time and memory of sweeps of 10^2 to 10^8 rows as whole processes, beside
+polars and pyarrow writing the same numbers; prints the tables of docs/scale.md.
+
+    python -P tests/benchmark/scale.py [--most ROWS] [--json]
+
+Ten columns of RCSR: positions, rates, an effort and a reaction. Times are by the processor's
+clock, as the machine may be shared; slopes are of log time over log rows, between the two largest
+runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+HERE = Path(__file__).resolve().parent
+RCSR = HERE.parents[1] / "mechanisms" / "dissertation" / "rcsr.yaml"
+COLUMNS = (
+    *("O1.theta", "O2.theta", "O4.theta", "O4.theta_dot", "O4.theta_ddot"),
+    *("O1.effort", "O2.s", "O2.s_dot", "O4.force.x", "O4.force.y"),
+)
+WAYS = {
+    "csv": ["--format", "csv"],
+    "parquet": ["--format", "parquet"],
+    "summary only": ["--summary-only"],
+}
+
+
+def long_text(rows: int) -> str:
+    """RCSR with so many rows over its range, and one table of ten columns."""
+    text = RCSR.read_text(encoding="utf-8")
+    motion = r"(\{from: [^,]*, to: [^,]*, )step: [^,}]*"
+    text = re.split(r"(?m)^tables:", re.sub(motion, rf"\1count: {rows}", text, count=1))[0]
+    columns = "".join(f"      - {{label: c{k}, value: {one}}}\n" for k, one in enumerate(COLUMNS))
+    return f"{text}tables:\n  - name: t\n    columns:\n{columns}"
+
+
+def cost(command: Sequence[str]) -> tuple[float, float]:
+    """Seconds of the processor and megabytes at most of a process."""
+    pid = os.posix_spawn(command[0], command, dict(os.environ))
+    _, status, usage = os.wait4(pid, 0)
+    if status:
+        raise SystemExit(f"{' '.join(command)} failed")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024.0
+
+
+PEERS = """
+import json, sys
+from time import process_time
+import polars, pyarrow.parquet as parquet
+
+def timed(work):
+    start = process_time()
+    work()
+    return process_time() - start
+
+table = parquet.read_table(sys.argv[1] + "/t.parquet")
+frame = polars.from_arrow(table)
+csv = timed(lambda: frame.write_csv(sys.argv[1] + "/peer.csv"))
+own = sys.argv[1] + "/peer.parquet"
+print(json.dumps([csv, timed(lambda: parquet.write_table(table, own, compression="zstd"))]))
+"""
+"""In a process of its own: the memory of a process counts for those that it begins."""
+
+
+def peers(folder: Path) -> tuple[float, float]:
+    """Seconds that polars and pyarrow take to write the table that stands in a folder."""
+    command = [sys.executable, "-P", "-c", PEERS, str(folder)]
+    found = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    csv, parquet = json.loads(found)
+    return csv, parquet
+
+
+def measured(most: int) -> list[dict[str, float]]:
+    """A line for each number of rows."""
+    lines = []
+    for rows in (10**k for k in range(2, round(math.log10(most)) + 1)):
+        line: dict[str, float] = {"rows": rows}
+        with TemporaryDirectory() as name:
+            folder = Path(name)
+            path = folder / "rcsr.yaml"
+            path.write_text(long_text(rows), encoding="utf-8")
+            for way, options in WAYS.items():
+                program = [sys.executable, "-P", "-m", "mechkin_cli", "analyze", str(path)]
+                out = ["--quiet", "--out", str(folder / way.split()[0])]
+                line[way], line[f"{way} MB"] = cost([*program, *options, *out])
+            line["polars csv"], line["pyarrow parquet"] = peers(folder / "parquet")
+        lines.append(line)
+        print(json.dumps(line), file=sys.stderr, flush=True)
+    return lines
+
+
+def page(lines: Sequence[dict[str, float]]) -> str:
+    """The table, as docs/scale.md has it."""
+    heads = ["rows"]
+    for way in WAYS:
+        heads += [f"{way}, s", "MB"]
+    heads += ["polars `write_csv`, s", "pyarrow, zstd, s"]
+    found = [f"| {' | '.join(heads)} |", f"|{'---|' * len(heads)}"]
+    for line in lines:
+        cells = [f"{line['rows']:,.0f}"]
+        for way in WAYS:
+            cells += [f"{line[way]:.2f}", f"{line[f'{way} MB']:.0f}"]
+        cells += [f"{line['polars csv']:.2f}", f"{line['pyarrow parquet']:.2f}"]
+        found.append(f"| {' | '.join(cells)} |")
+    if len(lines) > 1:
+        before, last = lines[-2:]
+        way = math.log(last["rows"] / before["rows"])
+        slopes = [f"{one} {math.log(last[one] / before[one]) / way:.2f}" for one in WAYS]
+        found += ["", f"Slopes of the last step: {', '.join(slopes)}."]
+    return "\n".join(found)
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--most", type=float, default=1e7, help="rows of the longest run")
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    lines = measured(round(options.most))
+    print(json.dumps(lines) if options.json else page(lines))
+
+
+if __name__ == "__main__":
+    main()
