@@ -184,26 +184,23 @@ def places_of(
     """Rows at the parameters `at` (rows,), where the inputs are `values` (inputs, rows) in SI, with
     the ends of cells between them."""
     ends = _Ends(formula, cells)
-    rows: list[int] = [0]
-    places: list[float] = [float(at[0])]
-    columns: list[Floats] = [values[:, 0]]
-    between: list[int] = []
-
-    def put(row: int, place: float, column: Floats, cell: int) -> None:
-        rows.append(row)
-        places.append(place)
-        columns.append(column)
-        between.append(cell)
-
-    for row in range(1, at.size):
-        here, there = float(at[row - 1]), float(at[row])
-        for edge in ends.passed(here, there):
-            before, behind = ends.sides(edge, there > here)
-            place = float(cells.edges[edge])
-            put(-1, place, ends.value(before, place), before)
-            if ends.jumps(edge):
-                put(-1, place, ends.value(behind, place), -1)
-        put(row, there, values[:, row], ends.cell(float(places[-1]), there))
+    between = ends.cells_between(at[:-1], at[1:])
+    # rows as they are, up to a step that passes ends of cells, which come between
+    rows, places, columns, passed = [], [], [], []
+    begin = 0
+    for step in ends.steps_that_pass(at):
+        here, there = float(at[step]), float(at[step + 1])
+        own = ends.places(here, there)
+        rows += [np.arange(begin, step + 1), np.full(len(own), -1)]
+        places += [at[begin : step + 1], np.array([place for place, _, _ in own])]
+        columns += [values[:, begin : step + 1], *(column[:, None] for _, column, _ in own)]
+        onto = ends.cell(own[-1][0], there)
+        passed += [between[begin:step], np.array([*(cell for _, _, cell in own), onto])]
+        begin = step + 1
+    rows.append(np.arange(begin, at.size))
+    places.append(at[begin:])
+    columns.append(values[:, begin:])
+    passed.append(between[begin:])
     return Course(
         parameter,
         formula.tape,
@@ -212,10 +209,10 @@ def places_of(
         cells.constants,
         cells.ways,
         cells.powers,
-        np.array(rows),
-        np.array(places),
-        np.stack(columns, axis=1),
-        np.array(between),
+        np.concatenate(rows),
+        np.concatenate(places),
+        np.concatenate(columns, axis=1),
+        np.concatenate(passed),
     )
 
 
@@ -248,6 +245,33 @@ class _Ends:
     def __init__(self, formula: Formula, cells: Cells) -> None:
         self.formula, self.cells = formula, cells
         self._jumps: dict[int, bool] = {}
+
+    def steps_that_pass(self, at: Floats) -> list[int]:
+        """The numbers of the rows behind which edges lie strictly between a row and the next."""
+        low, high = np.minimum(at[:-1], at[1:]), np.maximum(at[:-1], at[1:])
+        edges = self.cells.edges
+        steps: list[int] = np.flatnonzero(
+            edges.searchsorted(high) > edges.searchsorted(low, side="right")
+        ).tolist()
+        return steps
+
+    def places(self, here: float, there: float) -> list[tuple[float, Floats, int]]:
+        """The places at the edges between two parameters in the order in which they are passed,
+        with the inputs there and the cell in front; twice where the inputs jump, with -1."""
+        found = []
+        for edge in self.passed(here, there):
+            before, behind = self.sides(edge, there > here)
+            place = float(self.cells.edges[edge])
+            found.append((place, self.value(before, place), before))
+            if self.jumps(edge):
+                found.append((place, self.value(behind, place), -1))
+        return found
+
+    def cells_between(self, here: Floats, there: Floats) -> NDArray[np.int64]:
+        """The cell in which each row and the next lie (steps,), as `cell`."""
+        edges = self.cells.edges
+        cells = np.clip(edges.searchsorted(0.5 * (here + there)) - 1, 0, edges.size - 2)
+        return np.where(here == there, -1, cells)
 
     def passed(self, here: float, there: float) -> list[int]:
         """Edges strictly between two parameters, in the order in which they are passed."""
