@@ -159,6 +159,8 @@ def randomise(
 def is_in_reach(layout: Layout, state: Floats) -> bool:
     """Whether a short search may prove the number of assemblies at the inputs of one of them,
     `state` (states,)."""
+    if len(layout.graph.blocks) > tolerances.SEARCH_MOST_QUICK_BLOCKS:
+        return False
     for number, block in enumerate(layout.graph.blocks):
         most = most_of_block(layout.graph, block)
         if most is not None and most <= tolerances.SEARCH_REACHED_BOUND:

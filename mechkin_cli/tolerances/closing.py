@@ -142,6 +142,10 @@ SEARCH_MOST_STARTS: Final = 262_144
 SEARCH_MOST_QUICK_STARTS: Final = 16_384
 """The same for a search that is for one assembly."""
 
+SEARCH_MOST_QUICK_BLOCKS: Final = 32
+"""Blocks of a mechanism whose modes a short search may list: assemblies double with each, and a
+search of more blocks takes seconds and lists the nearest alone."""
+
 SEARCH_REACHED_BOUND: Final = 8
 """Proven bounds up to this are reached by everyday loops; 16 of a general one and 40 of a platform
 only by dimensions that were looked for, so no short search is made to reach them."""
