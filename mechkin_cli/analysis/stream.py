@@ -41,7 +41,7 @@ class Stream:
         layouts: of the tables that were asked for.
         rows: how many a block has, but for the last one.
         run_rows: how many the run has.
-        last_part: the rows that were solved last.
+        branch: the mode of the rows, and how the first assembly was found.
     """
 
     def __init__(
@@ -54,12 +54,12 @@ class Stream:
             whole = [each.name for each in sweep.asked if each.kind in LEDGER_KINDS]
             if whole:
                 raise UsageError(
-                    f"{whole[0]} of a row depends on all rows of the run, which stream() does not "
-                    "hold; leave it out, or take fewer rows with analyze()"
+                    f"{whole[0]} of a row depends on all rows of the run, which are not held here; "
+                    "leave out the tables that read it, or take all rows at once"
                 )
         self._verdicts = RunVerdicts()
         self._notes = Notes()
-        self.last_part: PartRows
+        self.branch = "", ""
 
     def __iter__(self) -> Iterator[Block]:
         """The blocks, in the order of the rows.
@@ -83,12 +83,15 @@ class Stream:
 
     def parts(self) -> Iterator[tuple[PartRows, slice]]:
         """The rows as they are solved, and which of each part are in none before it."""
-        self._verdicts, self._notes = RunVerdicts(), Notes()
+        verdicts, notes = self._verdicts, self._notes = RunVerdicts(), Notes()
         for part in self.sweep.parts():
-            self._verdicts.add(part.result, part.own)
-            self._notes.add(part.result.row_states.diagnostics)
-            self.last_part = PartRows(self, part.result)
-            yield self.last_part, part.own
+            verdicts.add(part.result, part.own)
+            notes.add(part.result.row_states.diagnostics)
+            self.branch = part.result.mode, part.result.how
+            rows, own = PartRows(self, part.result), part.own
+            del part
+            yield rows, own
+            del rows
 
     @property
     def verdicts(self) -> RunVerdicts:

@@ -198,10 +198,10 @@ def _run(model: Model, folder: Path, command: AnalyzeCommand, tell: Tell) -> _Do
     nothing is computed that cannot be written."""
     with table_room.OutputFolder(folder) if command.writes else nullcontext() as output:
         streamed: list[StreamedRun] = []
-        if output is not None and (command.summary_only or _is_long(model)):
+        if command.summary_only or _is_long(model):
             from mechkin_cli.cli.long_runs import is_streamed, stream_to
 
-            if is_streamed(model, command):
+            if is_streamed(model, command) and output is not None:
                 streamed.append(stream_to(model, command, output, tell))
         analyses = run_all(model, command.table, command.mode, tell, sweep=not streamed)
         tell("proving rows" if command.certify else "evaluating tables")

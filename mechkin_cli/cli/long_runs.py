@@ -15,7 +15,7 @@ from mechkin_cli.cli.messages import put, say
 from mechkin_cli.cli.progress import clock
 from mechkin_cli.cli.show import shown_ends, shown_summary, streamed_summary
 from mechkin_cli.diagnostics import UsageError
-from mechkin_cli.mechanism import LongRun
+from mechkin_cli.mechanism import LEDGER_KINDS, LongRun
 from mechkin_cli.record import replace
 from mechkin_cli.tables import (
     STREAM_FORMATS,
@@ -25,6 +25,7 @@ from mechkin_cli.tables import (
     RunningSummary,
     TableWriter,
     TextRoom,
+    chosen,
     heading_of,
     rows_table,
     stream_of,
@@ -34,6 +35,8 @@ from mechkin_cli.tables import (
 from mechkin_cli.verdict import SWEEP
 
 if TYPE_CHECKING:
+    from types import TracebackType
+
     from mechkin_cli.analysis import PartRows, Stream
     from mechkin_cli.cli.analyze_options import AnalyzeCommand
     from mechkin_cli.cli.progress import Tell
@@ -66,10 +69,34 @@ def is_streamed(model: Model, command: AnalyzeCommand) -> bool:
     if command.summary_only:
         if needing:
             raise UsageError(f"--summary-only keeps no rows, and {needing[0]} needs them")
-        return SWEEP in model.runs
+        _refuse_responses(model, command)
+        return True
     if SWEEP not in model.runs or not isinstance(model.problem.motion, LongRun):
         return False
-    return bool(command.asked_formats) and not needing
+    return bool(command.asked_formats) and not (needing or _reads_all_rows(model, command))
+
+
+def _refuse_responses(model: Model, command: AnalyzeCommand) -> None:
+    own = [run for run in model.runs if run != SWEEP]
+    wanted = {table.run for table in chosen(tuple(model.tables), command.table)}
+    found = [run for run in own if run in wanted]
+    if found or SWEEP not in model.runs:
+        raise UsageError(
+            f"--summary-only sums up sweeps, and {', '.join(found or own)} is a response; choose "
+            "tables of the sweep with --table"
+        )
+
+
+def _reads_all_rows(model: Model, command: AnalyzeCommand) -> bool:
+    """Whether balances, dense systems or energies of the whole run are among what is wanted."""
+    built = model.built
+    others = (*built.balances, *built.coefficients)
+    if chosen(others, command.table):
+        return True
+    known = model.problem.quantities()
+    tables = chosen(tuple(table for table in model.tables if table.run == SWEEP), command.table)
+    names = {name for table in tables for one in table.columns for name in one.expression.names}
+    return any(name in known and known[name].kind in LEDGER_KINDS for name in names)
 
 
 class StreamedRun:
@@ -109,15 +136,15 @@ def stream_to(
     )
     files = _Files(() if command.summary_only else command.formats, output, style)
     progress = _progress(tell, stream.run_rows)
-    for part, own in stream.parts():
-        for place, table in enumerate(tables):
-            found = table.add(part, own, place)
-            files.write(found)
-        if not command.summary_only:
-            files.write(_verdicts(part, own), whole=("row",))
-        span = part.analysis.result.row_states.span
-        progress(span.first + span.rows)
-    files.end()
+    with files:
+        for part, own in stream.parts():
+            for place, table in enumerate(tables):
+                files.write(table.add(part, own, place))
+            if not command.summary_only:
+                files.write(_verdicts(part, own), whole=("row",))
+            span = part.analysis.result.row_states.span
+            progress(span.first + span.rows)
+            del part
     for table in tables:
         summary = table.summary(stream)
         if summary is not None:
@@ -170,12 +197,21 @@ class _Files:
         file = self._output.begin(f"{heading.name}.{format}")
         return TableWriter(heading, format, file, self._style, self._room), file
 
-    def end(self) -> None:
-        """Ends all files."""
-        for writers in self._writers.values():
-            for writer, file in writers:
-                writer.end()
-                file.close()
+    def __enter__(self) -> _Files:
+        """The files, to be ended or dropped together."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        begun = [each for writers in self._writers.values() for each in writers]
+        for writer, _ in () if kind is not None else begun:
+            writer.end()
+        for _, file in begun:
+            file.__exit__(kind, error, trace)
 
 
 ENDS = 30
@@ -211,7 +247,8 @@ class _Table:
         """The first rows of the table and the last ones, and what stands below it, as text."""
         summary = self.summary(stream)
         if not rows:
-            assert summary is not None
+            if summary is None:
+                return ""
             return shown_summary(self.layout.name, self.layout.title, summary)
         assert self._first is not None
         assert self._last is not None
@@ -222,7 +259,15 @@ class _Table:
         """What stands below the table."""
         if self._sums is None:
             return None
-        return self._sums.found(stream.run_rows, stream.verdicts.counts)
+        found = self._sums.found(stream.run_rows, stream.verdicts.counts)
+        if self._labels is None:
+            return found
+        own = [
+            label for label in self._labels if label in {each.label for each in self.layout.columns}
+        ]
+        columns = {column.label: column for column in found.columns}
+        below = [columns[one]._replace(number=k) for k, one in enumerate(own) if one in columns]
+        return found._replace(columns=tuple(below)) if below else None
 
 
 def _rows(table: Columns, rows: slice) -> Columns:

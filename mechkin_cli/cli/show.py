@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import shutil
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
@@ -50,7 +50,8 @@ from mechkin_cli.verdict import SWEEP, Status
 
 if TYPE_CHECKING:
     from mechkin_cli.analysis import Analysis, Stream
-    from mechkin_cli.mechanism import Joint, Wanted
+    from mechkin_cli.mechanism import Joint, Problem, Wanted
+    from mechkin_cli.structure import SolverGraph
     from mechkin_cli.tables import ColumnErrors, Summary
 
 
@@ -188,15 +189,20 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
     result = analysis.result
     name = analysis.model.name
     if analysis.run == SWEEP:
-        rows = [("driven", _driven(analysis))]
+        rows = [("driven", _driven(analysis.model.problem))]
     else:
         name = f"{name}, response {analysis.run}"
         rows = [("free", _free(analysis))]
-    rows.append(("loops", _loops(analysis)))
+    rows.append(("loops", _loops(analysis.model.problem, result.graph)))
     if result.mode:
-        rows.append(("branch", _branch(analysis)))
+        rows.append(("branch", _branch(result.mode, result.how)))
     verdicts = RunVerdicts.of(result)
-    rows += [("rows", _rows(verdicts)), ("worst", _worst(analysis, verdicts))]
+    worst = dict(verdicts.worst)
+    if analysis.run != SWEEP:
+        off = np.asarray(result.quantity("row.energy_error").value)
+        if np.isfinite(off).any():
+            worst["energy error"] = float(off[np.isfinite(off)].max())
+    rows += [("rows", _rows(verdicts)), ("worst", _worst(worst))]
     if analysis.run == SWEEP and result.is_certified:
         rows.append(("proof", analysis.certificate.words))
     if analysis.run != SWEEP:
@@ -208,12 +214,12 @@ def summary(file: str, analysis: Analysis, *, errors: bool = False) -> list[str]
 
 def streamed_summary(file: str, stream: Stream) -> list[str]:
     """The lines of `summary` for a sweep whose rows are not held."""
-    part = stream.last_part.analysis
-    verdicts = stream.verdicts
-    lines = [("driven", _driven(part)), ("loops", _loops(part))]
-    lines += [("branch", _branch(part))] if part.result.mode else []
-    lines += [("rows", _rows(verdicts)), ("worst", _worst(part, verdicts))]
-    return [f"{part.model.name} ({file})", *(_line(*line) for line in lines)]
+    problem, verdicts = stream.model.problem, stream.verdicts
+    graph = stream.sweep.session.graph
+    lines = [("driven", _driven(problem)), ("loops", _loops(problem, graph))]
+    lines += [("branch", _branch(*stream.branch))] if stream.branch[0] else []
+    lines += [("rows", _rows(verdicts)), ("worst", _worst(verdicts.worst))]
+    return [f"{stream.model.name} ({file})", *(_line(*line) for line in lines)]
 
 
 def files_line(folder: Path, written: Sequence[Path], removed: Sequence[str]) -> str:
@@ -261,23 +267,22 @@ def _ended(analysis: Analysis) -> str:
     return f"at {moment:.9g} {unit}: {Status(int(result.status[last + 1])).label}"
 
 
-def _branch(analysis: Analysis) -> str:
+def _branch(mode: str, how: str) -> str:
     """The mode by its letter where that is known, and how it was found."""
-    result = analysis.result
-    if result.mode == NEAR:
-        return result.how
-    return f"mode {result.mode} ({result.how})" if result.how else result.mode
+    if mode == NEAR:
+        return how
+    return f"mode {mode} ({how})" if how else mode
 
 
-def _driven(analysis: Analysis) -> str:
+def _driven(problem: Problem) -> str:
     """How many freedoms are driven, by which inputs, and Kutzbach's count where it differs."""
-    mechanism = analysis.model.problem.mechanism
+    mechanism = problem.mechanism
     count = mechanism.kutzbach
-    inputs = [driven.name for driven in analysis.model.problem.motion.inputs]
+    inputs = [driven.name for driven in problem.motion.inputs]
     plural = "freedom" if len(inputs) == 1 else "freedoms"
     text = f"{len(inputs)} {plural} by {', '.join(inputs)}" if inputs else "nothing"
     words = [spin.idle_words for spin in mechanism.told_spins]
-    several = Counter(held.words for held in analysis.model.problem.held if held.idle)
+    several = Counter(held.words for held in problem.held if held.idle)
     words += [text if n == 1 else f"{text} ({n} freedoms)" for text, n in several.items()]
     idle = "".join(f"; {text}" for text in words[:IDLE_SHOWN])
     more = len(words) - IDLE_SHOWN
@@ -285,11 +290,10 @@ def _driven(analysis: Analysis) -> str:
     return (text if count == len(inputs) else f"{text} (Kutzbach's count: {count})") + idle
 
 
-def _loops(analysis: Analysis) -> str:
+def _loops(problem: Problem, graph: SolverGraph) -> str:
     """Loops of the file's own joints and cylinders, and what couples them; what a cable is made of
     is no loop that a file has."""
-    graph = analysis.result.graph
-    mechanism = analysis.model.problem.mechanism
+    mechanism = problem.mechanism
     if not graph.closings:
         return "none (open chain)"
     labels = [c.label for c in graph.closings if not c.terms and is_written(c.name)]
@@ -317,13 +321,7 @@ def _rows(verdicts: RunVerdicts) -> str:
     return f"{text} ({', '.join(others)})" if others else text
 
 
-def _worst(analysis: Analysis, verdicts: RunVerdicts) -> str:
-    measured = dict(verdicts.worst)
-    if analysis.run != SWEEP:
-        values = np.asarray(analysis.result.quantity("row.energy_error").value)
-        finite = values[np.isfinite(values)]
-        if finite.size:
-            measured["energy error"] = float(finite.max())
+def _worst(measured: Mapping[str, float]) -> str:
     parts = [f"{name} {value:.1e}" for name, value in measured.items()]
     return ", ".join(parts) or "nothing was solved"
 

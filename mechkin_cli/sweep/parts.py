@@ -117,6 +117,7 @@ class _Walk:
                 result = self.judge(part, begin, None)
                 yield Part(result, slice(0, result.rows - 1))
                 signs, first = _signs(result, result.rows - 1), border.row
+                del part, result
             border = border._replace(signs=signs)
         yield from self._onward(border)
 
@@ -135,10 +136,9 @@ class _Walk:
             # a row that did not close is no border
             place = int(np.flatnonzero(result.row_states.reached)[-1])
             rows = result.row_states
-            state, turn = (
-                np.ascontiguousarray(each[:, place]) for each in (rows.states, rows.turns)
-            )
+            state, turn = rows.states[:, place].copy(), rows.turns[:, place].copy()
             border = _Border(border.row + place, state, turn, _signs(result, place))
+            del found, result, rows  # one part at a time is in memory
 
     def _back(self, border: _Border) -> tuple[list[_Border], int, Status | None]:
         """The borders from the row of the first assembly back, with turns that count from the first

@@ -87,7 +87,7 @@ MOST_NUMBERS: Final = 40_000_000
 all joints. Measured per number: 40 bytes with CSV, 80 with Markdown, 110 with JSON; 4.4 GB in
 all."""
 
-LONG_RUN: Final = (1 << 15) + 1
+LONG_RUN: Final = (1 << 16) + 1
 """Rows of a run from which on its numbers are made part by part, as they are wanted."""
 
 MOST_ROWS: Final = 1e12

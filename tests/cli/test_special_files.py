@@ -148,11 +148,11 @@ def test_no_more_is_read_than_asked_for(tmp_path: Path) -> None:
 
 
 LIMITED = {
-    "size": files.CRANK + "# " + "x" * (1 << 20),
-    "bytes": files.CRANK + "# " + "\U0001f600" * (1 << 18),
+    "size": files.CRANK + "# " + "x" * (1 << 22),
+    "bytes": files.CRANK + "# " + "\U0001f600" * (1 << 20),
     "depth": files.CRANK + "loads: " + "[" * 100_000,
     "mappings": files.CRANK + "loads: " + "{a: " * 50_000,
-    "events": files.CRANK + "loads: [" + "1, " * 200_000 + "1]",
+    "events": files.CRANK + "loads: [" + "1, " * 1_100_000 + "1]",
     "half characters": files.CRANK + "# \ud800",
     "controls": files.CRANK + "# \x00",
     "anchors": files.CRANK + "source: &a b",

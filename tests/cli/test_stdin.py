@@ -63,7 +63,7 @@ def test_files_that_the_text_names_are_sought_in_the_working_folder(tmp_path: Pa
         (b"format: 1\nname: \xff\n", b"stdin:2:7: error: the byte 0xFF is not UTF-8"),
         (files.CRANK.encode("utf-16"), b"stdin:1:1: error: the file is UTF-16"),
         (files.INVALID.encode(), b"stdin:5:39: error: "),
-        (b"#" * 3_000_000, b"stdin:1:1: error: the file is too large"),
+        (b"#" * 5_000_000, b"stdin:1:1: error: the file is too large"),
     ],
 )
 def test_hostile_text(tmp_path: Path, text: bytes, words: bytes) -> None:

@@ -42,7 +42,7 @@ def peak_of(folder: Path, count: int, limit: int = 0) -> int:
     path.write_text(FOUR_BAR.format(count=count))
     options = ["--summary-only", "--quiet", "--threads", "1", "--out", str(folder / "out")]
     found = subprocess.run(
-        [sys.executable, "-c", CHILD, str(limit), "analyze", str(path), *options],
+        [sys.executable, "-P", "-c", CHILD, str(limit), "analyze", str(path), *options],
         capture_output=True,
         text=True,
         check=False,

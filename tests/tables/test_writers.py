@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from mechkin_cli.cli import analyze
+from mechkin_cli.cli import analyze_options
 from mechkin_cli.diagnostics import UsageError
 from mechkin_cli.tables import writers
 from mechkin_cli.tables.csv import csv_bytes
@@ -56,9 +56,9 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
             for table in results.tables:
                 yield f"{table.name}.tsv", csv_bytes(table).replace(b",", b"\t")
 
-    monkeypatch.setattr(analyze, "WRITERS", {**writers.WRITERS, "tsv": tsv})
+    monkeypatch.setattr(analyze_options, "WRITERS", {**writers.WRITERS, "tsv": tsv})
     monkeypatch.setattr(writers, "WRITERS", {**writers.WRITERS, "tsv": tsv})
-    assert analyze.AnalyzeCommand([], None, ["tsv", "csv"]).formats == ("tsv", "csv")
+    assert analyze_options.AnalyzeCommand([], None, ["tsv", "csv"]).formats == ("tsv", "csv")
     assert list(writers.written_files([results], ["tsv", "csv"])) == [
         "table.tsv",
         "table.csv",
@@ -68,4 +68,4 @@ def test_a_new_format_is_one_entry(results, monkeypatch):
 
 def test_an_unknown_format_is_refused_with_the_list():
     with pytest.raises(UsageError, match="--format xml: formats are csv, md, json, tex, xlsx"):
-        _ = analyze.AnalyzeCommand([], None, ["xml"]).formats
+        _ = analyze_options.AnalyzeCommand([], None, ["xml"]).formats
