@@ -27,6 +27,7 @@ from mechkin_cli.tables import (
     TextRoom,
     chosen,
     heading_of,
+    joined_column,
     rows_table,
     stream_of,
     summary_table,
@@ -239,8 +240,8 @@ class _Table:
         table = Columns(self.layout.name, self.layout.title, columns)
         table = table if self._labels is None else table.chosen(self._labels)
         if self._first is None:
-            self._first = _rows(table, slice(0, ENDS))
-        self._last = _rows(table, slice(-ENDS, None))
+            self._first = _copied(table, slice(0, ENDS))
+        self._last = _last_of(self._last, _copied(table, slice(-ENDS, None)))
         return table
 
     def shown(self, stream: Stream, folder: Path, *, rows: bool) -> str:
@@ -270,6 +271,16 @@ class _Table:
         return found._replace(columns=tuple(below)) if below else None
 
 
-def _rows(table: Columns, rows: slice) -> Columns:
-    columns = (column.between(rows).part(np.arange(ENDS)) for column in table.columns)
-    return replace(table, columns=tuple(columns))
+def _copied(table: Columns, rows: slice) -> Columns:
+    """Some rows of a table, apart from the others, which may be forgotten."""
+    chosen_rows = np.arange(table.columns[0].rows)[rows]
+    return replace(table, columns=tuple(column.part(chosen_rows) for column in table.columns))
+
+
+def _last_of(before: Columns | None, behind: Columns) -> Columns:
+    """The last rows of a table, of which the last part may have few."""
+    if before is None:
+        return behind
+    both = zip(before.columns, behind.columns, strict=True)
+    joined = replace(behind, columns=tuple(joined_column(pair) for pair in both))
+    return _copied(joined, slice(-ENDS, None))

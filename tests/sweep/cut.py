@@ -13,3 +13,5 @@ def cut(monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
     monkeypatch.setattr(tolerances, "PART_ROWS", rows)
     monkeypatch.setattr(tolerances, "LEAST_PART_ROWS", rows)
     monkeypatch.setattr(spacing, "LONG_RUN", rows + 1)
+    # the first assembly is looked for among few of the rows, and next to the drawing
+    monkeypatch.setattr(spacing, "SAMPLE", 3)
