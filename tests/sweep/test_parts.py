@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from references import FILE_OF, SWEPT
 from sweep.cut import cut
+from sweep.turning_back import FOUR_BAR, SLIDER_CRANK
 
 import mechkin_cli as mk
 from mechkin_cli.sweep import parts
@@ -59,28 +60,8 @@ def test_kept_mechanisms_do_not_depend_on_their_parts(
         assert off <= 1e-9 * max(size, 1e-3), name
 
 
-FOUR_BAR = """format: 1
-plane: xy
-units: {{length: m, angle: rad}}
-links: {{crank: {{}}, coupler: {{}}, rocker: {{}}}}
-joints:
-  A: {{type: R, links: [ground, crank], point: [0, 0]}}
-  B: {{type: R, links: [crank, coupler], point: [{bx!r}, {by!r}]}}
-  C: {{type: R, links: [coupler, rocker], point: [{cx!r}, {cy!r}]}}
-  D: {{type: R, links: [ground, rocker], point: [{d!r}, 0]}}
-motion: {{inputs: {{{motion}}}}}
-"""
-SLIDER_CRANK = """format: 1
-plane: xy
-units: {{length: m, angle: rad}}
-links: {{crank: {{}}, rod: {{}}, slider: {{}}}}
-joints:
-  O: {{type: R, links: [ground, crank], point: [0, 0]}}
-  A: {{type: R, links: [crank, rod], point: [{ax!r}, {ay!r}]}}
-  B: {{type: R, links: [rod, slider], point: [{x!r}, 0]}}
-  S: {{type: P, links: [ground, slider], point: [{x!r}, 0], axis: [1, 0]}}
-motion: {{inputs: {{S.s: {{values: {values}}}}}}}
-"""
+DRIVEN = FOUR_BAR.replace("A.theta: {{values: {values}}}", "{motion}")
+assert DRIVEN != FOUR_BAR
 
 
 @pytest.mark.parametrize("seed", range(60 * TIMES))
@@ -103,7 +84,9 @@ def test_a_slider_that_turns_back_at_its_dead_centre_on_a_border(
         values += [part * end for part in reversed(way)]
     cut(monkeypatch, rng.randint(2, 6))
     place = {"ax": crank * math.cos(angle), "ay": crank * math.sin(angle), "x": x}
-    run = mk.loads(SLIDER_CRANK.format(values=values, **place)).analyze(["O.theta"])
+    run = mk.loads(SLIDER_CRANK.format(values=values, **place).replace("deg", "rad")).analyze(
+        ["O.theta"]
+    )
     assert len(run["S.s"]) == len(values)
     for slide, theta, status in zip(values, run["O.theta"], run["row.status"], strict=True):
         if status == "beyond-dead-centre":
@@ -126,7 +109,7 @@ def test_a_parallelogram_goes_straight_through_its_branch_points_on_borders(
     start, turns = rng.uniform(-9.0, 3.0), rng.uniform(1.0, 4.0)
     count = rng.randint(20, 90)
     motion = f"A.theta: {{from: {start!r}, to: {start + 2.0 * math.pi * turns!r}, count: {count}}}"
-    text = FOUR_BAR.format(bx=x, by=y, cx=d + x, cy=y, d=d, motion=motion)
+    text = DRIVEN.format(bx=x, by=y, cx=d + x, cy=y, d=d, motion=motion)
     text += "assembly: {at_branch_points: straight}\n"
     cut(monkeypatch, rng.randint(2, 9))
     run = mk.loads(text).analyze(["D.theta", "C.theta"])
@@ -145,7 +128,7 @@ def test_a_branch_that_ends_is_told_once_with_all_rows_behind_it(
 ) -> None:
     first, last = sorted((-0.5, way * 2.5)) if way < 0 else (-0.5, 2.5)
     motion = f"A.theta: {{from: {first}, to: {last}, count: 61}}"
-    text = FOUR_BAR.format(bx=0.0, by=2.0, cx=2.0, cy=1.0, d=2.0, motion=motion)
+    text = DRIVEN.format(bx=0.0, by=2.0, cx=2.0, cy=1.0, d=2.0, motion=motion)
     whole = mk.loads(text).analyze()
     cut(monkeypatch, rows)
     found = mk.loads(text).analyze()
