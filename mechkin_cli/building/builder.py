@@ -149,7 +149,7 @@ def build(
     view = _view(fields, file, problem)
     forces = needs_forces(problem, own)
     # the unit of forces that are computed stands above their column
-    if file.loads or any(response.efforts for response in file.responses.values()):
+    if file.loads or any(run.efforts for run in file.free_runs.values()):
         note_force_unit(fields)
     if forces:
         note_own_motors(fields, file.motion, file.actuators)
@@ -280,8 +280,8 @@ def build_problem(
     problem = replace(problem, limits=limits)
     # rows of responses have a time, and all plays
     swept = problem.quantities()
-    timed = swept if "time" in swept or not file.responses else {**swept, "time": TIME_OF_ROW}
-    if plays and file.responses:
+    timed = swept if "time" in swept or not file.free_runs else {**swept, "time": TIME_OF_ROW}
+    if plays and file.free_runs:
         timed = {**replace(problem, mechanism=with_plays(mechanism, plays)).quantities(), **timed}
     quantities = {name: swept if name == SWEEP else timed for name in runs_of(file)}
     loads = LoadBuilder(fields, links, joints, points, quantities)
@@ -289,12 +289,12 @@ def build_problem(
     mechanism, laws, _ = loads.of_run(SWEEP, mechanism)
     problem = replace(problem, mechanism=mechanism, load_laws=laws)
     refuse_tied_friction(fields, file.loads, problem)
-    if not (file.responses and responses):
+    if not (file.free_runs and responses):
         return problem
     from mechkin_cli.building.responses import build_responses
 
     free = replace(problem, mechanism=with_plays(mechanism, plays))
-    args = (fields, file.responses, free, loads, per_row, moving)
+    args = (fields, file.free_runs, free, loads, per_row, moving)
     return replace(problem, responses=build_responses(*args))
 
 

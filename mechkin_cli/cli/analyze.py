@@ -75,8 +75,9 @@ def run_all(
             tell(f"following {model.problem.motion.rows} rows")
             analyses.append(model.analyze(tables=chosen, mode=mode))
         else:
-            tell(f"integrating {run}")
-            analyses.append(model.respond(run, tables=chosen, mode=mode))
+            rests = model.response(run).search is not None
+            tell(f"looking for {run}" if rests else f"integrating {run}")
+            analyses.append(model.run_free(run, tables=chosen, mode=mode))
     return analyses
 
 

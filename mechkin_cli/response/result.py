@@ -64,7 +64,37 @@ OTHER_LOADS = 100
 ENERGIES = ("row.kinetic_energy", "row.potential_energy")
 
 
-class ResponseResult(Result):
+class FreeResult(Result):
+    """Rows in which loads and given efforts decide where what is free is, or how it moves."""
+
+    response: ResponseProblem
+
+    def is_given(self, quantity: Wanted) -> bool:
+        """Whether a quantity is one of the efforts that the file gives."""
+        return quantity.kind == "effort" and bool(self._amounts(quantity))
+
+    @property
+    def _loads(self) -> ResponseProblem:
+        """The run with the loads of the rows."""
+        return self.response
+
+    def _amounts(self, wanted: Wanted) -> list[Amount]:
+        at = (wanted.owner, wanted.coordinate)
+        return [e.amount for e in self._loads.efforts if e.acts_at == at]
+
+    def _effort(self, wanted: Wanted) -> Floats:
+        """The sum of the given efforts along a coordinate over the rows."""
+        total = np.zeros(self.rows)
+        for amount in self._amounts(wanted):
+            if isinstance(amount, Varying):
+                law = self._loads.load_laws[amount.number]
+                total = total + law_value(law, self.quantity, self.rows)
+            else:
+                total = total + amount
+        return np.where(self.solved, total, np.nan)
+
+
+class ResponseResult(FreeResult):
     """The rows of a response with a position and a verdict each.
 
     Args:
@@ -270,18 +300,3 @@ class ResponseResult(Result):
         """The response with the rows' loads, or with the others of an alternative."""
         shift = 0 if self._alternative is None else self.shifts[self._alternative]
         return self.response if shift < OTHER_LOADS else self.other_loads[shift - OTHER_LOADS][1]
-
-    def _amounts(self, wanted: Wanted) -> list[Amount]:
-        at = (wanted.owner, wanted.coordinate)
-        return [e.amount for e in self._loads.efforts if e.acts_at == at]
-
-    def _effort(self, wanted: Wanted) -> Floats:
-        """The sum of the response's efforts along a coordinate over the rows."""
-        total = np.zeros(self.rows)
-        for amount in self._amounts(wanted):
-            if isinstance(amount, Varying):
-                law = self._loads.load_laws[amount.number]
-                total = total + law_value(law, self.quantity, self.rows)
-            else:
-                total = total + amount
-        return np.where(self.solved, total, np.nan)

@@ -54,7 +54,7 @@ from mechkin_cli.response.resting import (
     repeated,
     with_contacts,
 )
-from mechkin_cli.response.result import ENERGIES, ResponseResult
+from mechkin_cli.response.result import ENERGIES, FreeResult, ResponseResult
 from mechkin_cli.session import Ask, Chart, Packing, RowInputs, Session, input_unit, turn_count
 from mechkin_cli.structure import structure_of
 from mechkin_cli.sweep import (
@@ -586,7 +586,7 @@ def _nothing(one: Prepared) -> ResponseResult:
     )
 
 
-def read(result: ResponseResult, quantities: Iterable[str]) -> None:
+def read(result: FreeResult, quantities: Iterable[str]) -> None:
     """Closes the rows once more, judges them, and reads some quantities."""
     known = result.problem.quantities()
     requested: list[Wanted] = [known[name] for name in read_for(quantities, known)]

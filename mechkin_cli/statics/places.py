@@ -1,0 +1,300 @@
+"""Places of a mechanism and the forces that would have to hold it there.
+
+A place is given by all inputs of a session: the coordinates that nothing drives, and the driven
+ones. Forces are those of inverse dynamics at rest along the coordinates that nothing drives: zero
+where the loads balance, and the slope of the potential energy where the loads have one. One kernel
+call takes many places, in lanes.
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.mechanism import ZERO, effort_quantity
+from mechkin_cli.memo import remembered
+from mechkin_cli.plan import Demand
+from mechkin_cli.record import NamedTuple, replace
+from mechkin_cli.session import Ask, RowInputs, turn_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from mechkin_cli.plan import Readout
+    from mechkin_cli.session import Ending, Session
+    from mechkin_cli.show import Bools, Floats
+
+
+class Place(NamedTuple):
+    """Inputs (inputs,) with their whole turns, states (states,) and turns (turn slots,) of one
+    closed place, in kernel units."""
+
+    inputs: Floats
+    state: Floats
+    turns: Floats
+
+
+class Forced(NamedTuple):
+    """Forces (free, places) in N*m by the kernel's unit of each coordinate, states (states, places)
+    and which places closed and have forces."""
+
+    forces: Floats
+    states: Floats
+    good: Bools
+
+
+class Way(NamedTuple):
+    """Places along a way, as far as the branch could be followed: states (states, reached) and
+    turns (turn slots, reached); the dead centre or branch point that it ends at, if it is known."""
+
+    states: Floats
+    turns: Floats
+    ending: Ending | None = None
+
+    @property
+    def reached(self) -> int:
+        """How many there are."""
+        return int(self.states.shape[1])
+
+
+class Statics:
+    """The forces about places of a session.
+
+    Args:
+        session: whose first inputs, or those numbered `free`, nothing drives.
+        free: their numbers.
+    """
+
+    def __init__(self, session: Session, free: Sequence[int]) -> None:
+        self.session, self.free = session, list(free)
+        problem = session.problem
+        inputs = problem.motion.inputs
+        self.units = np.array(
+            [
+                session.layout.mechanism.joints[inputs[k].joint].unit_of(
+                    inputs[k].coordinate, session.layout.length
+                )
+                for k in self.free
+            ]
+        )
+        self.cyclic = np.array(
+            [turn_of(problem, item) is not None for item in inputs]
+            + [False] * (len(session.driven) - len(inputs))
+        )
+
+    @property
+    def count(self) -> int:
+        """Number of coordinates that nothing drives."""
+        return len(self.free)
+
+    @property
+    def readout(self) -> Readout:
+        """Efforts at the coordinates that nothing drives."""
+        return _readout(self.session, tuple(self.free))
+
+    def reduced(self, inputs: Floats) -> tuple[Floats, Floats]:
+        """Inputs (inputs, places) without whole turns, and these."""
+        whole = np.where(self.cyclic[:, None], np.rint(inputs / (2.0 * pi)), 0.0)
+        return inputs - whole * (2.0 * pi), whole
+
+    def rows(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> RowInputs:
+        """What a run is given for places at rest."""
+        reduced, whole = self.reduced(inputs)
+        still = np.zeros_like(inputs)
+        tied = self.session.constraint_rates
+        if tied is not None:
+            tied = np.repeat(tied[:, :1], inputs.shape[1], axis=1)
+        return RowInputs(
+            reduced, states, still, still, still, tied, turns, whole, inputs, time, None
+        )
+
+    def forces(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Forced:
+        """Forces at places (inputs, places) closed from guesses (states, places)."""
+        readout = self.readout
+        demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
+        batch = self.session.run(self.rows(inputs, states, turns, time), Ask(demand, readout))
+        assert batch.outputs is not None
+        forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
+        forces = forces * self.units[:, None]
+        good = batch.good & np.isfinite(forces).all(axis=0)
+        if batch.undefined is not None:
+            good &= ~batch.undefined.astype(bool)
+        return Forced(forces, batch.states, good)
+
+    def largest(self, place: Place, time: float) -> float:
+        """The largest force of one load alone, or of all weights, at a place: what balances there,
+        N*m by kernel units."""
+        columns = place.inputs[:, None], place.state[:, None], place.turns[:, None]
+        return float(self.largest_at(*columns, np.array([time]))[0])
+
+    def largest_at(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Floats:
+        """The same at many places (places,)."""
+        most = np.zeros(inputs.shape[1])
+        for session in _alone(self.session):
+            found = Statics(session, self.free).forces(inputs, states, turns, time)
+            sizes = np.max(np.abs(found.forces), axis=0)
+            most = np.where(found.good, np.maximum(most, sizes), most)
+        return most
+
+    def tangents(self, inputs: Floats, states: Floats) -> Floats:
+        """Rates of the columns (free, columns, places) where one free coordinate after the other
+        has unit rate."""
+        places = inputs.shape[1]
+        repeated = np.tile(np.arange(places), self.count)
+        rates = np.zeros((inputs.shape[0], repeated.size))
+        for number, k in enumerate(self.free):
+            rates[k, number * places : (number + 1) * places] = 1.0
+        reduced, _ = self.reduced(inputs)
+        rows = RowInputs(reduced[:, repeated], states[:, repeated], rates)
+        batch = self.session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
+        assert batch.first is not None
+        return batch.first.reshape(-1, self.count, places).transpose(1, 0, 2)
+
+    def beside(self, place: Place, steps: Floats, time: float) -> Forced:
+        """Forces (free, steps) where the free coordinates are `steps` (free, steps) away."""
+        tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        inputs = np.repeat(place.inputs[:, None], steps.shape[1], axis=1)
+        inputs[self.free] += steps
+        states = np.repeat(place.state[:, None], steps.shape[1], axis=1)
+        # sums in one order, on every machine
+        columns = sum(
+            tangent[:, None] * step for tangent, step in zip(tangents, steps, strict=True)
+        )
+        guess = self.session.moved_along(states, np.asarray(columns))
+        turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
+        return self.forces(inputs, guess, turns, np.full(steps.shape[1], time))
+
+    def place(self, inputs: Floats, state: Floats) -> Place:
+        """A closed place at some inputs, to which nothing was followed."""
+        reduced, whole = self.reduced(np.stack([inputs, inputs], axis=1))
+        found = self.session.follow(reduced, state, turns=True, whole=whole)
+        assert found.turns is not None
+        return Place(inputs, state, found.turns[:, 0])
+
+    def way(self, inputs: Floats, place: Place) -> Way:
+        """The places along straight ways between `inputs` (inputs, places), the first of which is
+        that of `place`, as far as the branch leads."""
+        reduced, whole = self.reduced(inputs)
+        found = self.session.follow(reduced, place.state, turns=True, turn=place.turns, whole=whole)
+        assert found.turns is not None
+        count = found.reached
+        return Way(found.guess[:, :count], found.turns[:, :count], found.ending)
+
+
+@remembered
+def _readout(session: Session, free: tuple[int, ...]) -> Readout:
+    inputs = session.problem.motion.inputs
+    return session.readout([effort_quantity(inputs[k].joint, inputs[k].coordinate) for k in free])
+
+
+@remembered
+def _alone(session: Session) -> tuple[Session, ...]:
+    """Sessions in which one load acts alone, or all weights."""
+    problem = session.problem
+    mechanism = problem.mechanism
+    acting = [
+        replace(mechanism, loads=(load,), gravity=ZERO, frictions=()) for load in mechanism.loads
+    ]
+    if mechanism.gravity != ZERO:
+        acting.append(replace(mechanism, loads=(), frictions=()))
+    return tuple(session.loaded(replace(problem, mechanism=each)) for each in acting)
+
+
+class Stiffness(NamedTuple):
+    """The slopes of the forces by the coordinates (free, free), in kernel units, and how far off
+    they may be."""
+
+    matrix: Floats
+    error: float
+
+
+_EIGHTH = ((1, 4.0 / 5.0), (2, -1.0 / 5.0), (3, 4.0 / 105.0), (4, -1.0 / 280.0))
+_SIXTH = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
+
+
+def stiffness(statics: Statics, place: Place, time: float) -> Stiffness | None:
+    """The stiffness at a place by central differences of eighth order, its error from those of
+    sixth; None where a place beside it has no forces."""
+    count, step = statics.count, tolerances.STIFFNESS_STEP
+    steps = np.zeros((count, count * 8))
+    for k in range(count):
+        for number, (times, _) in enumerate(_EIGHTH):
+            steps[k, k * 8 + 2 * number] = times * step
+            steps[k, k * 8 + 2 * number + 1] = -times * step
+    found = statics.beside(place, steps, time)
+    if not found.good.all():
+        return None
+    differences = found.forces.reshape(count, count, 4, 2)
+    differences = differences[..., 0] - differences[..., 1]  # (force, coordinate, times)
+    eighth, sixth = (
+        sum(weight * differences[:, :, times - 1] for times, weight in order) / step
+        for order in (_EIGHTH, _SIXTH)
+    )
+    largest = float(np.max(np.abs(found.forces), initial=0.0))
+    rounding = tolerances.FORCE_ROUNDING * largest / step
+    error = float(np.max(np.abs(eighth - sixth), initial=0.0)) + rounding
+    return Stiffness(np.asarray(eighth), error)
+
+
+def mass(statics: Statics, place: Place, time: float) -> Floats:
+    """The mass matrix (free, free) at a place, kg by the squares of kernel units: forces of unit
+    accelerations without those at rest."""
+    count = statics.count
+    repeated = np.zeros(count + 1, dtype=np.intp)
+    inputs = place.inputs[:, None][:, repeated]
+    rows = statics.rows(
+        inputs,
+        place.state[:, None][:, repeated],
+        place.turns[:, None][:, repeated],
+        np.full(count + 1, time),
+    )
+    accelerations = np.zeros_like(inputs)
+    for number, k in enumerate(statics.free):
+        accelerations[k, number] = 1.0
+    readout = statics.readout
+    demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
+    batch = statics.session.run(
+        rows._replace(accelerations=accelerations), Ask(demand, readout, iterations=0)
+    )
+    assert batch.outputs is not None
+    forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
+    forces = forces * statics.units[:, None]
+    # accelerations are in kernel units, and so are lengths of the forces by virtual work
+    found: NDArray[np.float64] = forces[:, :count] - forces[:, count:]
+    return found
+
+
+def eigen(matrix: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues, rising, and vectors as columns of a symmetric matrix, by Jacobi's rotations in a
+    fixed order: the same bits on every machine (G. H. Golub, C. F. Van Loan, Matrix Computations,
+    2013, section 8.5)."""
+    a = np.array(matrix, dtype=np.float64)
+    count = a.shape[0]
+    vectors = np.eye(count)
+    for _ in range(tolerances.MOST_JACOBI_SWEEPS):
+        off = np.abs(a - np.diag(np.diag(a)))
+        if not off.max(initial=0.0) > np.finfo(float).eps * np.abs(np.diag(a)).max(initial=0.0):
+            break
+        for p in range(count - 1):
+            for q in range(p + 1, count):
+                if a[p, q] == 0.0:
+                    continue
+                ratio = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
+                t = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + sqrt(ratio * ratio + 1.0))
+                c = 1.0 / sqrt(t * t + 1.0)
+                s = t * c
+                for m in (a, a.T, vectors):
+                    first, second = m[:, p].copy(), m[:, q].copy()
+                    m[:, p], m[:, q] = c * first - s * second, s * first + c * second
+    order = np.argsort(np.diag(a), kind="stable")
+    vectors = vectors[:, order]
+    # each vector's largest number is positive
+    for k in range(count):
+        if vectors[int(np.argmax(np.abs(vectors[:, k]))), k] < 0.0:
+            vectors[:, k] = -vectors[:, k]
+    return np.diag(a)[order].copy(), vectors

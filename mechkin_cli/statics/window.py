@@ -1,0 +1,394 @@
+"""All equilibria in a window.
+
+Of one freedom: between values of its coordinate, evenly spread over the window, every branch of
+every assembly is followed to the next value or to the dead centre before it, and the force is taken
+at places along it. Equilibria are where it changes its sign, where it only touches zero, and where
+it does so across a dead centre. What closes between two values without coming to either is missed.
+
+Of several freedoms: searches start at places spread over the window, in every assembly there, by
+Newton's steps and, in turns, down to a stable place. How likely one more start finds another is
+told, as for assembly modes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mechkin_cli import tolerances
+from mechkin_cli.assembly import choose_start
+from mechkin_cli.diagnostics import Diagnostic
+from mechkin_cli.mechanism import Limit, is_angle
+from mechkin_cli.record import NamedTuple, dataclass, field, replace
+from mechkin_cli.search import all_assemblies, pose_number
+from mechkin_cli.session import input_number, input_text, input_unit
+from mechkin_cli.statics.newton import Search, SearchEnd, search, settle
+from mechkin_cli.statics.places import Place, Statics
+from mechkin_cli.statics.result import EquilibriumResult
+from mechkin_cli.statics.stability import judged
+from mechkin_cli.units import ANGLE, LENGTH
+
+if TYPE_CHECKING:
+    from mechkin_cli.mechanism import ResponseProblem
+    from mechkin_cli.session import Ending, Session
+    from mechkin_cli.show import Bools, Floats
+
+
+def in_window(session: Session, response: ResponseProblem) -> EquilibriumResult:
+    """All equilibria of an entry of the file with a window."""
+    start = replace(choose_start(session), diagnostics=[])
+    statics = Statics(session, range(len(response.independent)))
+    time = float(response.moments.values[0])
+    assert response.search is not None
+    known = Known(statics, response.search.window)
+    if statics.count == 1:
+        curve = _Curve(statics, known, time)
+        curve.look()
+        notes = curve.notes(response)
+    else:
+        notes = _from_starts(statics, known, response, time)
+    found = sorted(known.found, key=lambda one: one.place.inputs[: statics.count].tolist())
+    judgements = [(one, judged(statics, one.place, time, one.largest)) for one in found]
+    if not found:
+        notes = [*notes, _none(response)]
+    return EquilibriumResult(session, start, response, judgements, notes)
+
+
+@dataclass
+class Known:
+    """The equilibria that are known, each once, within a window."""
+
+    statics: Statics
+    window: tuple[Limit, ...]
+    found: list[Search] = field(default_factory=list)
+
+    @property
+    def ends(self) -> tuple[Floats, Floats]:
+        """Least and largest values (free,) of the window, in kernel units."""
+        units = self._units
+        low = np.array([one.low for one in self.window]) / units
+        return low, np.array([one.high for one in self.window]) / units
+
+    @property
+    def _units(self) -> Floats:
+        session = self.statics.session
+        return np.array([input_unit(session.layout, i) for i in session.problem.motion.inputs])[
+            : self.statics.count
+        ]
+
+    def add(self, one: Search) -> bool:
+        """Takes an equilibrium, if it lies in the window and is not known; whether it is new."""
+        inside = self._within(one)
+        if inside is None:
+            return False
+        states = [other.place.state for other in self.found]
+        if states:
+            layout, limit = self.statics.session.layout, tolerances.SAME_EQUILIBRIUM
+            if pose_number(layout, np.stack(states, axis=1), one.place.state, limit) is not None:
+                return False
+        self.found.append(inside)
+        return True
+
+    def _within(self, one: Search) -> Search | None:
+        """An equilibrium with its angles turned into the window; None outside."""
+        count, (low, high) = self.statics.count, self.ends
+        inputs = one.place.inputs.copy()
+        cyclic = self.statics.cyclic[:count]
+        slack = tolerances.SAME_EQUILIBRIUM
+        turns = np.ceil((low - slack - inputs[:count]) / (2.0 * np.pi))
+        inputs[:count] += np.where(cyclic, turns, 0.0) * (2.0 * np.pi)
+        at = inputs[:count]
+        if not ((at >= low - slack) & (at <= high + slack)).all():
+            return None
+        if (turns == 0.0).all() or not cyclic.any():
+            return one._replace(place=one.place._replace(inputs=inputs))
+        return one._replace(place=self.statics.place(inputs, one.place.state))
+
+
+class _Stretch(NamedTuple):
+    """A branch within a cell of the window: values (samples,), states, turns and forces there, the
+    largest force of one load, and the dead centre at its end."""
+
+    values: Floats
+    states: Floats
+    turns: Floats
+    forces: Floats
+    largest: Floats
+    ending: Ending | None
+    is_whole: bool
+
+
+class _Curve:
+    """The configurations of one freedom in a window."""
+
+    def __init__(self, statics: Statics, known: Known, time: float) -> None:
+        self.statics, self.known, self.time = statics, known, time
+        (low,), (high,) = known.ends
+        self.values = np.linspace(low, high, tolerances.WINDOW_PLACES + 1)
+        self.base = statics.session.inputs.values[:, 0]
+        self.lost: list[float] = []
+        self.at_dead_centres: list[float] = []
+        self.indifferent: list[tuple[float, float]] = []
+        self.incomplete = 0.0
+        self.largest = 0.0
+
+    def look(self) -> None:
+        """Looks at all cells of the window."""
+        before = self._assemblies(self.values[0])
+        for low, high in zip(self.values[:-1], self.values[1:], strict=True):
+            after = self._assemblies(high)
+            ways = [self._stretch(low, high, place) for place in before]
+            ways += [
+                one for one in (self._stretch(high, low, place) for place in after)
+                if not one.is_whole
+            ]
+            for one in ways:
+                self._look_along(one)
+            self._look_across([one for one in ways if not one.is_whole])
+            before = after
+
+    def _inputs(self, values: Floats) -> Floats:
+        inputs = np.repeat(self.base[:, None], values.size, axis=1)
+        inputs[self.statics.free] = values
+        return inputs
+
+    def _assemblies(self, value: float) -> list[Place]:
+        inputs = self._inputs(np.array([value]))
+        reduced, _ = self.statics.reduced(inputs)
+        found = all_assemblies(self.statics.session, reduced[:, 0])
+        if not found.complete:
+            self.incomplete = max(self.incomplete, found.chance)
+        return [self.statics.place(inputs[:, 0], state) for state in found.states.T]
+
+    def _stretch(self, first: float, last: float, place: Place) -> _Stretch:
+        """The branch through a place at the first value, to the last or to its end before it."""
+        count = tolerances.WINDOW_SAMPLES
+        # one sample more shows what the force does at the end
+        values = first + (last - first) * (np.arange(count + 2) / count)
+        way = self.statics.way(self._inputs(values), place)
+        reached, states, turns = way.reached, way.states, way.turns
+        is_whole = reached > count
+        values = values[:reached]
+        ending = None if is_whole else way.ending
+        if ending is not None and ending.is_dead_centre and reached:
+            fold = float(ending.inputs[self.statics.free[0]])
+            gap = fold - values[-1]
+            near = values[-1] + gap * np.array([0.0, 0.5, 0.75, 0.9, 0.97, 0.99])
+            last_place = Place(self._inputs(values[-1:])[:, 0], states[:, -1], turns[:, -1])
+            more = self.statics.way(self._inputs(near), last_place)
+            values = np.concatenate([values, near[1 : more.reached]])
+            states = np.concatenate([states, more.states[:, 1:]], axis=1)
+            turns = np.concatenate([turns, more.turns[:, 1:]], axis=1)
+        elif not is_whole:
+            self.lost.append(float(values[-1]) if reached else first)
+        times = np.full(values.size, self.time)
+        inputs = self._inputs(values)
+        found = self.statics.forces(inputs, states, turns, times)
+        forces = np.where(found.good, found.forces[0], np.nan)
+        largest = self.statics.largest_at(inputs, states, turns, times)
+        self.largest = max(self.largest, float(largest.max(initial=0.0)))
+        return _Stretch(values, found.states, turns, forces, largest, ending, is_whole)
+
+    def _place(self, one: _Stretch, k: int) -> Place:
+        inputs = self._inputs(one.values[k : k + 1])[:, 0]
+        return Place(inputs, one.states[:, k], one.turns[:, k])
+
+    def _look_along(self, one: _Stretch) -> None:
+        """Zeros of the force along a stretch."""
+        forces, values = one.forces, one.values
+        zero = np.abs(forces) <= tolerances.EQUILIBRIUM_BALANCE * max(self.largest, 1e-300)
+        if self._is_indifferent(one, zero):
+            return
+        for k in range(forces.size - 1):
+            if zero[k]:
+                self._search(self._place(one, k), values[max(k - 1, 0)], values[k + 1])
+            elif forces[k] * forces[k + 1] < 0.0 and not zero[k + 1]:
+                self._between(one, k)
+        if forces.size and zero[-1]:
+            self._search(self._place(one, forces.size - 1), values[-2:][0], values[-1])
+        for k in range(1, forces.size - 1):
+            a, b, c = forces[k - 1 : k + 2]
+            if a * b <= 0.0 or b * c <= 0.0 or abs(b) > min(abs(a), abs(c)):
+                continue
+            # the least of a parabola through three samples: near zero, or beyond it
+            bend, slope = a - 2.0 * b + c, 0.5 * (c - a)
+            least = b - 0.5 * slope * slope / bend if bend != 0.0 else b
+            if least * b <= abs(b) * tolerances.TOUCHING * abs(b):
+                self._search(self._place(one, k), values[k - 1], values[k + 1])
+
+    def _is_indifferent(self, one: _Stretch, zero: Bools) -> bool:
+        """Whether the loads balance all along the stretch, or a part of it; then the first place of
+        it is taken."""
+        both = zero[:-1] & zero[1:]
+        if not both.any():
+            return False
+        k = int(np.argmax(both))
+        last = k + int(np.argmin(np.append(zero[k:], False)))
+        found = search(self.statics, self._place(one, k), self.time)
+        self.indifferent.append((float(one.values[k]), float(one.values[last - 1])))
+        if found.found and not self._touches_known(one, k):
+            self.known.add(found)
+        return bool(zero.all())
+
+    def _touches_known(self, one: _Stretch, k: int) -> bool:
+        """Whether the stretch of places that balance goes on from that of the cell before."""
+        return len(self.indifferent) > 1 and any(
+            abs(float(one.values[k]) - other[1]) <= tolerances.SAME_EQUILIBRIUM
+            for other in self.indifferent[:-1]
+        )
+
+    def _between(self, one: _Stretch, k: int) -> None:
+        """The zero between two samples: by Newton from the secant, else by halving."""
+        place, low, high = self._place(one, k), one.values[k], one.values[k + 1]
+        at, below = float(low), float(one.forces[k])
+        end, above = float(high), float(one.forces[k + 1])
+        for _ in range(tolerances.MOST_HALVINGS):
+            middle = at + (end - at) * (below / (below - above))
+            middle = min(max(middle, min(at, end)), max(at, end))
+            way = self.statics.way(self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place)
+            if way.reached < 2:
+                return
+            there = Place(self._inputs(np.array([middle]))[:, 0], way.states[:, 1], way.turns[:, 1])
+            if self._search(there, low, high):
+                return
+            # not there: halve instead
+            middle = 0.5 * (at + end)
+            way = self.statics.way(self._inputs(np.array([place.inputs[self.statics.free[0]], middle])), place)
+            if way.reached < 2:
+                return
+            inputs = self._inputs(np.array([middle]))
+            force = self.statics.forces(
+                inputs, way.states[:, 1:], way.turns[:, 1:], np.array([self.time])
+            )
+            if not force.good.all():
+                return
+            size = float(force.forces[0, 0])
+            if size * below > 0.0:
+                at, below = middle, size
+                place = Place(inputs[:, 0], way.states[:, 1], way.turns[:, 1])
+            else:
+                end, above = middle, size
+
+    def _search(self, place: Place, low: float, high: float) -> bool:
+        """Takes the equilibrium that a search from a place finds between two values."""
+        found = search(self.statics, place, self.time)
+        low, high = min(low, high), max(low, high)
+        slack = tolerances.SAME_EQUILIBRIUM
+        at = float(found.place.inputs[self.statics.free[0]])
+        if not found.found or not low - slack <= at <= high + slack:
+            return False
+        self.known.add(found)
+        return True
+
+    def _look_across(self, ends: list[_Stretch]) -> None:
+        """Zeros of the force between two stretches that meet at a dead centre: there its part along
+        the coordinate has a sign on each side, and the same one where it has a zero between."""
+        folds = [one for one in ends if one.ending is not None and one.ending.is_dead_centre]
+        layout = self.statics.session.layout
+        for number, one in enumerate(folds):
+            assert one.ending is not None
+            for other in folds[number + 1 :]:
+                assert other.ending is not None
+                state = one.ending.state
+                meets = pose_number(
+                    layout, other.ending.state[:, None], state, tolerances.SAME_DEAD_CENTRE
+                )
+                if meets is None or not one.forces.size or not other.forces.size:
+                    continue
+                if not one.forces[-1] * other.forces[-1] > 0.0:
+                    continue
+                fold = float(one.ending.inputs[self.statics.free[0]])
+                found = [
+                    self._search(self._place(each, each.values.size - 1), each.values[-2:][0], fold)
+                    for each in (one, other)
+                ]
+                if not any(found):
+                    self.at_dead_centres.append(fold)
+
+    def notes(self, response: ResponseProblem) -> list[Diagnostic]:
+        """What was missed, or may have been."""
+        notes = []
+        session, number = self.statics.session, self.statics.free[0]
+
+        def words(value: float) -> str:
+            return input_text(input_number(session.problem, session.layout, number, value))
+
+        for value in self.at_dead_centres:
+            text = f"an equilibrium lies at a dead centre of the window's coordinate, {words(value)}"
+            hint = "name another coordinate in window:, which moves there"
+            notes.append(Diagnostic("at-dead-centre", "warning", text, response.place, hint=hint))
+        if self.indifferent:
+            low = min(min(pair) for pair in self.indifferent)
+            high = max(max(pair) for pair in self.indifferent)
+            text = f"the loads balance all along from {words(low)} to {words(high)}"
+            notes.append(Diagnostic("indifferent", "note", text, response.place))
+        if self.lost:
+            text = "a branch of the mechanism could not be followed through the window"
+            hint = "equilibria beyond may be missed: name another coordinate in window:"
+            at = f"first lost at {words(self.lost[0])}"
+            notes.append(
+                Diagnostic("window-branch", "warning", text, response.place, at, hint=hint)
+            )
+        if self.incomplete > 0.0:
+            text = (
+                "assemblies in the window were searched for from random starts, which may miss some"
+            )
+            at = f"a chance of at most {self.incomplete:.1g} that one more start finds another"
+            notes.append(Diagnostic("window-modes", "note", text, response.place, at))
+        return notes
+
+
+def _none(response: ResponseProblem) -> Diagnostic:
+    """That a window has no equilibrium."""
+    assert response.search is not None
+    names = " and ".join(one.name for one in response.search.window)
+    text = f"no place within the window of {names} was found at which the loads balance"
+    hint = "widen the window, or look at the forces of a sweep through it"
+    return Diagnostic("no-equilibrium", "error", text, response.place, hint=hint)
+
+
+def _from_starts(
+    statics: Statics, known: Known, response: ResponseProblem, time: float
+) -> list[Diagnostic]:
+    """Searches from places spread over the window; how sure it is that they found all."""
+    assert response.search is not None
+    low, high = known.ends
+    base = statics.session.inputs.values[:, 0]
+    least = max(response.search.starts, tolerances.WINDOW_STARTS)
+    starts = ended = since = 0
+    while starts < tolerances.MOST_WINDOW_STARTS:
+        inputs = base.copy()
+        inputs[statics.free] = low + (high - low) * _spread(starts, statics.count)
+        reduced, _ = statics.reduced(inputs[:, None])
+        for state in all_assemblies(statics.session, reduced[:, 0], thorough=False).states.T:
+            place = statics.place(inputs, state)
+            if starts % 2:
+                place = settle(statics, place, time)
+            found = search(statics, place, time)
+            if found.end is not SearchEnd.FOUND:
+                continue
+            ended += 1
+            since = 0 if known.add(found) else since + 1
+        starts += 1
+        if starts >= least and since >= ended // 2:
+            break
+    chance = 1.0 - tolerances.SEARCH_DOUBT ** (1.0 / max(since, 1))
+    count = len(known.found)
+    text = (
+        f"{count} equilibri{'um' if count == 1 else 'a'} found from {starts} starts; with "
+        f"{100.0 * (1.0 - tolerances.SEARCH_DOUBT):g} % confidence one more search that ends at one "
+        f"finds another with a chance of at most {chance:.1g}"
+    )
+    at = f"{ended} searches ended at an equilibrium, the last {since} of them at known ones"
+    hint = "ask for more starts: starts: 1000"
+    return [Diagnostic("window-starts", "note", text, response.place, at, hint=hint)]
+
+
+def _spread(number: int, count: int) -> Floats:
+    """A point of the unit cube (count,) that spreads evenly with its number: multiples of powers of
+    the root of x^(count+1) = x + 1 (M. Roberts, 2018), which is the golden ratio for one."""
+    root = 1.5
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (count + 1))
+    return np.array([(0.5 + (number + 1) * root ** -(k + 1)) % 1.0 for k in range(count)])
