@@ -1,4 +1,5 @@
-"""Thresholds of equilibria: steps of the search, when it has found one, and what is marginal.
+"""Limits of forces about a place, their derivatives and where they balance: steps of a search, when
+it has found an equilibrium, and what is marginal.
 
 Coordinates are in rad and in parts of the mechanism's length unit, forces in N*m by these.
 """
@@ -7,12 +8,14 @@ from __future__ import annotations
 
 from typing import Final
 
-STIFFNESS_STEP: Final = 0.02
-"""Step of the differences of eighth order for a stiffness, rad or length units: truncation and
-rounding are then both about 1e-14 of a force that turns over within one radian."""
+FORCE_STEPS: Final = (2.0**-8, 2.0**-13, 2.0**-18)
+"""Steps by which forces are differentiated (rad, parts of the length unit): of a smooth force the
+first leaves 1e-18 by its ninth derivative and 4e-14 by rounding; what bends sharply beside the
+place, as a spring that is nearly slack, needs the next ones."""
 
-FORCE_ROUNDING: Final = 1e-15
-"""Rounding of a generalized force in parts of the largest about it: sums of a few dozen terms."""
+FORCE_DIFFERENCE: Final = 1e-9
+"""Difference of orders six and eight, in parts of the largest derivative, above which a shorter
+step is tried: that of order eight is then 1e-12 right."""
 
 NEWTON_DIFFERENCE: Final = 1e-4
 """Step of the differences of second order for the slopes of Newton's steps: right to eight digits,
