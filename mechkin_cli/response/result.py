@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from mechkin_cli.tables import Columns
 
 
-def _as_input(response: ResponseResult, joint: str, coordinate: str) -> DrivenInput:
+def _as_input(response: FreeResult, joint: str, coordinate: str) -> DrivenInput:
     """A coordinate with its rates and accelerations, zero in rows without a solution."""
     rows, dimension, orders = response.rows, dimension_of(coordinate), []
     for suffix in ORDERS[:3]:
@@ -65,9 +65,86 @@ ENERGIES = ("row.kinetic_energy", "row.potential_energy")
 
 
 class FreeResult(Result):
-    """Rows in which loads and given efforts decide where what is free is, or how it moves."""
+    """Rows in which loads and given efforts decide where what is free is, or how it moves.
 
-    response: ResponseProblem
+    Args:
+        session: of what is free, with the driven coordinates at the rows.
+        start: the first assembly, of a session `chosen` with the start's coordinates as inputs.
+        rows: the rows.
+        chart: about each row.
+        response: the file's.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        start: AssemblyStart,
+        rows: SweepRows,
+        *,
+        chosen: Session,
+        chart: Chart,
+        response: ResponseProblem,
+    ) -> None:
+        super().__init__(session, start, rows)
+        self.chosen, self.chart, self.response = chosen, chart, response
+
+    @cached_property
+    def solved(self) -> Bools:
+        """Rows that were reached and have a position (rows,)."""
+        return self.row_states.reached & super().solved
+
+    @cached_property
+    def mode(self) -> str:
+        """The letter of the first assembly where a short search proves it; else `near` or
+        `home`."""
+        return mode_letter(self.chosen, self.start, thorough=False)
+
+    @cached_property
+    def letter(self) -> str:
+        """The letter of the first assembly, searched for if it is not known yet."""
+        return mode_letter(self.chosen, self.start)
+
+    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
+        chart = self.chart
+        if not session.problem.mechanism.frictions:  # nothing rubs in that session
+            chart = chart._replace(friction=chart.friction[:0])
+        return super()._row_inputs(session, inputs)._replace(chart=chart)
+
+    @cached_property
+    def as_driven(self) -> Result:
+        """The same rows as a sweep of the start's coordinates, by whose accelerations the
+        coefficients of the equations of motion are; near a dead centre of them there are none: a
+        sweep with these states, rates and accelerations, on the same tree."""
+        own, moving = self.row_states, self.problem.motion
+        free = [_as_input(self, *at) for at in self.response.independent]
+        motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
+        session = self.chosen.moved(replace(self.chosen.problem, motion=motion))
+        rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
+        rows.states, rows.reached, rows.status = own.states, own.reached, own.status
+        # cut joints have the same turns; the tree's angles have theirs in the states
+        closing = own.turns[: own.turns.shape[0] - len(self.session.structure.tree_slots)]
+        still = np.zeros((len(session.structure.tree_slots), moving.rows))
+        rows.turns = np.concatenate([closing, still])
+        return Result(session, self.start, rows)
+
+    def quantity(self, name: str) -> Quantity:
+        """A parameter, direction or result by name, in SI.
+
+        Raises:
+            UnknownName: nothing has this name.
+        """
+        wanted = self.problem.quantities().get(name)
+        if wanted is not None and wanted.kind in DRIVEN_KINDS:
+            return self.as_driven.quantity(name)
+        if wanted is not None and self.is_given(wanted):
+            return Quantity(self._effort(wanted), wanted.dimension)
+        return super().quantity(name)
+
+    def read(self, wanted: Iterable[Wanted]) -> None:
+        """Evaluates the quantities that have not been read yet."""
+        super().read(
+            one for one in wanted if one.kind not in DRIVEN_KINDS and not self.is_given(one)
+        )
 
     def is_given(self, quantity: Wanted) -> bool:
         """Whether a quantity is one of the efforts that the file gives."""
@@ -123,9 +200,9 @@ class ResponseResult(FreeResult):
         report: MotionReport | None,
         rebounds: Sequence[Rebound] = (),
     ) -> None:
-        super().__init__(session, start, rows)
-        self.chosen, self.chart, self.exchanged = chosen, chart, work
-        self.events, self.response, self.report = tuple(events), response, report
+        super().__init__(session, start, rows, chosen=chosen, chart=chart, response=response)
+        self.exchanged = work
+        self.events, self.report = tuple(events), report
         self.rebounds = tuple(rebounds)
         self.other_loads: tuple[OtherLoads, ...] = ()
 
@@ -164,28 +241,6 @@ class ResponseResult(FreeResult):
         return impact_table(self.session, self.response.name, self.rebounds)
 
     @cached_property
-    def solved(self) -> Bools:
-        """Rows that were reached and have a position (rows,)."""
-        return self.row_states.reached & super().solved
-
-    @cached_property
-    def mode(self) -> str:
-        """The letter of the first assembly where a short search proves it; else `near` or
-        `home`."""
-        return mode_letter(self.chosen, self.start, thorough=False)
-
-    @cached_property
-    def letter(self) -> str:
-        """The letter of the first assembly, searched for if it is not known yet."""
-        return mode_letter(self.chosen, self.start)
-
-    def _row_inputs(self, session: Session, inputs: KernelInputs) -> RowInputs:
-        chart = self.chart
-        if not session.problem.mechanism.frictions:  # nothing rubs in that session
-            chart = chart._replace(friction=chart.friction[:0])
-        return super()._row_inputs(session, inputs)._replace(chart=chart)
-
-    @cached_property
     def input_rates(self) -> Mapping[str, Floats]:
         """As of a sweep; and the start's coordinates, which the first row has as the file writes
         them."""
@@ -209,23 +264,6 @@ class ResponseResult(FreeResult):
             column[0] = short
         return column
 
-    @cached_property
-    def as_driven(self) -> Result:
-        """The same rows as a sweep of the start's coordinates, by whose accelerations the
-        coefficients of the equations of motion are; near a dead centre of them there are none: a
-        sweep with these states, rates and accelerations, on the same tree."""
-        own, moving = self.row_states, self.problem.motion
-        free = [_as_input(self, *at) for at in self.response.independent]
-        motion = MotionInputs((*free, *moving.inputs), moving.rows, moving.time, moving.course)
-        session = self.chosen.moved(replace(self.chosen.problem, motion=motion))
-        rows = SweepRows.without_guesses(own.states.shape[0], 0, moving.rows)
-        rows.states, rows.reached, rows.status = own.states, own.reached, own.status
-        # cut joints have the same turns; the tree's angles have theirs in the states
-        closing = own.turns[: own.turns.shape[0] - len(self.session.structure.tree_slots)]
-        still = np.zeros((len(session.structure.tree_slots), moving.rows))
-        rows.turns = np.concatenate([closing, still])
-        return Result(session, self.start, rows)
-
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
 
@@ -235,23 +273,12 @@ class ResponseResult(FreeResult):
         of_response = response_quantities().get(name)
         if of_response is not None:
             return Quantity(getattr(self, of_response.kind), of_response.dimension)
-        wanted = self.problem.quantities().get(name)
-        if wanted is not None and wanted.kind in DRIVEN_KINDS:
-            return self.as_driven.quantity(name)
-        if wanted is not None and self.is_given(wanted):
-            return Quantity(self._effort(wanted), wanted.dimension)
         return super().quantity(name)
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
         own = response_quantities()
-        super().read(
-            quantity
-            for quantity in wanted
-            if quantity.name not in own
-            and quantity.kind not in DRIVEN_KINDS
-            and not self.is_given(quantity)
-        )
+        super().read(quantity for quantity in wanted if quantity.name not in own)
 
     def is_given(self, quantity: Wanted) -> bool:
         """Whether a quantity is one of the response's efforts."""

@@ -1,23 +1,31 @@
 """The search for one equilibrium: Newton's steps towards any place at which the forces vanish,
 stable or not, down along the forces where their slopes say nothing.
 
-A step goes along the branch of the assembly, as far as the forces become smaller; where the branch
-ends on the way, as far as it leads.
+Each step is taken on a chart about the place before, so no dead centre of a coordinate stops it. It
+goes as far as the forces become smaller, and as the places along it lie on one smooth branch.
 """
 
 from __future__ import annotations
 
 from enum import Enum
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.mechanism import eliminated
-from mechkin_cli.record import NamedTuple
+from mechkin_cli.mechanism import ZERO, eliminated
+from mechkin_cli.memo import remembered
+from mechkin_cli.record import NamedTuple, dataclass, replace
+from mechkin_cli.response import free_session, with_loads
+from mechkin_cli.session import turn_count
+
+from mechkin_cli.statics.forces import DrivenAt, Forces, ForcesAt, FreePlace, summed
 from mechkin_cli.statics.places import Place, Statics, eigen
 
 if TYPE_CHECKING:
+    from mechkin_cli.mechanism import Moments, ResponseProblem
+    from mechkin_cli.session import Session
     from mechkin_cli.show import Floats
 
 
@@ -27,19 +35,18 @@ class SearchEnd(Enum):
     FOUND = "found"
     LEAST = "no step makes the forces smaller"
     RUNAWAY = "the mechanism runs away"
-    BRANCH_ENDS = "the branch of its assembly ends"
+    BRANCH_ENDS = "the mechanism cannot be followed further"
     NO_FORCES = "the loads have no value there"
     STEPS = "steps ran out"
 
 
 class Search(NamedTuple):
-    """The last place of a search, the forces there (free,), the largest force of one load, the
-    length of its last step, and why it ended."""
+    """The last place of a search, the forces there (freedoms,), the largest force of one load and
+    the largest slope of the forces, and why it ended; forces in kernel units."""
 
-    place: Place
+    place: FreePlace
     forces: Floats
     largest: float
-    step: float
     end: SearchEnd
     steps: int
 
@@ -49,82 +56,183 @@ class Search(NamedTuple):
         return self.end is SearchEnd.FOUND
 
 
-_PARTS = np.array([0.0, 0.0625, 0.125, 0.25, 0.5, 0.75, 1.0])
+@dataclass(frozen=True)
+class Balancing:
+    """The forces of a run about places, at one moment.
+
+    Attributes:
+        chosen: the session whose inputs are the run's independent coordinates and then the driven
+            ones.
+        response: the run.
+        forces: of what is free.
+        alone: of each load alone, and of all weights.
+    """
+
+    chosen: Session
+    response: ResponseProblem
+    forces: Forces
+    alone: tuple[Forces, ...]
+
+    @classmethod
+    def of(cls, chosen: Session, response: ResponseProblem) -> Balancing:
+        """The forces of a run, whose motion has one row."""
+        problem = chosen.problem
+        motion = problem.motion._replace(
+            inputs=problem.motion.inputs[len(response.independent) :], rows=1, leader=None
+        )
+        free = free_session(chosen, response.independent)
+        free = replace(free.moved(problem.moved(motion)), packing=chosen.packing)
+        driven = DrivenAt.row(free)
+        alone = tuple(Forces(one, driven) for one in _alone(free))
+        return cls(chosen, response, Forces(free, driven), alone)
+
+    def largest(self, place: FreePlace) -> float:
+        """The largest force of one load alone, or of all weights: what balances at a place."""
+        none, most = np.zeros((self.forces.freedoms, 1)), 0.0
+        for one in self.alone:
+            found = one.at(place, none)
+            if found.good.all():
+                most = max(most, float(np.max(np.abs(found.forces))))
+        return most
+
+    def charted(self, statics: Statics, place: Place) -> FreePlace:
+        """A place of the chosen session with a chart about it.
+
+        Raises:
+            ValueError: a named coordinate stands at a dead centre there.
+        """
+        session, layout = self.chosen, self.chosen.layout
+        state = place.state.copy()
+        # a free motion's states have the whole turns of the tree's angles
+        for slot, row in session.structure.tree_slots.items():
+            state[slot] += 2.0 * pi * place.turns[row]
+        closing = place.turns.size - len(session.structure.tree_slots)
+        turns = np.zeros(turn_count(self.forces.session.plan))
+        turns[:closing] = place.turns[:closing]
+        for number, (edge, freedom) in enumerate(session.graph.inputs):
+            state[layout.state(edge, freedom)] = place.inputs[number]
+        tangents = statics.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
+        return self.forces.place(state, turns, tangents)
+
+    def named(self, place: FreePlace) -> tuple[Floats, Floats]:
+        """The run's independent coordinates (freedoms,) at a place, and their rates (freedoms,
+        freedoms) where one direction of its chart after the other has unit rate."""
+        return coordinates_at(self.forces, self.response.independent, place)
+
+
+def coordinates_at(
+    forces: Forces, coordinates: list[tuple[str, str]], place: FreePlace
+) -> tuple[Floats, Floats]:
+    """Some coordinates (coordinates,) at a place in kernel units, and their rates (coordinates,
+    freedoms) where one direction of its chart after the other has unit rate."""
+    session = forces.session
+    known = session.problem.quantities()
+    names = [f"{joint}.{name}" for joint, name in coordinates]
+    wanted = [known[name + suffix] for suffix in ("", "_dot") for name in names]
+    readout = session.readout(wanted)
+    outputs = forces.read(place, readout)
+    joints = session.layout.mechanism.joints
+    values, rates = [], []
+    for (joint, name), full in zip(coordinates, names, strict=True):
+        unit = joints[joint].unit_of(name, session.layout.length)
+        value = outputs[readout.slots[full].start][:1]
+        if session.layout.joint_reference[joint] < 0:
+            slot = session.structure.turn_slot(known[full])
+            if slot is not None:
+                value = forces.continuous(value, place, slot)
+        values.append(float(value[0]) / unit)
+        rates.append(outputs[readout.slots[full + "_dot"].start] / unit)
+    return np.array(values), np.array(rates)
+
+
+@remembered
+def _alone(session: Session) -> tuple[Session, ...]:
+    """Sessions in which one load acts alone, or all weights."""
+    problem = session.problem
+    mechanism = problem.mechanism
+    acting = [replace(mechanism, loads=(load,), gravity=ZERO) for load in mechanism.loads]
+    if mechanism.gravity != ZERO:
+        acting.append(replace(mechanism, loads=()))
+    return tuple(with_loads(session, replace(problem, mechanism=each)) for each in acting)
+
+
+_PARTS = np.array([0.0625, 0.125, 0.25, 0.5, 0.75, 1.0])
 """Parts of a step at which the forces are looked at."""
 
 
-def search(statics: Statics, start: Place, time: float) -> Search:
-    """Searches for an equilibrium from a place, at a moment (s)."""
-    place, free = start, statics.free
-    largest = statics.largest(place, time)
-    steps, forces = 0, np.zeros(statics.count)
-    length = 0.0
+def search(balancing: Balancing, start: FreePlace) -> Search:
+    """Searches for an equilibrium from a place."""
+    place, steps = start, 0
+    largest = balancing.largest(place)
+    count = balancing.forces.freedoms
+    forces, length, way = np.full(count, np.nan), np.inf, 0.0
     while True:
-        found = slopes(statics, place, time)
+        found = slopes(balancing.forces, place)
         if found is None:
-            return Search(place, forces, largest, length, SearchEnd.NO_FORCES, steps)
+            return Search(place, forces, largest, SearchEnd.NO_FORCES, steps)
         forces, matrix = found
-        size = float(np.max(np.abs(forces)))
-        scale = max(largest, float(np.max(np.abs(matrix))))
-        wanted = newton_step(matrix, forces)
-        length = float(np.sqrt((wanted * wanted).sum()))
-        if size <= tolerances.EQUILIBRIUM_ROUNDING * scale:
-            return Search(place, forces, largest, length, SearchEnd.FOUND, steps)
+        size, slope = float(np.max(np.abs(forces))), float(np.max(np.abs(matrix)))
+        if length <= tolerances.EQUILIBRIUM_STEP or size <= (
+            tolerances.EQUILIBRIUM_ROUNDING * max(largest, slope)
+        ):
+            largest = max(balancing.largest(place), slope)
+            return Search(place, forces, largest, SearchEnd.FOUND, steps)
         if steps == tolerances.MOST_EQUILIBRIUM_STEPS:
-            return Search(place, forces, largest, length, SearchEnd.STEPS, steps)
+            return Search(place, forces, max(largest, slope), SearchEnd.STEPS, steps)
+        wanted = newton_step(matrix, forces)
+        length = _length(wanted)
+        down = -forces * (tolerances.EQUILIBRIUM_REACH / _length(forces))
         if length > tolerances.WILD_STEP:
-            wanted = -forces * (tolerances.EQUILIBRIUM_REACH / np.sqrt((forces * forces).sum()))
+            wanted = down
         elif length > tolerances.EQUILIBRIUM_REACH:
             wanted = wanted * (tolerances.EQUILIBRIUM_REACH / length)
-        moved, end = _moved(statics, place, wanted, forces, time)
-        if end is SearchEnd.LEAST and length > tolerances.EQUILIBRIUM_STEP:
-            down = -forces * (tolerances.EQUILIBRIUM_REACH / np.sqrt((forces * forces).sum()))
-            moved, end = _moved(statics, place, down, forces, time)
+        moved, end = _moved(balancing.forces, place, wanted, forces)
+        if moved is None and length > tolerances.EQUILIBRIUM_STEP:
+            moved, _ = _moved(balancing.forces, place, down, forces)
         if moved is None:
             # rounding alone may be left
-            largest = statics.largest(place, time)
-            scale = max(largest, float(np.max(np.abs(matrix))))
-            if end is SearchEnd.LEAST and size <= tolerances.EQUILIBRIUM_BALANCE * scale:
+            largest = max(balancing.largest(place), slope)
+            if size <= tolerances.EQUILIBRIUM_BALANCE * largest:
                 end = SearchEnd.FOUND
-            return Search(place, forces, largest, length, end, steps)
+            return Search(place, forces, largest, end, steps)
         steps += 1
-        place, forces = moved
-        off = np.abs(place.inputs[free] - start.inputs[free])
-        if float(np.max(np.where(statics.cyclic[free], 0.0, off))) > tolerances.FAR_EQUILIBRIUM:
-            return Search(place, forces, largest, length, SearchEnd.RUNAWAY, steps)
-        if length <= tolerances.EQUILIBRIUM_STEP:
-            return Search(
-                place, forces, statics.largest(place, time), length, SearchEnd.FOUND, steps
-            )
+        place = moved
+        way += min(length, tolerances.EQUILIBRIUM_REACH)
+        slide = float(np.max(np.abs(balancing.named(place)[0]))) if steps % 8 == 0 else 0.0
+        if slide > tolerances.FAR_EQUILIBRIUM:
+            return Search(place, forces, largest, SearchEnd.RUNAWAY, steps)
 
 
-def slopes(statics: Statics, place: Place, time: float) -> tuple[Floats, Floats] | None:
-    """Forces (free,) and their slopes (free, free) at a place; None where there are none."""
-    count, step = statics.count, tolerances.NEWTON_DIFFERENCE
-    steps = np.zeros((count, 2 * count + 1))
+def _length(step: Floats) -> float:
+    return float(np.sqrt(summed(step * step)))
+
+
+def slopes(forces: Forces, place: FreePlace) -> tuple[Floats, Floats] | None:
+    """Forces (freedoms,) and their slopes (freedoms, freedoms) at a place; None where there are
+    none."""
+    count, step = forces.freedoms, tolerances.NEWTON_DIFFERENCE
+    u = np.zeros((count, 2 * count + 1))
     for k in range(count):
-        steps[k, 2 * k + 1], steps[k, 2 * k + 2] = step, -step
-    found = statics.beside(place, steps, time)
+        u[k, 2 * k + 1], u[k, 2 * k + 2] = step, -step
+    found = forces.at(place, u)
     if not found.good.all():
         return None
-    forces = found.forces[:, 0]
-    matrix = (found.forces[:, 1::2] - found.forces[:, 2::2]) / (2.0 * step)
-    return forces, matrix
+    return found.forces[:, 0], (found.forces[:, 1::2] - found.forces[:, 2::2]) / (2.0 * step)
 
 
 def newton_step(matrix: Floats, forces: Floats) -> Floats:
-    """The step (free,) at whose end forces would vanish if they were linear; of singular slopes a
-    damped one."""
+    """The step (freedoms,) at whose end forces would vanish if they were linear; of singular slopes
+    a damped one."""
+    count = forces.size
     scale = float(np.max(np.abs(matrix), initial=0.0))
+    if not scale > 0.0:
+        return np.full(count, np.inf)
     solved = None
     if np.max(np.abs(matrix), axis=1).min() > tolerances.MARGINAL_STIFFNESS * scale:
         solved = eliminated(matrix.tolist(), (-forces).tolist(), tolerances.MARGINAL_STIFFNESS)
     if solved is not None:
         return np.array(solved)
-    if not scale > 0.0:
-        return np.full(forces.size, np.inf)
     # least squares with a little damping: along what is indifferent nothing moves
-    count = forces.size
     normal = np.zeros((count, count))
     right = np.zeros(count)
     for k in range(count):
@@ -136,70 +244,68 @@ def newton_step(matrix: Floats, forces: Floats) -> Floats:
 
 
 def _moved(
-    statics: Statics, place: Place, wanted: Floats, forces: Floats, time: float
-) -> tuple[tuple[Place, Floats] | None, SearchEnd]:
-    """The place along a step where the forces are least, and these, if they are less than before;
-    else why there is none."""
-    inputs = np.repeat(place.inputs[:, None], _PARTS.size, axis=1)
-    inputs[statics.free] += wanted[:, None] * _PARTS
-    way = statics.way(inputs, place)
-    if way.reached < 2:
-        return None, SearchEnd.BRANCH_ENDS
-    reached = slice(1, way.reached)
-    found = statics.forces(
-        inputs[:, reached], way.states[:, reached], way.turns[:, reached],
-        np.full(way.reached - 1, time),
-    )
-    sizes = np.where(found.good, (found.forces * found.forces).sum(axis=0), np.inf)
-    if not found.good.any():
-        return None, SearchEnd.NO_FORCES
+    forces: Forces, place: FreePlace, wanted: Floats, before: Floats
+) -> tuple[FreePlace | None, SearchEnd]:
+    """The place along a step where the forces are least, if they are less than before; else why
+    there is none."""
+    found = forces.at(place, wanted[:, None] * _PARTS)
+    reached = smooth_parts(place, found, _PARTS)
+    if not reached:
+        return None, SearchEnd.BRANCH_ENDS if not found.good[0] else SearchEnd.LEAST
+    sizes = summed(found.forces * found.forces)[:reached]
     best = int(np.argmin(sizes))
-    if not sizes[best] < (forces * forces).sum():
-        ends = way.reached < _PARTS.size
-        return None, SearchEnd.BRANCH_ENDS if ends else SearchEnd.LEAST
-    at = best + 1
-    moved = Place(inputs[:, at], found.states[:, best], way.turns[:, at])
-    return (moved, found.forces[:, best]), SearchEnd.FOUND
+    if not sizes[best] < float(summed(before * before)):
+        return None, SearchEnd.LEAST if reached == _PARTS.size else SearchEnd.BRANCH_ENDS
+    try:
+        return forces.moved(place, found, best), SearchEnd.FOUND
+    except ValueError:
+        return None, SearchEnd.BRANCH_ENDS
 
 
-def settle(statics: Statics, start: Place, time: float) -> Place:
+def smooth_parts(place: FreePlace, found: ForcesAt, parts: Floats) -> int:
+    """How many places along a step, in rising parts of it, lie on one smooth branch: the states go
+    evenly from each to the next, as none do that jump to another branch."""
+    good = int(np.argmin(np.append(found.good, False)))
+    states = np.concatenate([place.state[:, None], found.states[:, :good]], axis=1)
+    at = np.concatenate([[0.0], parts[:good]])
+    pace = np.diff(states, axis=1) / np.diff(at)
+    for k in range(1, good):
+        change = float(np.max(np.abs(pace[:, k] - pace[:, k - 1])))
+        if change > tolerances.SMOOTH_STEP * float(np.max(np.abs(pace[:, : k + 1]))):
+            return k
+    return good
+
+
+def settle(balancing: Balancing, start: FreePlace) -> FreePlace:
     """A place lower than a start, near one where the mechanism would come to rest: steps against
     the forces, by slopes of either sign taken as positive, each as far as the forces still push."""
-    place = start
+    place, forces = start, balancing.forces
     for _ in range(tolerances.MOST_SETTLING_STEPS):
-        found = slopes(statics, place, time)
-        if found is None:
+        known = slopes(forces, place)
+        if known is None:
             return place
-        forces, matrix = found
+        pushes, matrix = known
         values, vectors = eigen(0.5 * (matrix + matrix.T))
         scale = float(np.max(np.abs(values)))
         if not scale > 0.0:
             return place
         sizes = np.maximum(np.abs(values), tolerances.SETTLING_STIFFNESS * scale)
-        wanted = np.zeros(statics.count)
-        for k in range(statics.count):
-            wanted = wanted - vectors[:, k] * (float((vectors[:, k] * forces).sum()) / sizes[k])
-        length = float(np.sqrt((wanted * wanted).sum()))
+        wanted = np.zeros(forces.freedoms)
+        for k in range(forces.freedoms):
+            wanted = wanted - vectors[:, k] * (float(summed(vectors[:, k] * pushes)) / sizes[k])
+        length = _length(wanted)
         if length < tolerances.SETTLED_STEP:
             return place
         wanted = wanted * min(1.0, tolerances.EQUILIBRIUM_REACH / length)
-        inputs = np.repeat(place.inputs[:, None], _PARTS.size, axis=1)
-        inputs[statics.free] += wanted[:, None] * _PARTS
-        way = statics.way(inputs, place)
-        if way.reached < 2:
+        found = forces.at(place, wanted[:, None] * _PARTS)
+        reached = smooth_parts(place, found, _PARTS)
+        if not reached:
             return place
-        reached = slice(1, way.reached)
-        there = statics.forces(
-            inputs[:, reached],
-            way.states[:, reached],
-            way.turns[:, reached],
-            np.full(way.reached - 1, time),
-        )
-        pushes = (there.forces * wanted[:, None]).sum(axis=0)
-        onward = there.good & (pushes <= 0.0)
+        onward = summed(found.forces * wanted[:, None])[:reached] <= 0.0
         # as far as it still goes down
-        count = int(np.argmin(np.append(onward, False)))
-        if not count:
-            count = 1
-        place = Place(inputs[:, count], there.states[:, count - 1], way.turns[:, count])
+        last = max(int(np.argmin(np.append(onward, False))) - 1, 0)
+        try:
+            place = forces.moved(place, found, last)
+        except ValueError:
+            return place
     return place

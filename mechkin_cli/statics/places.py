@@ -126,14 +126,9 @@ class Statics:
             good &= ~batch.undefined.astype(bool)
         return Forced(forces, batch.states, good)
 
-    def largest(self, place: Place, time: float) -> float:
-        """The largest force of one load alone, or of all weights, at a place: what balances there,
-        N*m by kernel units."""
-        columns = place.inputs[:, None], place.state[:, None], place.turns[:, None]
-        return float(self.largest_at(*columns, np.array([time]))[0])
-
     def largest_at(self, inputs: Floats, states: Floats, turns: Floats, time: Floats) -> Floats:
-        """The same at many places (places,)."""
+        """The largest force of one load alone, or of all weights, at each of many places (places,):
+        what balances there, N*m by kernel units."""
         most = np.zeros(inputs.shape[1])
         for session in _alone(self.session):
             found = Statics(session, self.free).forces(inputs, states, turns, time)
@@ -154,20 +149,6 @@ class Statics:
         batch = self.session.run(rows, Ask(Demand.VELOCITY, derivatives=True, iterations=0))
         assert batch.first is not None
         return batch.first.reshape(-1, self.count, places).transpose(1, 0, 2)
-
-    def beside(self, place: Place, steps: Floats, time: float) -> Forced:
-        """Forces (free, steps) where the free coordinates are `steps` (free, steps) away."""
-        tangents = self.tangents(place.inputs[:, None], place.state[:, None])[:, :, 0]
-        inputs = np.repeat(place.inputs[:, None], steps.shape[1], axis=1)
-        inputs[self.free] += steps
-        states = np.repeat(place.state[:, None], steps.shape[1], axis=1)
-        # sums in one order, on every machine
-        columns = sum(
-            tangent[:, None] * step for tangent, step in zip(tangents, steps, strict=True)
-        )
-        guess = self.session.moved_along(states, np.asarray(columns))
-        turns = np.repeat(place.turns[:, None], steps.shape[1], axis=1)
-        return self.forces(inputs, guess, turns, np.full(steps.shape[1], time))
 
     def place(self, inputs: Floats, state: Floats) -> Place:
         """A closed place at some inputs, to which nothing was followed."""
@@ -203,70 +184,6 @@ def _alone(session: Session) -> tuple[Session, ...]:
     if mechanism.gravity != ZERO:
         acting.append(replace(mechanism, loads=(), frictions=()))
     return tuple(session.loaded(replace(problem, mechanism=each)) for each in acting)
-
-
-class Stiffness(NamedTuple):
-    """The slopes of the forces by the coordinates (free, free), in kernel units, and how far off
-    they may be."""
-
-    matrix: Floats
-    error: float
-
-
-_EIGHTH = ((1, 4.0 / 5.0), (2, -1.0 / 5.0), (3, 4.0 / 105.0), (4, -1.0 / 280.0))
-_SIXTH = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
-
-
-def stiffness(statics: Statics, place: Place, time: float) -> Stiffness | None:
-    """The stiffness at a place by central differences of eighth order, its error from those of
-    sixth; None where a place beside it has no forces."""
-    count, step = statics.count, tolerances.STIFFNESS_STEP
-    steps = np.zeros((count, count * 8))
-    for k in range(count):
-        for number, (times, _) in enumerate(_EIGHTH):
-            steps[k, k * 8 + 2 * number] = times * step
-            steps[k, k * 8 + 2 * number + 1] = -times * step
-    found = statics.beside(place, steps, time)
-    if not found.good.all():
-        return None
-    differences = found.forces.reshape(count, count, 4, 2)
-    differences = differences[..., 0] - differences[..., 1]  # (force, coordinate, times)
-    eighth, sixth = (
-        sum(weight * differences[:, :, times - 1] for times, weight in order) / step
-        for order in (_EIGHTH, _SIXTH)
-    )
-    largest = float(np.max(np.abs(found.forces), initial=0.0))
-    rounding = tolerances.FORCE_ROUNDING * largest / step
-    error = float(np.max(np.abs(eighth - sixth), initial=0.0)) + rounding
-    return Stiffness(np.asarray(eighth), error)
-
-
-def mass(statics: Statics, place: Place, time: float) -> Floats:
-    """The mass matrix (free, free) at a place, kg by the squares of kernel units: forces of unit
-    accelerations without those at rest."""
-    count = statics.count
-    repeated = np.zeros(count + 1, dtype=np.intp)
-    inputs = place.inputs[:, None][:, repeated]
-    rows = statics.rows(
-        inputs,
-        place.state[:, None][:, repeated],
-        place.turns[:, None][:, repeated],
-        np.full(count + 1, time),
-    )
-    accelerations = np.zeros_like(inputs)
-    for number, k in enumerate(statics.free):
-        accelerations[k, number] = 1.0
-    readout = statics.readout
-    demand = Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
-    batch = statics.session.run(
-        rows._replace(accelerations=accelerations), Ask(demand, readout, iterations=0)
-    )
-    assert batch.outputs is not None
-    forces = np.stack([batch.outputs[readout.slots[q.name].start] for q in readout.wanted])
-    forces = forces * statics.units[:, None]
-    # accelerations are in kernel units, and so are lengths of the forces by virtual work
-    found: NDArray[np.float64] = forces[:, :count] - forces[:, count:]
-    return found
 
 
 def eigen(matrix: Floats) -> tuple[Floats, Floats]:

@@ -1,5 +1,5 @@
-"""The rows of equilibria, read as those of a sweep are: each row is one equilibrium, at which all
-inputs stand still."""
+"""The rows of equilibria, read as those of a response are: each row is one equilibrium, about which
+nothing moves."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 
 from mechkin_cli.expressions import Quantity
 from mechkin_cli.mechanism import (
+    DRIVEN_KINDS,
     DrivenInput,
     Moments,
     MotionInputs,
-    Problem,
     ResponseProblem,
-    dimension_of,
     is_angle,
     resting_quantities,
 )
+from mechkin_cli.plan import Demand
 from mechkin_cli.response import FreeResult
-from mechkin_cli.session import input_unit, turn_count
-from mechkin_cli.statics.newton import Search
+from mechkin_cli.session import Chart, turn_count
+from mechkin_cli.statics.newton import Balancing, Search
 from mechkin_cli.statics.stability import Stability, Verdict
 from mechkin_cli.sweep import SweepRows
 from mechkin_cli.verdict import Status
@@ -30,63 +30,77 @@ if TYPE_CHECKING:
     from mechkin_cli.assembly import AssemblyStart
     from mechkin_cli.diagnostics import Diagnostic
     from mechkin_cli.mechanism import Wanted
-    from mechkin_cli.session import Session
+    from mechkin_cli.session import Ask, Batch, KernelInputs, Session
     from mechkin_cli.show import Floats
-
-
 
 
 class EquilibriumResult(FreeResult):
     """The equilibria of a run.
 
     Args:
-        chosen: the session at the start of the search.
+        balancing: the forces of the run.
         start: the first assembly.
-        response: the file's entry.
         found: the equilibria with their verdicts; without any there is one row without a place.
         notes: of the search.
     """
 
     def __init__(
         self,
-        chosen: Session,
+        balancing: Balancing,
         start: AssemblyStart,
-        response: ResponseProblem,
         found: Sequence[tuple[Search, Verdict]],
         notes: Sequence[Diagnostic],
     ) -> None:
-        session = chosen.moved(_moved(chosen, response, [one.place.inputs for one, _ in found]))
+        free, response = balancing.forces.session, balancing.response
         count = max(len(found), 1)
-        rows = SweepRows.without_guesses(
-            chosen.layout.states, turn_count(chosen.plan), count
-        )
+        session = free.moved(free.problem.moved(_rows(response, count)))
+        rows = SweepRows.without_guesses(free.layout.states, turn_count(free.plan), count)
+        rows.turns[:] = 0.0
         rows.diagnostics += notes
+        freedoms, columns = balancing.forces.freedoms, free.plan.columns
+        directions = np.zeros((freedoms * columns, count))
         for number, (one, _) in enumerate(found):
             rows.states[:, number] = one.place.state
             rows.turns[:, number] = one.place.turns
             rows.reached[number] = True
+            directions[:, number] = one.place.tangents.ravel()
         if not found:
             rows.status[:] = Status.no_equilibrium
-            if start.state is None and response.search is not None and not response.search.window:
+            if start.state is None and not self._is_window(response):
                 rows.status[:] = Status.not_assembled
-        super().__init__(session, start, rows)
-        self.run_start = chosen, start
-        self.response, self.found = response, tuple(found)
+        still = np.zeros((freedoms, count))
+        super().__init__(
+            session,
+            start,
+            rows,
+            chosen=balancing.chosen,
+            chart=Chart(directions, still, still, np.zeros((0, count))),
+            response=response,
+        )
+        self.found = tuple(found)
         self.events = tuple(_words(response, verdict) for _, verdict in found) or ("",)
 
     @property
     def mode(self) -> str:
-        """As of a sweep; the equilibria of a window are of any mode."""
-        return "" if self._in_window else super().mode
+        """As of a response; the equilibria of a window are of any mode."""
+        return "" if self._is_window(self.response) else super().mode
 
     @property
     def letter(self) -> str:
-        """As of a sweep; the equilibria of a window are of any mode."""
-        return "" if self._in_window else super().letter
+        """As of a response; the equilibria of a window are of any mode."""
+        return "" if self._is_window(self.response) else super().letter
 
-    @property
-    def _in_window(self) -> bool:
-        return self.response.search is not None and bool(self.response.search.window)
+    @staticmethod
+    def _is_window(response: ResponseProblem) -> bool:
+        return response.search is not None and bool(response.search.window)
+
+    def run(
+        self, ask: Ask, *, session: Session | None = None, inputs: KernelInputs | None = None
+    ) -> Batch:
+        """As of a response, at rest whatever is left of forces."""
+        demand = ask.demand | Demand.VELOCITY | Demand.ACCELERATION | Demand.FORCES
+        ask = ask._replace(demand=demand, balance=True)
+        return super().run(ask, session=session, inputs=inputs)
 
     def quantity(self, name: str) -> Quantity:
         """A parameter, direction or result by name, in SI.
@@ -97,14 +111,11 @@ class EquilibriumResult(FreeResult):
         own = self._own.get(name)
         if own is not None:
             return Quantity(getattr(self, own.kind), own.dimension)
-        wanted = self.problem.quantities().get(name)
-        if wanted is not None and self.is_given(wanted):
-            return Quantity(self._effort(wanted), wanted.dimension)
         return super().quantity(name)
 
     def read(self, wanted: Iterable[Wanted]) -> None:
         """Evaluates the quantities that have not been read yet."""
-        super().read(one for one in wanted if one.name not in self._own and not self.is_given(one))
+        super().read(one for one in wanted if one.name not in self._own)
 
     @property
     def _own(self) -> dict[str, Wanted]:
@@ -128,12 +139,12 @@ class EquilibriumResult(FreeResult):
 
     @property
     def imbalance(self) -> Floats:
-        """The largest force left (rows,), in parts of the largest of one load and of what the
-        stiffness gives for a unit."""
+        """The largest force left (rows,), in parts of the largest of one load and of the largest
+        stiffness."""
         return self._told(
             [
-                float(np.max(np.abs(one.forces))) / max(one.largest, verdict.size) or 0.0
-                for one, verdict in self.found
+                float(np.max(np.abs(one.forces))) / one.largest if one.largest > 0.0 else 0.0
+                for one, _ in self.found
             ]
         )
 
@@ -142,31 +153,20 @@ def _words(response: ResponseProblem, verdict: Verdict) -> str:
     """The stability; of one without stiffness also along which coordinate most."""
     words = verdict.stability.value
     if verdict.stability in (Stability.MARGINAL, Stability.INDIFFERENT):
-        joint, name = response.independent[int(np.argmax(np.abs(verdict.direction)))]
+        joint, name = response.independent[verdict.along]
         words += f" along {joint}.{name}"
     return words
 
 
-def _moved(chosen: Session, response: ResponseProblem, places: Sequence[Floats]) -> Problem:
-    """The problem with a row for each place; without any one row, at the start."""
-    problem, layout, units = chosen.problem, chosen.layout, chosen.problem.units
-    count = max(len(places), 1)
-    inputs = []
-    for number, item in enumerate(problem.motion.inputs):
-        unit = input_unit(layout, item)
-        values = np.array([place[number] * unit for place in places])
-        values = values if len(places) else item.values[:1]
-        if number >= len(response.independent):
-            values = np.full(count, item.values[0])
-        still = np.zeros((3, count))
-        written = np.zeros((4, count))
-        written[0] = units.from_si(values.copy(), dimension_of(item.coordinate))
-        if number >= len(response.independent):
-            written[0] = item.written[0]
-        inputs.append(
-            DrivenInput(item.joint, item.coordinate, values, still[0], still[1], still[2], written)
-        )
-    moments = Moments(
-        np.repeat(response.moments.values, count), np.repeat(response.moments.written, count)
-    )
-    return problem.moved(MotionInputs(tuple(inputs), count, moments, leader=0))
+def _rows(response: ResponseProblem, count: int) -> MotionInputs:
+    """The driven coordinates and the moment, the same in each row."""
+
+    def repeated(item: DrivenInput) -> DrivenInput:
+        columns = (item.values, item.rates, item.accelerations, item.jerks)
+        value, *others = (np.repeat(column[:1], count) for column in columns)
+        written = np.repeat(item.written_orders[:, :1], count, axis=1)
+        return DrivenInput(item.joint, item.coordinate, value, *others, written)
+
+    moments = response.moments
+    time = Moments(np.repeat(moments.values, count), np.repeat(moments.written, count))
+    return MotionInputs(tuple(map(repeated, response.driven)), count, time)

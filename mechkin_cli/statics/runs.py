@@ -9,18 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.mechanism import response_problem
-from mechkin_cli.record import replace
-from mechkin_cli.response import read
-from mechkin_cli.session import Packing, Session, input_numbers, input_text
-from mechkin_cli.statics.newton import Search, SearchEnd, search
+from mechkin_cli.response import prepare, read
+from mechkin_cli.session import Packing, input_numbers, input_text
+from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search
 from mechkin_cli.statics.places import Statics
 from mechkin_cli.statics.result import EquilibriumResult
 from mechkin_cli.statics.stability import judged
-from mechkin_cli.sweep import first_assembly
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import Problem, ResponseProblem
+    from mechkin_cli.response import Prepared
+    from mechkin_cli.session import Session
 
 ANY_PACKING = Packing()
 """As many lanes and threads as pay."""
@@ -47,36 +46,41 @@ def balance(
             the place.
         KeyError: an unknown quantity.
     """
-    if session is None:
-        session = Session.of(response_problem(problem, response))
     assert response.search is not None
+    one = prepare(problem, response, packing, session)
     if response.search.window:
         from mechkin_cli.statics.window import in_window
 
-        result = in_window(session.packed(packing), response)
+        result = in_window(one)
     else:
-        result = _near(session.packed(packing), response)
+        result = _near(one)
     read(result, quantities)
     return result
 
 
-def _near(session: Session, response: ResponseProblem) -> EquilibriumResult:
+def _near(one: Prepared) -> EquilibriumResult:
     """The equilibrium near the start."""
-    session, start = first_assembly(session)
-    placed = [
-        one if one.place else one._replace(place=response.place) for one in start.diagnostics
-    ]
-    start = replace(start, diagnostics=placed)
-    if start.state is None:
-        return EquilibriumResult(session, start, response, [], [])
-    statics = Statics(session, range(len(response.independent)))
-    time = float(response.moments.values[0])
-    begin = statics.place(session.inputs.values[:, 0], start.state)
-    found = search(statics, begin, time)
+    response = one.response
+    balancing = Balancing.of(one.chosen, response)
+    if one.begun is None or one.start.state is None:
+        return EquilibriumResult(balancing, one.start, [], [])
+    statics = Statics(one.chosen, range(len(response.independent)))
+    begin = statics.place(one.chosen.inputs.values[:, 0], one.start.state)
+    try:
+        place = balancing.charted(statics, begin)
+    except ValueError as e:
+        import traceback; traceback.print_exc()
+        return EquilibriumResult(balancing, one.start, [], [_dead_start(response)])
+    found = search(balancing, place)
     if not found.found:
-        return EquilibriumResult(session, start, response, [], [not_found(session, response, found)])
-    verdict = judged(statics, found.place, time, found.largest)
-    return EquilibriumResult(session, start, response, [(found, verdict)], [])
+        return EquilibriumResult(balancing, one.start, [], [not_found(balancing, found)])
+    return EquilibriumResult(balancing, one.start, [(found, judged(balancing, found))], [])
+
+
+def _dead_start(response: ResponseProblem) -> Diagnostic:
+    text = "the start is a dead centre of a coordinate that it names"
+    hint = "start beside it, or name a coordinate that moves there"
+    return Diagnostic("start-at-dead-centre", "error", text, response.place, hint=hint)
 
 
 _HINTS = {
@@ -88,10 +92,10 @@ _HINTS = {
 }
 
 
-def not_found(session: Session, response: ResponseProblem, found: Search) -> Diagnostic:
+def not_found(balancing: Balancing, found: Search) -> Diagnostic:
     """Why a search has not found an equilibrium, and where it ended."""
-    places = input_numbers(session.problem, session.layout, found.place.inputs)
-    places = places[: len(response.independent)]
+    session = balancing.chosen
+    places = input_numbers(session.problem, session.layout, balancing.named(found.place)[0])
     where = ", ".join(map(input_text, places))
     share = float(np.max(np.abs(found.forces))) / found.largest if found.largest > 0.0 else np.nan
     return Diagnostic(
@@ -99,7 +103,7 @@ def not_found(session: Session, response: ResponseProblem, found: Search) -> Dia
         "error",
         f"no place near the start was found at which the loads balance: {found.end.value} at "
         f"{where}",
-        response.place,
+        balancing.response.place,
         measured=f"{share:.1e} of the largest force of one load is left there",
         hint=_HINTS[found.end],
         numbers=places,

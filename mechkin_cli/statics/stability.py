@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
+from mechkin_cli.mechanism import eliminated
 from mechkin_cli.record import NamedTuple
-from mechkin_cli.statics.newton import search
-from mechkin_cli.statics.places import Place, Statics, eigen, mass, stiffness
+from mechkin_cli.statics.forces import FreePlace, summed
+from mechkin_cli.statics.newton import Balancing, Search, search
+from mechkin_cli.statics.places import eigen
 
 if TYPE_CHECKING:
     from mechkin_cli.show import Floats
@@ -34,62 +36,85 @@ class Stability(Enum):
 
 
 class Verdict(NamedTuple):
-    """Of one equilibrium: its stability, the least stiffness (N*m by kernel units), its error, the
-    direction (free,) of it, the lowest natural frequency (1/s; nan where it is not stable, or
-    nothing has a mass), the largest entry of the stiffness, and whether that is unsymmetric."""
+    """Of one equilibrium: its stability, the independent coordinates (freedoms,) there in kernel
+    units, the least stiffness by them (N*m by kernel units; nan where they do not move one by one)
+    and the coordinate that has most of its motion, the lowest natural frequency (1/s; nan where it
+    is not stable, or nothing has a mass), and whether the stiffness is unsymmetric."""
 
     stability: Stability
+    coordinates: Floats
     least: float
-    error: float
-    direction: Floats
+    along: int
     frequency: float
-    size: float = 0.0
     unsymmetric: bool = False
 
 
-def judged(statics: Statics, place: Place, time: float, largest: float) -> Verdict:
-    """The verdict on an equilibrium, the largest force of one load being known."""
-    count = statics.count
-    found = stiffness(statics, place, time)
-    if found is None:
-        return Verdict(Stability.UNKNOWN, np.nan, np.nan, np.zeros(count), np.nan)
-    matrix = found.matrix
-    size = float(np.max(np.abs(matrix)))
-    error = found.error + tolerances.MARGINAL_STIFFNESS * max(size, largest)
+def judged(balancing: Balancing, found: Search) -> Verdict:
+    """The verdict on an equilibrium that was found."""
+    forces, place = balancing.forces, found.place
+    coordinates, rates = balancing.named(place)
+    derivative = forces.stiffness(place)
+    matrix, nothing = derivative.matrix, np.nan
+    if not np.isfinite(matrix).all():
+        return Verdict(Stability.UNKNOWN, coordinates, nothing, 0, nothing)
+    size = max(float(np.max(np.abs(matrix))), found.largest)
+    error = derivative.error + tolerances.MARGINAL_STIFFNESS * size
     off = float(np.max(np.abs(matrix - matrix.T)))
-    unsymmetric = off > tolerances.UNSYMMETRIC_STIFFNESS * max(size, largest)
+    unsymmetric = off > tolerances.UNSYMMETRIC_STIFFNESS * size
     symmetric = 0.5 * (matrix + matrix.T)
     values, vectors = eigen(symmetric)
     least, direction = float(values[0]), vectors[:, 0]
     if unsymmetric:
-        # the least real part of the eigenvalues: above it nothing creeps away
+        # above the least real part of the eigenvalues nothing creeps away
         least = float(np.min(np.linalg.eigvals(matrix).real))
     stability = Stability.MARGINAL
     if least > error:
         stability = Stability.STABLE
     elif least < -error:
         stability = Stability.UNSTABLE
-    elif _is_indifferent(statics, place, direction, time):
+    elif _is_indifferent(balancing, place, direction):
         stability = Stability.INDIFFERENT
-    frequency = np.nan
+    frequency = nothing
     if stability is Stability.STABLE and not unsymmetric:
-        frequency = _lowest_frequency(symmetric, mass(statics, place, time))
-    return Verdict(stability, least, error, direction, frequency, size, unsymmetric)
+        frequency = _lowest_frequency(symmetric, forces.inertia(place))
+    along = int(np.argmax(np.abs(summed(rates.T * direction[:, None]))))
+    named = _in_coordinates(symmetric, rates)
+    length = forces.session.layout.length
+    by_coordinates = nothing if named is None else length * length * float(eigen(named)[0][0])
+    return Verdict(stability, coordinates, by_coordinates, along, frequency, unsymmetric)
 
 
-def _is_indifferent(statics: Statics, place: Place, direction: Floats, time: float) -> bool:
+def _in_coordinates(matrix: Floats, rates: Floats) -> Floats | None:
+    """A stiffness by coordinates whose rates (coordinates, freedoms) along the chart are known:
+    N^-T K N^-1; None at a dead centre of one."""
+    count = rates.shape[0]
+    columns = []
+    for k in range(count):
+        unit = [float(k == i) for i in range(count)]
+        solved = eliminated(rates.tolist(), unit, tolerances.RANK_ZERO)
+        if solved is None or not max(map(abs, solved)) < tolerances.DEAD_COORDINATE:
+            return None
+        columns.append(np.array(solved))
+    product = np.array(
+        [[float(summed(a * summed(matrix.T * b[:, None]))) for b in columns] for a in columns]
+    )
+    return 0.5 * (product + product.T)
+
+
+def _is_indifferent(balancing: Balancing, place: FreePlace, direction: Floats) -> bool:
     """Whether loads balance along a motion without stiffness, to both sides."""
+    forces = balancing.forces
     reach = tolerances.INDIFFERENT_REACH * np.array([-1.0, -0.5, 0.5, 1.0])
-    for by in reach:
-        inputs = np.stack([place.inputs, place.inputs], axis=1)
-        inputs[statics.free, 1] += by * direction
-        way = statics.way(inputs, place)
-        if way.reached < 2:
+    beside = forces.at(place, direction[:, None] * reach)
+    for number, by in enumerate(reach):
+        if not beside.good[number]:
             return False
-        there = Place(inputs[:, 1], way.states[:, 1], way.turns[:, 1])
-        again = search(statics, there, time)
-        moved = again.place.inputs[statics.free] - place.inputs[statics.free]
-        if not again.found or abs(float((moved * direction).sum()) / by - 1.0) > 0.5:
+        again = search(balancing, forces.moved(place, beside, number))
+        if not again.found:
+            return False
+        moved = again.place.state - place.state
+        wanted = beside.states[:, number] - place.state
+        if np.max(np.abs(moved - wanted)) > 0.5 * np.max(np.abs(wanted)):
             return False
     return True
 
@@ -100,15 +125,15 @@ def _lowest_frequency(matrix: Floats, masses: Floats) -> float:
     The largest eigenvalue of K^-1 M is 1/omega^2: massless motions have none.
     """
     values, vectors = eigen(matrix)
-    if not values[0] > 0.0:
-        return np.nan
     scaled = vectors / np.sqrt(values)
-    count = values.size
-    inner = np.zeros((count, count))
-    for i in range(count):
-        for j in range(count):
-            inner[i, j] = float((scaled[:, i] * (masses * scaled[:, j]).sum(axis=1)).sum())
+    inner = np.array(
+        [
+            [float(summed(a * summed(masses.T * b[:, None]))) for b in scaled.T]
+            for a in scaled.T
+        ]
+    )
     most = float(eigen(0.5 * (inner + inner.T))[0][-1])
-    if not most > tolerances.EQUILIBRIUM_BALANCE * float(np.max(np.abs(masses))) / values[-1]:
+    heaviest = float(np.max(np.abs(masses)))
+    if not most > tolerances.EQUILIBRIUM_BALANCE * heaviest / values[-1] or not heaviest > 0.0:
         return np.nan
     return 1.0 / (2.0 * pi * sqrt(most))

@@ -17,65 +17,60 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mechkin_cli import tolerances
-from mechkin_cli.assembly import choose_start
 from mechkin_cli.diagnostics import Diagnostic
-from mechkin_cli.mechanism import Limit, is_angle
+from mechkin_cli.mechanism import Limit
 from mechkin_cli.record import NamedTuple, dataclass, field, replace
 from mechkin_cli.search import all_assemblies, pose_number
-from mechkin_cli.session import input_number, input_text, input_unit
-from mechkin_cli.statics.newton import Search, SearchEnd, search, settle
+from mechkin_cli.session import input_number, input_text, input_unit, turn_of
+from mechkin_cli.statics.newton import Balancing, Search, SearchEnd, search, settle
 from mechkin_cli.statics.places import Place, Statics
 from mechkin_cli.statics.result import EquilibriumResult
 from mechkin_cli.statics.stability import judged
-from mechkin_cli.units import ANGLE, LENGTH
 
 if TYPE_CHECKING:
     from mechkin_cli.mechanism import ResponseProblem
-    from mechkin_cli.session import Ending, Session
+    from mechkin_cli.response import Prepared
+    from mechkin_cli.session import Ending
     from mechkin_cli.show import Bools, Floats
 
 
-def in_window(session: Session, response: ResponseProblem) -> EquilibriumResult:
-    """All equilibria of an entry of the file with a window."""
-    start = replace(choose_start(session), diagnostics=[])
+def in_window(one: Prepared) -> EquilibriumResult:
+    """All equilibria of an entry of the file with a window; its middle need not be assembled."""
+    response, session = one.response, one.chosen
+    start = replace(one.start, diagnostics=[])
+    balancing = Balancing.of(session, response)
     statics = Statics(session, range(len(response.independent)))
-    time = float(response.moments.values[0])
     assert response.search is not None
-    known = Known(statics, response.search.window)
+    known = Known(balancing, response.search.window)
     if statics.count == 1:
-        curve = _Curve(statics, known, time)
+        curve = _Curve(balancing, statics, known)
         curve.look()
         notes = curve.notes(response)
     else:
-        notes = _from_starts(statics, known, response, time)
-    found = sorted(known.found, key=lambda one: one.place.inputs[: statics.count].tolist())
-    judgements = [(one, judged(statics, one.place, time, one.largest)) for one in found]
-    if not found:
+        notes = _from_starts(balancing, statics, known)
+    judgements = [(found, judged(balancing, found)) for found in known.found]
+    judgements.sort(key=lambda pair: pair[1].coordinates.tolist())
+    if not judgements:
         notes = [*notes, _none(response)]
-    return EquilibriumResult(session, start, response, judgements, notes)
+    return EquilibriumResult(balancing, start, judgements, notes)
 
 
 @dataclass
 class Known:
     """The equilibria that are known, each once, within a window."""
 
-    statics: Statics
+    balancing: Balancing
     window: tuple[Limit, ...]
     found: list[Search] = field(default_factory=list)
 
     @property
     def ends(self) -> tuple[Floats, Floats]:
         """Least and largest values (free,) of the window, in kernel units."""
-        units = self._units
+        session = self.balancing.chosen
+        inputs = session.problem.motion.inputs[: len(self.window)]
+        units = np.array([input_unit(session.layout, item) for item in inputs])
         low = np.array([one.low for one in self.window]) / units
         return low, np.array([one.high for one in self.window]) / units
-
-    @property
-    def _units(self) -> Floats:
-        session = self.statics.session
-        return np.array([input_unit(session.layout, i) for i in session.problem.motion.inputs])[
-            : self.statics.count
-        ]
 
     def add(self, one: Search) -> bool:
         """Takes an equilibrium, if it lies in the window and is not known; whether it is new."""
@@ -84,7 +79,7 @@ class Known:
             return False
         states = [other.place.state for other in self.found]
         if states:
-            layout, limit = self.statics.session.layout, tolerances.SAME_EQUILIBRIUM
+            layout, limit = self.balancing.chosen.layout, tolerances.SAME_EQUILIBRIUM
             if pose_number(layout, np.stack(states, axis=1), one.place.state, limit) is not None:
                 return False
         self.found.append(inside)
@@ -92,18 +87,25 @@ class Known:
 
     def _within(self, one: Search) -> Search | None:
         """An equilibrium with its angles turned into the window; None outside."""
-        count, (low, high) = self.statics.count, self.ends
-        inputs = one.place.inputs.copy()
-        cyclic = self.statics.cyclic[:count]
+        session, (low, high) = self.balancing.chosen, self.ends
+        values, _ = self.balancing.named(one.place)
         slack = tolerances.SAME_EQUILIBRIUM
-        turns = np.ceil((low - slack - inputs[:count]) / (2.0 * np.pi))
-        inputs[:count] += np.where(cyclic, turns, 0.0) * (2.0 * np.pi)
-        at = inputs[:count]
+        inputs = session.problem.motion.inputs[: values.size]
+        cyclic = np.array([turn_of(session.problem, item) is not None for item in inputs])
+        turns = np.where(cyclic, np.ceil((low - slack - values) / (2.0 * np.pi)), 0.0)
+        at = values + 2.0 * np.pi * turns
         if not ((at >= low - slack) & (at <= high + slack)).all():
             return None
-        if (turns == 0.0).all() or not cyclic.any():
-            return one._replace(place=one.place._replace(inputs=inputs))
-        return one._replace(place=self.statics.place(inputs, one.place.state))
+        if not turns.any():
+            return one
+        state, slots = one.place.state.copy(), one.place.turns.copy()
+        known = session.problem.quantities()
+        for item, (edge, freedom), turn in zip(inputs, session.graph.inputs, turns, strict=False):
+            if session.layout.joint_reference[item.joint] >= 0:
+                state[session.layout.state(edge, freedom)] += 2.0 * np.pi * turn
+            elif (slot := session.structure.turn_slot(known[item.name])) is not None:
+                slots[slot] += 2.0 * np.pi * turn
+        return one._replace(place=one.place._replace(state=state, turns=slots))
 
 
 class _Stretch(NamedTuple):
@@ -122,8 +124,9 @@ class _Stretch(NamedTuple):
 class _Curve:
     """The configurations of one freedom in a window."""
 
-    def __init__(self, statics: Statics, known: Known, time: float) -> None:
-        self.statics, self.known, self.time = statics, known, time
+    def __init__(self, balancing: Balancing, statics: Statics, known: Known) -> None:
+        self.balancing, self.statics, self.known = balancing, statics, known
+        self.time = balancing.forces.driven.time
         (low,), (high,) = known.ends
         self.values = np.linspace(low, high, tolerances.WINDOW_PLACES + 1)
         self.base = statics.session.inputs.values[:, 0]
@@ -225,9 +228,9 @@ class _Curve:
             return False
         k = int(np.argmax(both))
         last = k + int(np.argmin(np.append(zero[k:], False)))
-        found = search(self.statics, self._place(one, k), self.time)
+        found = self._found(self._place(one, k))
         self.indifferent.append((float(one.values[k]), float(one.values[last - 1])))
-        if found.found and not self._touches_known(one, k):
+        if found is not None and not self._touches_known(one, k):
             self.known.add(found)
         return bool(zero.all())
 
@@ -270,13 +273,23 @@ class _Curve:
             else:
                 end, above = middle, size
 
+    def _found(self, place: Place) -> Search | None:
+        """The equilibrium that a search from a place finds; None without one."""
+        try:
+            found = search(self.balancing, self.balancing.charted(self.statics, place))
+        except ValueError:
+            return None
+        return found if found.found else None
+
     def _search(self, place: Place, low: float, high: float) -> bool:
         """Takes the equilibrium that a search from a place finds between two values."""
-        found = search(self.statics, place, self.time)
+        found = self._found(place)
+        if found is None:
+            return False
         low, high = min(low, high), max(low, high)
         slack = tolerances.SAME_EQUILIBRIUM
-        at = float(found.place.inputs[self.statics.free[0]])
-        if not found.found or not low - slack <= at <= high + slack:
+        at = float(self.balancing.named(found.place)[0][0])
+        if not low - slack <= at <= high + slack:
             return False
         self.known.add(found)
         return True
@@ -348,10 +361,9 @@ def _none(response: ResponseProblem) -> Diagnostic:
     return Diagnostic("no-equilibrium", "error", text, response.place, hint=hint)
 
 
-def _from_starts(
-    statics: Statics, known: Known, response: ResponseProblem, time: float
-) -> list[Diagnostic]:
+def _from_starts(balancing: Balancing, statics: Statics, known: Known) -> list[Diagnostic]:
     """Searches from places spread over the window; how sure it is that they found all."""
+    response = balancing.response
     assert response.search is not None
     low, high = known.ends
     base = statics.session.inputs.values[:, 0]
@@ -362,10 +374,13 @@ def _from_starts(
         inputs[statics.free] = low + (high - low) * _spread(starts, statics.count)
         reduced, _ = statics.reduced(inputs[:, None])
         for state in all_assemblies(statics.session, reduced[:, 0], thorough=False).states.T:
-            place = statics.place(inputs, state)
+            try:
+                place = balancing.charted(statics, statics.place(inputs, state))
+            except ValueError:
+                continue
             if starts % 2:
-                place = settle(statics, place, time)
-            found = search(statics, place, time)
+                place = settle(balancing, place)
+            found = search(balancing, place)
             if found.end is not SearchEnd.FOUND:
                 continue
             ended += 1

@@ -95,3 +95,11 @@ between them: a search tells."""
 
 MOST_HALVINGS: Final = 50
 """Halvings of a stretch on which the force changes its sign: to rounding."""
+
+SMOOTH_STEP: Final = 0.5
+"""From one part of a step to the next, states may change their pace by this part of it: steps of
+half a radian bend by less, and a jump to another branch is a change by its whole length."""
+
+DEAD_COORDINATE: Final = 1e6
+"""Where a named coordinate moves by less than one part in this of the mechanism's motion, it stands
+at a dead centre, and there is no stiffness by it."""
